@@ -23,9 +23,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from benchmarks.rows import Row
 from world2minecraft.formats.objects import write_objects, write_placements
-from world2minecraft.formats.occupancy import labels_grid
-from world2minecraft.formats.room import write_room
-from world2minecraft.sceneforge.volumes import HEADER
+from world2minecraft.formats.occupancy_files import labels_grid
+from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.sceneforge.array_messages import HEADER
 
 ROOM, HOUSE, BUILDING = (60, 60, 36), (240, 180, 36), (660, 600, 36)
 FILLED = {ROOM: 1.0, HOUSE: 0.27, BUILDING: 0.273}  # 130 k, 421 k and 3.9 M occupied cells.

@@ -18,9 +18,9 @@ from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.block_states import states_of
 from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.nbt import Short, pack_gzip, write_nbt
-from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
 from world2minecraft.minecraft.schematics.litematic import read_litematic, write_litematic
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
+from world2minecraft.minecraft.schematics.pre_flattening import legacy_state
 from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
 from world2minecraft.minecraft.schematics.structure import read_structure, write_structure
 from world2minecraft.minecraft.versions import GameVersion, game_version

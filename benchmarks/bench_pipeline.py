@@ -17,7 +17,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.minecraft.schematics.sponge import write_schem
 from world2minecraft.procgen import generate_room, room_views, scan_room
 from world2minecraft.reconstruction.fusion import EvidenceMap
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 FRAMES = 40
 REPEATS = 3

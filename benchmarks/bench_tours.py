@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks.rows import Row
-from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import distances_m
+from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.minecraftocc.tours import plan_views
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene

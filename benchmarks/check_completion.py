@@ -36,8 +36,8 @@ from world2minecraft.networks.completion.samples import (
     read_samples,
     write_samples,
 )
+from world2minecraft.reconstruction.semantics.completion import CompletionModel, likeliest
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
-from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, likeliest
 
 FIRST_SEED, SEEDS_APART = 8_000, 100
 BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))

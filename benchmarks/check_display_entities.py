@@ -23,7 +23,7 @@ from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import Entity
 from world2minecraft.furniture import TEMPLATES, Template, template
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 
 CELL_M, SCALE, YAW_DEG = 0.02, 4.0, 20.0
 SLACK_M = 0.001

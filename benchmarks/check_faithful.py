@@ -30,8 +30,8 @@ from rich.table import Table
 
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.stages import AFTER, allowed_cells, stage_losses
-from world2minecraft.formats.evidence import read_evidence, write_evidence
+from world2minecraft.evaluation.scoring.stage_ablation import AFTER, allowed_cells, stage_losses
+from world2minecraft.formats.run_arrays import read_evidence, write_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials, write_trial
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import reconstruct

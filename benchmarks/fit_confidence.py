@@ -26,7 +26,7 @@ from world2minecraft.evaluation.metrics.calibration import CalibrationCounts, co
 from world2minecraft.evaluation.scoring.score import TrueRoom, see_truth
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
-from world2minecraft.formats.evidence import read_evidence
+from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
 from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out

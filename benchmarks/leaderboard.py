@@ -30,7 +30,7 @@ from world2minecraft.core.errors import (
     World2MinecraftError,
 )
 from world2minecraft.core.files import read_bytes, read_json, write_text
-from world2minecraft.formats.occupancy import DEFAULT_VOXEL_M
+from world2minecraft.formats.occupancy_files import DEFAULT_VOXEL_M
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials
 
 INPUTS = ("depth", "depth+labels", "photos")

@@ -35,13 +35,13 @@ from world2minecraft.evaluation.metrics.objects import (
     match_objects,
     turn_between_deg,
 )
-from world2minecraft.evaluation.scoring.layout import in_room
+from world2minecraft.evaluation.scoring.object_scores import in_room
 from world2minecraft.evaluation.scoring.score import see_truth
 from world2minecraft.evaluation.scoring.truth import Truth, read_instances
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 HOLE_SHARE = 0.02
 NEAR_CELLS = 2  # A wall is found to a cell, and a cell of it lies half before its face.
@@ -124,7 +124,7 @@ def agreement(draft: SceneDraft, wanted: Wanted) -> float:
 def floating(draft: SceneDraft) -> list[np.ndarray]:
     """Return the cells int [N, 3] of each part that hangs in the air, the largest first."""
     labels = draft.labels
-    parts, count = connected_parts((labels > 0) & (labels < 255))
+    parts, count = label_components((labels > 0) & (labels < 255))
     sizes = np.bincount(parts.ravel(), minlength=count + 1)
     structure = np.bincount(parts[(labels > 0) & (labels <= 4)], minlength=count + 1) > 0
     loose = ~structure | (sizes <= SMALL_CELLS)
@@ -399,7 +399,7 @@ def _largest_hole(draft: SceneDraft, holes: np.ndarray, axis: int) -> np.ndarray
     flat = np.delete(holes[:, 0], axis, axis=1)
     mask = np.zeros(np.delete(draft.shape, axis), bool)
     mask[tuple(flat.T)] = True
-    numbers = connected_parts(mask, corners=False)[0][tuple(flat.T)]
+    numbers = label_components(mask, corners=False)[0][tuple(flat.T)]
     return holes[numbers == np.bincount(numbers).argmax()]
 
 

@@ -13,11 +13,14 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from world2minecraft.capture.stereo.depth_maps import (
+    DEPTH_PERCENTILES,
+    chosen_neighbours,
+    confirmed,
+)
 from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto, small_photos
-from world2minecraft.capture.stereo.maps import confirmed
-from world2minecraft.capture.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.sweep import depth_range
+from world2minecraft.capture.stereo.plane_sweep import depth_range
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent

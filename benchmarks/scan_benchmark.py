@@ -25,7 +25,7 @@ from world2minecraft.core.errors import InputError, UsageError, World2MinecraftE
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.foreign_method import evaluate_foreign, foreign_file
-from world2minecraft.evaluation.scoring.stages import stage_losses
+from world2minecraft.evaluation.scoring.stage_ablation import stage_losses
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, write_trial
 
 CAPTURES, TRUTHS = "captures", "truth"

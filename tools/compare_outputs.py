@@ -50,6 +50,7 @@ def main() -> int:
     base_work, tree_work = cache / f"base-{commit[:12]}", cache / f"tree-{key[:12]}"
     base = Side(cache / f"base-code-{commit[:12]}", base_work, True, shared, base_work)
     ours = Side(cache / f"tree-code-{key[:12]}", tree_work, False, shared, base_work)
+    chosen = [step for step in chosen if not step.is_given]
     skipped = {step.name: why for step in chosen if (why := missing_for(step, ours))}
     chosen = [step for step in chosen if step.name not in skipped]
     began = time.monotonic()
@@ -57,6 +58,12 @@ def main() -> int:
         unpacked(REPOSITORY, commit, base.code)
         before = run_steps(base, _with_those_before(chosen), words.jobs, _teller("base"))
         middle = time.monotonic()
+        for step in chosen:
+            if step.skipped_by and any(
+                step.skipped_by in _said(base, step, number) for number in range(len(step.commands))
+            ):
+                skipped[step.name] = step.skipped_by
+        chosen = [step for step in chosen if step.name not in skipped]
         with locked(tree_work):
             if tree.is_dir():
                 copied(tree, ours.code)

@@ -16,8 +16,7 @@ import numpy as np
 
 from world2minecraft.capture.images import read_colour
 from world2minecraft.core.files import write_text
-from world2minecraft.evaluation.metrics.image_quality.niqe_fit import SHARP, fit_niqe
-from world2minecraft.evaluation.metrics.image_quality.niqe_models import OWN, OWN_FILE
+from world2minecraft.evaluation.metrics.image_quality.niqe import OWN, OWN_FILE, SHARP, fit_niqe
 
 
 class Photo(NamedTuple):

@@ -15,8 +15,8 @@ from world2minecraft.capture.alignment.align import (
     align_surface,
     realigned,
 )
+from world2minecraft.capture.alignment.axis_profiles import profile
 from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
-from world2minecraft.capture.alignment.surface import profile
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.core.types import Scan
 from world2minecraft.geometry.oriented_points import collect_surface

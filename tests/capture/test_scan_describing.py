@@ -7,15 +7,18 @@ import numpy as np
 import pytest
 from PIL import Image, ImageFilter
 
-from world2minecraft.capture.describing import describe
 from world2minecraft.capture.frames import Capture, FrameFiles
-from world2minecraft.capture.judged import judge
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.quality import diagnostics as doubts
-from world2minecraft.capture.quality.overlap import _flattened, shared_share
-from world2minecraft.capture.quality.pictures import bare_share, sharpness
+from world2minecraft.capture.quality.picture_quality import (
+    _flattened,
+    bare_share,
+    shared_share,
+    sharpness,
+)
 from world2minecraft.capture.quality.view_directions import SECTORS, directions_of, up_of_cameras
-from world2minecraft.capture.telling import as_data, summary_lines
+from world2minecraft.capture.summary import as_data, describe, summary_lines
+from world2minecraft.capture.validation import judge
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.capture import describe_capture, open_scan
-from world2minecraft.capture.judged import spread_over
 from world2minecraft.capture.open_scan import ALIGNED_FRAMES
+from world2minecraft.capture.validation import spread_over
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.unprojection import lift_depth
 

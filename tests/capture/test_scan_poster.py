@@ -8,17 +8,15 @@ import pytest
 from PIL import Image
 
 from world2minecraft.capture import describe_capture, write_plain
-from world2minecraft.capture.describing import describe
 from world2minecraft.capture.frames import Capture, FrameFiles
-from world2minecraft.capture.judged import judge
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.poster import is_poster, poster, poster_png
 from world2minecraft.capture.poster.canvas import FIRST, PAPER, Sheet, blend, plain
-from world2minecraft.capture.poster.looks_panel import heat
 from world2minecraft.capture.poster.page import marks_of
-from world2minecraft.capture.poster.photos_panel import chosen_pictures
-from world2minecraft.capture.poster.plan_panel import Placed, shaded
-from world2minecraft.capture.quality.pictures import picture_of
+from world2minecraft.capture.poster.panels import Placed, chosen_pictures, heat, shaded
+from world2minecraft.capture.quality.picture_quality import picture_of
+from world2minecraft.capture.summary import describe
+from world2minecraft.capture.validation import judge
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.capture.alignment.align import align_surface
-from world2minecraft.capture.alignment.places import face_place_m, looks
-from world2minecraft.capture.alignment.straighten import find_faces, straightening_turn
+from world2minecraft.capture.alignment.align import align_surface, find_faces, straightening_turn
+from world2minecraft.capture.alignment.axis_profiles import face_place_m, looks
 from world2minecraft.geometry.oriented_points import Surface, collect_surface
 
 

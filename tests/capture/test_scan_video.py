@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.photos import judged_photos
-from world2minecraft.capture.readers.motion import look_through, picked
+from world2minecraft.capture.readers.video import look_through, picked
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.errors import CaptureError, InputError
 
 av = pytest.importorskip("av")

@@ -8,11 +8,11 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.core.types import AIR, BlockVolume, Entity, Placement
-from world2minecraft.formats import forms
-from world2minecraft.formats.forms import read_form, write_form
-from world2minecraft.formats.glb import GlbWriter, read_glb
+from world2minecraft.formats import volume_formats as forms
+from world2minecraft.formats.gltf import GlbWriter, read_glb
 from world2minecraft.formats.objects import write_placements
 from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.volume_formats import read_form, write_form
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.worlds import session_lock
 

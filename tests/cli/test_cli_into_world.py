@@ -6,7 +6,7 @@ import pytest
 from world2minecraft import cli
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume, OccupancyGrid
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraft.worlds.world_reader import read_world
 from world2minecraft.minecraft.worlds.world_writer import write_world

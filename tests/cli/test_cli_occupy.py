@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotat
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraftocc.cell_predictions import SaidCells, cells_in_grid
 from world2minecraft.minecraftocc.formats.depth_codes import depth_png
 from world2minecraft.minecraftocc.frame_completion import GridPlace

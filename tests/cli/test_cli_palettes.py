@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft import cli
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.formats.glb import read_glb
+from world2minecraft.formats.gltf import read_glb
 from world2minecraft.minecraft.formats import write_blocks
 
 

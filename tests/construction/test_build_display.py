@@ -16,7 +16,7 @@ from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import ObjectInstance, Placement
 from world2minecraft.furniture import template
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.rendering import preview
 

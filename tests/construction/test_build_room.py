@@ -17,7 +17,7 @@ from world2minecraft.construction.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.errors import UsageError
-from world2minecraft.geometry.padded_morphology import beside, grown, parts_of
+from world2minecraft.geometry.morphology import dilate, dilate_faces, label_face_components
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable
@@ -46,7 +46,7 @@ def free_of(volume):
 
 def inside_of(volume):
     """The air that the spawn's place is joined to by faces."""
-    parts, _ = parts_of(free_of(volume))
+    parts, _ = label_face_components(free_of(volume))
     cell = np.floor(np.array(find_spawn(volume).position)).astype(int) - volume.corner
     return parts == parts[tuple(cell)]
 
@@ -227,10 +227,10 @@ def test_every_wall_of_a_generated_home_stands(maker, seed, scale):
     low = round(float(-grid.origin_m[2] / VOXEL_M))
     band = slice(low + 4, low + 22)
     walls = np.isin(labels[:, :, band], (WALL, WALL + 1)).mean(2) > 0.9
-    cells = np.argwhere(walls & beside((labels[:, :, band] == 0).mean(2) > 0.9))
+    cells = np.argwhere(walls & dilate_faces((labels[:, :, band] == 0).mean(2) > 0.9))
     points = np.column_stack([(cells + 0.5) * VOXEL_M + grid.origin_m[:2], np.ones(len(cells))])
     blocks = np.floor(apply(invert(volume.block_to_room), points) - volume.corner).astype(int)
-    standing = grown(np.isin(volume.semantic, (WALL, WALL + 1)), (1, 0, 1))
+    standing = dilate(np.isin(volume.semantic, (WALL, WALL + 1)), (1, 0, 1))
     assert standing[tuple(blocks.T)].all()
 
 

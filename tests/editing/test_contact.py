@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.types import AIR
 from world2minecraft.editing.cleanup.contact import GAP, STEPS, touches, touching_parts
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 STONE = "minecraft:stone"
 LOWER, UPPER = (f"minecraft:oak_slab[type={kind},waterlogged=false]" for kind in ("bottom", "top"))

@@ -13,7 +13,7 @@ from world2minecraft.editing.backups import steps_of, take_back
 from world2minecraft.editing.world_build import build_into
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region
-from world2minecraft.minecraft.worlds.region_edit import read_region_file
+from world2minecraft.minecraft.worlds.in_place_editing import read_region_file
 
 REGION = "region/r.-1.-1.mca"
 

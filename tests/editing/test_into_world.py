@@ -27,14 +27,14 @@ from world2minecraft.core.types import AIR
 from world2minecraft.editing.backups import steps_of, take_back
 from world2minecraft.editing.relocation import moved, placed, trimmed
 from world2minecraft.editing.world_build import build_into, built_mask, take_blocks_out
-from world2minecraft.minecraft import section_words
+from world2minecraft.minecraft import bit_packing as section_words
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds import region_edit
+from world2minecraft.minecraft.worlds import in_place_editing as region_edit
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
+from world2minecraft.minecraft.worlds.in_place_editing import read_region_file
 from world2minecraft.minecraft.worlds.level_dat import level_data
-from world2minecraft.minecraft.worlds.region_edit import read_region_file
 from world2minecraft.minecraft.worlds.world_reader import read_world
 
 

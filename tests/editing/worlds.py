@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.nbt import Byte, Long, read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region
-from world2minecraft.minecraft.worlds.region_edit import read_region_file
+from world2minecraft.minecraft.worlds.in_place_editing import read_region_file
 from world2minecraft.minecraft.worlds.world_reader import read_world
 from world2minecraft.minecraft.worlds.world_writer import write_world
 

@@ -24,13 +24,14 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.external_models.chat_client import ChatModel, open_chat, wait_s
 from world2minecraft.external_models.chat_costs import Ledger, Price
-from world2minecraft.external_models.chat_endpoints import Endpoint, endpoint_of
 from world2minecraft.external_models.chat_messages import Picture, Question, Turn
-from world2minecraft.external_models.chat_wire import (
+from world2minecraft.external_models.chat_transport import (
     BusyServerError,
     ChatWire,
+    Endpoint,
     RefusedQuestionError,
     UselessReplyError,
+    endpoint_of,
 )
 from world2minecraft.external_models.reply_cache import ReplyStore
 

@@ -6,7 +6,7 @@ import pytest
 from tests.external_models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
 from tests.external_models.test_chat import HELLO, model_at
 
-from world2minecraft.external_models.chat_wire import RefusedQuestionError
+from world2minecraft.external_models.chat_transport import RefusedQuestionError
 from world2minecraft.external_models.structured_replies import (
     Form,
     UnreadableError,

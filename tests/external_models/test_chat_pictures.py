@@ -10,10 +10,10 @@ from PIL import Image
 
 from world2minecraft.cli.model_options import MAX_PIXELS
 from world2minecraft.core.errors import UsageError
-from world2minecraft.external_models.chat_messages import Picture
-from world2minecraft.external_models.chat_pictures import (
+from world2minecraft.external_models.chat_messages import (
     LEAST_PX,
     MOST_PX,
+    Picture,
     at_most,
     capped,
     check_most_px,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.formats.faces import Faces, faces_of_boxes
+from world2minecraft.formats.block_meshes import Faces, faces_of_boxes
 
 
 def faces(boxes, owner=None, material=None, is_clear=(False, True)):

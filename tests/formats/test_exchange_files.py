@@ -17,17 +17,23 @@ from world2minecraft.core.types import (
     Placement,
     Scan,
 )
-from world2minecraft.formats.centers import write_centers
-from world2minecraft.formats.evidence import EVIDENCE_ARRAYS, read_evidence, write_evidence
 from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.formats.occupancy import inner_corner_m, read_occupancy
+from world2minecraft.formats.occupancy_files import inner_corner_m, read_occupancy
 from world2minecraft.formats.paper_json import read_occ_json, write_centers_json, write_occ_json
-from world2minecraft.formats.room import GRID_ARRAYS, read_room, write_room
+from world2minecraft.formats.run_arrays import (
+    EVIDENCE_ARRAYS,
+    GRID_ARRAYS,
+    read_evidence,
+    read_room,
+    write_centers,
+    write_evidence,
+    write_room,
+)
 from world2minecraft.formats.scan import read_depth_kind, read_room_size, write_scan
 
 

@@ -16,20 +16,28 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
-from world2minecraft.formats.blob import pack_volume, unpack_volume
-from world2minecraft.formats.bodies import bodies_of
-from world2minecraft.formats.forms import form_named, form_names, write_forms
-from world2minecraft.formats.glb import GlbWriter, read_glb, view_bytes
-from world2minecraft.formats.gltf import gltf_bytes, read_gltf, texture_side, write_gltf
+from world2minecraft.formats.block_meshes import bodies_of
+from world2minecraft.formats.gltf import (
+    GlbWriter,
+    gltf_bytes,
+    pack_volume,
+    read_glb,
+    read_gltf,
+    texture_side,
+    unpack_volume,
+    view_bytes,
+    write_gltf,
+)
 from world2minecraft.formats.habitat import (
     semantic_colour,
     semantic_ids,
     write_habitat,
 )
+from world2minecraft.formats.volume_formats import form_named, form_names, write_forms
 from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.minecraft.block_colours import colour_of
-from world2minecraft.minecraft.displays import block_display
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.entities import block_display
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 PALETTE = (
     AIR,

@@ -9,7 +9,7 @@ import zlib
 import numpy as np
 import pytest
 
-from world2minecraft.formats.glb import GlbWriter
+from world2minecraft.formats.gltf import GlbWriter
 from world2minecraft.minecraft.bedrock.nbt_little_endian import write_little
 
 pytest.importorskip("resource")  # Windows has none.
@@ -18,7 +18,7 @@ LIMIT_MB = 512
 READ = """
 import resource, sys
 from world2minecraft.core.errors import InputError
-from world2minecraft.formats.forms import read_form
+from world2minecraft.formats.volume_formats import read_form
 for path in sys.argv[1:]:
     try:
         volume = read_form(path)

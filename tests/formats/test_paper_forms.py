@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, LimitError
-from world2minecraft.formats.paper_forms import CELLS, METRES, read_any_centers, read_any_occ
+from world2minecraft.formats.occupancy_files import CELLS, METRES, read_any_centers, read_any_occ
 from world2minecraft.formats.paper_json import _lines, write_occ_json
 
 CELLS_OF = [[0, 0, 0, 2], [1, 0, 0, 2], [1, 2, 3, 5], [4, 1, 0, 11]]

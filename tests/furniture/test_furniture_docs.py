@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.furniture.listing import markdown
+from world2minecraft.furniture.library import markdown
 
 PAGES = Path(__file__).resolve().parents[2] / "docs"
 PAGE = PAGES / "furniture.md"

@@ -14,8 +14,8 @@ from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.preview_scene import volume_of
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
-from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.visual_shapes import is_luminous
 
 SCALES = (1.0, 2.0, 4.0)
 MINE = ("bath", "cases", "decor", "greenery", "hangings", "kitchen", "lights", "shelving")

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UnknownNameError, World2MinecraftError
 from world2minecraft.furniture import TEMPLATES, Span, Template, check_template, template
+from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.library import templates_of
-from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock
 
 NAMES = TEMPLATES.names()

@@ -6,10 +6,16 @@ from hypothesis import strategies as st
 
 from world2minecraft.furniture import Look, Material
 from world2minecraft.furniture.block_plan import Plan
-from world2minecraft.furniture.laying import RISES, lay_back, lay_legs, lay_plate, lay_trestle
+from world2minecraft.furniture.box_primitives import (
+    RISES,
+    lay_back,
+    lay_legs,
+    lay_plate,
+    lay_trestle,
+)
 from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 WOOD = Look("thing", {}, {}, {"top": Material("wood", "oak"), "cloth": Material("cloth", "red")})
 # Where the panel of an open trapdoor lies: axis of block axes (x east, z south) and its low side.

@@ -13,7 +13,7 @@ from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.preview_scene import volume_of
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 SCALES = (1.0, 2.0, 4.0)
 MINE = ("chairs", "sofas", "beds", "tables", "screens")

@@ -6,9 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
-from world2minecraft.geometry.boxes import join_pairs, painted_boxes, partition
-from world2minecraft.geometry.coarse import coarsened
-from world2minecraft.geometry.covers import cover, few_boxes
+from world2minecraft.geometry.box_decomposition import (
+    cover_boxes,
+    few_boxes,
+    join_pairs,
+    painted_boxes,
+    partition_boxes,
+    simplify_boxes,
+)
 
 SHAPES = stn.arrays(
     np.int32, st.tuples(*[st.integers(1, 7)] * 3), elements=st.sampled_from([0, 0, 1, 1, 1, 2])
@@ -45,7 +50,7 @@ def volume(boxes: np.ndarray) -> int:
 
 @given(SHAPES)
 def test_a_partition_is_the_shape_and_shares_no_cell(labels):
-    boxes = partition(labels)
+    boxes = partition_boxes(labels)
     assert np.array_equal(painted_boxes(boxes, labels.shape), labels)
     assert volume(boxes) == np.count_nonzero(labels)
     assert len(boxes) <= len(slow_sweep(labels))
@@ -53,7 +58,7 @@ def test_a_partition_is_the_shape_and_shares_no_cell(labels):
 
 @given(SHAPES)
 def test_one_sweep_is_the_slow_one(labels):
-    from world2minecraft.geometry.boxes import _swept
+    from world2minecraft.geometry.box_decomposition import _swept
 
     boxes = _swept(labels, (0, 1, 2), (False, False, False))
     assert {tuple(row) for row in boxes.tolist()} == slow_sweep(labels)
@@ -63,12 +68,12 @@ def test_one_sweep_is_the_slow_one(labels):
 def test_a_shape_seen_from_another_side_takes_as_many_boxes(labels, axes):
     turned = np.ascontiguousarray(labels.transpose(axes)[::-1])
     # Joining pairs at the end goes axis by axis, so that a view may save one box more.
-    assert abs(len(partition(turned)) - len(partition(labels))) <= 1
+    assert abs(len(partition_boxes(turned)) - len(partition_boxes(labels))) <= 1
 
 
 @given(SHAPES)
 def test_a_cover_is_the_shape_and_none_of_its_boxes_is_spare(labels):
-    boxes = cover(labels)
+    boxes = cover_boxes(labels)
     assert np.array_equal(painted_boxes(boxes, labels.shape), labels)
     for n in range(len(boxes)):
         rest = np.delete(boxes, n, axis=0)
@@ -78,10 +83,10 @@ def test_a_cover_is_the_shape_and_none_of_its_boxes_is_spare(labels):
 
 @given(SHAPES, st.sampled_from([0.7, 0.9, 1.0]))
 def test_coarser_boxes_keep_their_bound_and_share_no_cell(labels, least):
-    boxes = coarsened(labels, least)
+    boxes = simplify_boxes(labels, least)
     filled = painted_boxes(boxes, labels.shape) > 0
     assert volume(boxes) == filled.sum()
-    assert len(boxes) <= len(partition(labels))
+    assert len(boxes) <= len(partition_boxes(labels))
     if labels.any():
         union = (filled | (labels > 0)).sum()
         assert (filled & (labels > 0)).sum() / union >= least - 1e-9
@@ -89,22 +94,22 @@ def test_coarser_boxes_keep_their_bound_and_share_no_cell(labels, least):
 
 @given(SHAPES)
 def test_at_a_bound_of_one_the_shape_stays(labels):
-    assert np.array_equal(painted_boxes(coarsened(labels, 1.0), labels.shape) > 0, labels > 0)
+    assert np.array_equal(painted_boxes(simplify_boxes(labels, 1.0), labels.shape) > 0, labels > 0)
 
 
 def test_boxes_are_joined_no_further_than_asked():
     stairs = np.tril(np.ones((12, 12), np.int32))[:, :, None]
-    counts = [len(coarsened(stairs, 0.5, enough=most)) for most in (1, 4, 8, 99)]
+    counts = [len(simplify_boxes(stairs, 0.5, enough=most)) for most in (1, 4, 8, 99)]
     assert counts == sorted(counts)
     assert 4 >= counts[1] > counts[0] == 1
-    assert counts[3] == len(partition(stairs))
+    assert counts[3] == len(partition_boxes(stairs))
 
 
 def test_open_cells_are_filled_at_no_cost():
     hollow = np.ones((6, 6, 6), np.int32)
     hollow[1:-1, 1:-1, 1:-1] = 0
-    assert len(coarsened(hollow, 0.99)) > 1
-    assert coarsened(hollow, 0.99, hollow == 0).tolist() == [[1, 0, 0, 0, 6, 6, 6]]
+    assert len(simplify_boxes(hollow, 0.99)) > 1
+    assert simplify_boxes(hollow, 0.99, hollow == 0).tolist() == [[1, 0, 0, 0, 6, 6, 6]]
 
 
 def test_chairs_tables_and_round_tops_take_few_boxes():
@@ -114,13 +119,13 @@ def test_chairs_tables_and_round_tops_take_few_boxes():
     for x in (slice(0, 2), slice(-2, None)):
         for y in (slice(0, 2), slice(-2, None)):
             chair[x, y, :20] = 1
-    assert len(partition(chair)) == 6
+    assert len(partition_boxes(chair)) == 6
     across = np.indices((50, 50)) - 24.5
     top = np.zeros((50, 50, 38), np.int32)
     top[:, :, 36:] = ((across**2).sum(axis=0) <= 25**2)[:, :, None]
     top[22:28, 22:28, 2:36] = top[13:37, 13:37, :2] = 1
     boxes = few_boxes(top)
-    assert len(boxes) <= 20 < len(partition(top))
+    assert len(boxes) <= 20 < len(partition_boxes(top))
     assert np.array_equal(painted_boxes(boxes, top.shape), top)
 
 
@@ -130,9 +135,9 @@ def test_pairs_that_make_one_box_are_joined():
 
 
 def test_nothing_gives_no_boxes_and_wrong_questions_are_refused():
-    assert partition(np.zeros((3, 4, 5), int)).shape == (0, 7)
-    assert cover(np.zeros((3, 4, 5), int)).shape == (0, 7)
+    assert partition_boxes(np.zeros((3, 4, 5), int)).shape == (0, 7)
+    assert cover_boxes(np.zeros((3, 4, 5), int)).shape == (0, 7)
     with pytest.raises(ValueError, match=r"labels must have shape \[X, Y, Z\], not \(3, 4\)"):
-        partition(np.zeros((3, 4), int))
+        partition_boxes(np.zeros((3, 4), int))
     with pytest.raises(ValueError, match=r"least_iou must be above 0, up to 1, not 1\.5"):
-        coarsened(np.zeros((3, 4, 5), int), 1.5)
+        simplify_boxes(np.zeros((3, 4, 5), int), 1.5)

@@ -12,7 +12,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from world2minecraft.minecraft.physics import body_box, sweep
+from world2minecraft.minecraft.physics import body_box
+from world2minecraft.minecraft.physics import collisions as sweep
 
 BACK = 0.05  # Blocks by which one draws back.
 

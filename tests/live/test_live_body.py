@@ -253,8 +253,7 @@ def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
     from world2minecraft.navigation.agents import agent_of
     from world2minecraft.navigation.running.episode_runner import walk_episode
     from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
-    from world2minecraft.navigation.server.ground import ServerGround
-    from world2minecraft.navigation.server.scene import open_server_scene
+    from world2minecraft.navigation.server.scene import ServerGround, open_server_scene
 
     server, folder = flat_server
     with join(server.address, folder=user_cache_dir() / "live-test") as body:

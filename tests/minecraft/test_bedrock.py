@@ -26,8 +26,8 @@ from world2minecraft.minecraft.bedrock.states import (
 )
 from world2minecraft.minecraft.block_states import states_of
 from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, NbtLimits, Short
 
 STONE = "minecraft:stone"

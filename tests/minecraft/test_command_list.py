@@ -16,9 +16,8 @@ from world2minecraft.minecraft.commands import parser as command_reading
 from world2minecraft.minecraft.commands.parser import read_command_list, read_datapack
 from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
 from world2minecraft.minecraft.commands.writer import snbt
-from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))

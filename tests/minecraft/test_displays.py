@@ -15,7 +15,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.commands.writer import entity_commands, entity_tag
-from world2minecraft.minecraft.displays import (
+from world2minecraft.minecraft.entities import (
     block_display,
     check_displays,
     display_cubes,

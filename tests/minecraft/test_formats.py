@@ -6,10 +6,14 @@ from block_volumes import random_volume, state_texts, volume_of
 
 from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.minecraft.file_format import WriteOptions
-from world2minecraft.minecraft.formats import FORMATS, LABELS, read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.spawn import top_of_middle
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
+from world2minecraft.minecraft.formats import (
+    FORMATS,
+    LABELS,
+    read_blocks,
+    top_of_middle,
+    write_blocks,
+)
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))
 

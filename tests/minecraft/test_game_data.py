@@ -6,9 +6,8 @@ from block_volumes import volume_of
 
 from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.block_entities import count_lost_data, in_game
-from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte
 
 CHEST = "minecraft:chest[facing=north,type=single,waterlogged=false]"

@@ -10,7 +10,13 @@ from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.core.errors import InputError, LimitError, UsageError
 from world2minecraft.core.types import AIR, Entity
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.bit_packing import (
+    bits_for,
+    pack_straddled,
+    unpack_straddled,
+    words_for,
+)
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.schematics import litematic
 from world2minecraft.minecraft.schematics.litematic import (
@@ -20,12 +26,6 @@ from world2minecraft.minecraft.schematics.litematic import (
     write_regions,
 )
 from world2minecraft.minecraft.state_nbt import state_text
-from world2minecraft.minecraft.straddled import (
-    bits_for,
-    pack_straddled,
-    unpack_straddled,
-    words_for,
-)
 from world2minecraft.minecraft.versions import game_version
 
 STONE, WOOD = "minecraft:stone", "minecraft:oak_planks"

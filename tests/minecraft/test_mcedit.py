@@ -8,13 +8,13 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, write_nbt
 from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
-from world2minecraft.minecraft.sign_texts import sign_of_today
+from world2minecraft.minecraft.schematics.pre_flattening import legacy_state
+from world2minecraft.minecraft.signs import sign_of_today
 
 
 def schematic(

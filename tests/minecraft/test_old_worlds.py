@@ -10,6 +10,13 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import AIR
+from world2minecraft.minecraft.bit_packing import (
+    pack_straddled,
+    word_count,
+    words_before_1_16,
+    words_for,
+    words_of_today,
+)
 from world2minecraft.minecraft.block_names import (
     count_unknown,
     is_unknown,
@@ -18,14 +25,8 @@ from world2minecraft.minecraft.block_names import (
     written_state,
 )
 from world2minecraft.minecraft.commands.datapack import write_datapack
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
-from world2minecraft.minecraft.section_words import (
-    word_count,
-    words_before_1_16,
-    words_of_today,
-)
-from world2minecraft.minecraft.straddled import pack_straddled, words_for
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
 from world2minecraft.minecraft.worlds.world_writer import read_world, write_world

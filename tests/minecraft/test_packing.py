@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.minecraft.packing import (
+from world2minecraft.minecraft.bit_packing import (
     pack_section,
     read_varints,
     skip_texts,

@@ -8,9 +8,8 @@ from block_volumes import state_texts
 from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.schematics.structure import write_structure
 from world2minecraft.minecraft.versions import game_version
 

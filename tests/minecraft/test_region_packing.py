@@ -18,10 +18,13 @@ from world2minecraft.minecraft.worlds.anvil import (
     COMPRESSIONS,
     MAX_CHUNK_BYTES,
     SECTOR,
+    checksum,
+    pack_lz4,
     pack_region,
     read_region,
+    unpack_lz4,
+    xxhash32,
 )
-from world2minecraft.minecraft.worlds.lz4_blocks import checksum, pack_lz4, unpack_lz4, xxhash32
 from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 each_way = pytest.mark.parametrize("compression", COMPRESSIONS)

@@ -12,8 +12,8 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.block_states import parse_state
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Short, pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
 from world2minecraft.minecraft.versions import game_version

@@ -13,9 +13,8 @@ from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
-from world2minecraft.minecraft.server.plan import plan_build
-from world2minecraft.minecraft.sign_texts import signs_of_today
-from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, wrapped
+from world2minecraft.minecraft.server.building import plan_build
+from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, signs_of_today, wrapped
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
 
 STATE = "minecraft:oak_wall_sign[facing=north,waterlogged=false]"

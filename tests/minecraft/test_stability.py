@@ -16,7 +16,7 @@ from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.light import light_of
 from world2minecraft.minecraft.rules.stability import unstable, unstable_cells
 from world2minecraft.minecraft.transforms import turn_volume
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]
 STEP = {"o": (0, 0, 0), "n": (0, 0, -1), "e": (1, 0, 0), "s": (0, 0, 1), "w": (-1, 0, 0),

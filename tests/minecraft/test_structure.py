@@ -14,9 +14,8 @@ from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.core.errors import InputError, LimitError, UsageError
 from world2minecraft.core.types import AIR, Entity
-from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
     Byte,
     Float,
@@ -30,9 +29,10 @@ from world2minecraft.minecraft.nbt import (
 )
 from world2minecraft.minecraft.schematics import structure as our_structure
 from world2minecraft.minecraft.schematics import structure_pack
-from world2minecraft.minecraft.schematics.block_list import _SIZES, skip_value
 from world2minecraft.minecraft.schematics.structure import (
+    _SIZES,
     read_structure,
+    skip_value,
     structure_of,
     write_structure,
 )

@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.transforms import turn_state
-from world2minecraft.minecraft.visual import family_of, visual_boxes_of, visual_families
+from world2minecraft.minecraft.visual_shapes import family_of, visual_boxes_of, visual_families
 
 # They have six plates, which overlap at the edges of the cube.
 PLATES = ("vine", "glow_lichen", "sculk_vein")

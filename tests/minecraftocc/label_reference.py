@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.minecraftocc.values import LabelRegion, SceneVoxels
 from world2minecraft.rendering.block_elements import Element, LookSource
 

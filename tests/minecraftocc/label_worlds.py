@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.displays import block_display
+from world2minecraft.minecraft.entities import block_display
 
 CAMERA = Camera(96, 72, 60.0, 60.0, 48.0, 36.0)
 PALETTE = (

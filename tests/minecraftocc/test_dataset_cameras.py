@@ -19,8 +19,7 @@ from world2minecraft.minecraftocc.camera_records import (
     camera_record,
     paper_matrices,
 )
-from world2minecraft.rendering.views.cameras import camera_of
-from world2minecraft.rendering.views.poses import GamePose
+from world2minecraft.rendering.views.cameras import GamePose, camera_of
 
 ROOM = block_to_room(np.array([1.0, 5.0]), 4.0)
 CAMERA = camera_of(1920, 1129, vertical_fov_deg=70)

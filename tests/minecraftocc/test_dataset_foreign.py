@@ -5,7 +5,7 @@ import pytest
 from house_of_blocks import Blocks, cottage
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.source import open_scene_source
@@ -42,7 +42,7 @@ def test_a_restaurant_has_many_benches_and_tables(build_of):
     """Its tables are fences with trapdoors or slabs, its benches stairs in rows."""
     volume = build_of("modern_restaurant")
     for name, least in (("sofa", 10), ("table", 15)):
-        parts, count = connected_parts(volume.semantic == class_id(name), corners=False)
+        parts, count = label_components(volume.semantic == class_id(name), corners=False)
         low = np.array([np.argwhere(parts == n)[:, 1].min() for n in range(1, count + 1)])
         assert (low == 1).sum() >= least
 

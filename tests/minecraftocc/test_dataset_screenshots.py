@@ -15,7 +15,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.minecraftocc.name_patterns import NamePattern
 from world2minecraft.minecraftocc.png_text import MOST_TEXT, read_png_facts
 from world2minecraft.minecraftocc.screenshots import read_screenshots
-from world2minecraft.rendering.views.poses import GamePose
+from world2minecraft.rendering.views.cameras import GamePose
 
 POSE = {"x": 1.5, "y": 64.0, "z": -3.25, "yaw": 90.0, "pitch": 12.5}
 

@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume, Camera, Layout
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
-from world2minecraft.minecraft.physics.graph import solid_of, walk_graph
+from world2minecraft.minecraft.physics.walk_graph import solid_of, walk_graph
 from world2minecraft.minecraftocc.tours import (
     TourRule,
     kind_of_yaw,

@@ -12,7 +12,7 @@ from world2minecraft.external_models.chat_costs import Ledger
 from world2minecraft.external_models.structured_replies import UnreadableError
 from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent, agent_of
 from world2minecraft.navigation.agents.action_format import SCHEMA, read_step
-from world2minecraft.navigation.agents.trail import facing, relative_m, trail_text
+from world2minecraft.navigation.agents.vlm_agent import facing, relative_m, trail_text
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.values import Move, Stance
 

@@ -12,10 +12,9 @@ from vln_sets import next_action, next_view, write_pictures
 from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.external_models.structured_replies import UnreadableError
-from world2minecraft.navigation.agents.answer_form import read_answer
-from world2minecraft.navigation.agents.answering import Answer, ModelAnswerer
+from world2minecraft.navigation.agents.question_answering import Answer, ModelAnswerer, read_answer
 from world2minecraft.navigation.prompts import question_of
-from world2minecraft.navigation.running.evaluating import accuracy, evaluate, write_result
+from world2minecraft.navigation.running.item_evaluation import accuracy, evaluate, write_result
 from world2minecraft.navigation.running.tables import (
     answers_table,
     markdown_of,
@@ -115,7 +114,7 @@ def test_other_styles_end_otherwise(folder):
 
 def test_the_think_style_is_that_of_the_hand_off():
     recipes = pytest.importorskip("world2minecraft.navigation.exporters.recipes")
-    from world2minecraft.navigation.agents.answer_form import THINK
+    from world2minecraft.navigation.agents.question_answering import THINK
 
     assert recipes.verbatim("mc.jinja").strip().splitlines()[-1] == THINK
 

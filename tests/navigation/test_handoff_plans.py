@@ -10,10 +10,15 @@ from tests.navigation.vln_sets import next_action, next_view
 from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.navigation.exporters.parts import held_out, parts_of, shuffled
-from world2minecraft.navigation.exporters.rules import HandoffRule
-from world2minecraft.navigation.exporters.steps import GRPO_BATCH, grpo_plan, sft_steps
-from world2minecraft.navigation.exporters.tokens import LEAST_PIXELS, MOST_PIXELS, image_tokens
+from world2minecraft.navigation.exporters.options import HandoffRule, held_out, parts_of, shuffled
+from world2minecraft.navigation.exporters.training_costs import (
+    GRPO_BATCH,
+    LEAST_PIXELS,
+    MOST_PIXELS,
+    grpo_plan,
+    image_tokens,
+    sft_steps,
+)
 
 sides = st.integers(28, 4000)
 

@@ -16,9 +16,16 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import write_json
 from world2minecraft.navigation.exporters import export_set
-from world2minecraft.navigation.exporters.frames import block_to_habitat, positions, rotation
 from world2minecraft.navigation.exporters.r2r import heading, write_r2r
-from world2minecraft.navigation.exporters.vlnce import TOKENS, sparse, split_words, vocabulary
+from world2minecraft.navigation.exporters.vlnce import (
+    TOKENS,
+    block_to_habitat,
+    positions,
+    rotation,
+    sparse,
+    split_words,
+    vocabulary,
+)
 from world2minecraft.navigation.records import write_episodes
 from world2minecraft.navigation.values import Stance
 

@@ -17,11 +17,10 @@ from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.navigation.environment.observations import Eyes
 from world2minecraft.navigation.server import body as body_module
 from world2minecraft.navigation.server import installing
+from world2minecraft.navigation.server.actions import forward_keys
 from world2minecraft.navigation.server.blocks import MAX_CELLS, checked_box, state_of
-from world2minecraft.navigation.server.body import ServerBody, join
-from world2minecraft.navigation.server.bridge import Bridge
+from world2minecraft.navigation.server.body import Bridge, ServerBody, join
 from world2minecraft.navigation.server.env import ServerEnv
-from world2minecraft.navigation.server.pace import forward_keys
 from world2minecraft.navigation.server.scene import open_server_scene
 from world2minecraft.navigation.values import Move
 
@@ -308,7 +307,7 @@ def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
     from world2minecraft.navigation.agents import agent_of
     from world2minecraft.navigation.running.episode_runner import walk_episode
     from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
-    from world2minecraft.navigation.server.ground import ServerGround
+    from world2minecraft.navigation.server.scene import ServerGround
 
     with fake() as body:
         scene = open_server_scene(body, labels=flat_path)

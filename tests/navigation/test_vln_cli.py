@@ -16,7 +16,7 @@ from world2minecraft import cli
 from world2minecraft.cli.vln.live_view import LinesLive, half_blocks, safe
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.records import read_episodes, write_items
-from world2minecraft.navigation.running.picking import picked_items
+from world2minecraft.navigation.running.item_evaluation import picked_items
 from world2minecraft.navigation.running.sentence_goals import named_in
 from world2minecraft.navigation.running.trace import read_trace
 from world2minecraft.navigation.scene import camera_of

@@ -11,10 +11,16 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics import BlockWorld, body_box
-from world2minecraft.minecraft.physics.graph import solid_of
-from world2minecraft.minecraft.physics.sweep import overlapping
-from world2minecraft.navigation.motion import BodySize, walked
-from world2minecraft.navigation.moves import forward_blocks, moved, named_set, wrapped_yaw
+from world2minecraft.minecraft.physics.collisions import overlapping
+from world2minecraft.minecraft.physics.walk_graph import solid_of
+from world2minecraft.navigation.moves import (
+    BodySize,
+    forward_blocks,
+    moved,
+    named_set,
+    walked,
+    wrapped_yaw,
+)
 from world2minecraft.navigation.oracle import expert
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
 

@@ -10,9 +10,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.physics.any_angle_paths import lattice_of, straight_m
-from world2minecraft.navigation.floor import LEVEL, REACH, distance_over
 from world2minecraft.navigation.landmarks import colour_name
-from world2minecraft.navigation.scene import camera_of, open_scene
+from world2minecraft.navigation.scene import LEVEL, REACH, camera_of, distance_over, open_scene
 from world2minecraft.navigation.values import Stance
 
 

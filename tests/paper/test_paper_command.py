@@ -6,8 +6,7 @@ import pytest
 
 from world2minecraft.cli import run
 from world2minecraft.paper import filled, read_results, read_table, table_names
-from world2minecraft.paper.layout import grid_of
-from world2minecraft.paper.writing import as_latex, as_markdown, as_text
+from world2minecraft.paper.table_writer import as_latex, as_markdown, as_text, grid_of
 
 QUALITY = """\
 Table 3 of the paper. Picture quality

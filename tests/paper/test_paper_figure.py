@@ -15,11 +15,11 @@ from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.navigation.running.scene_ground import SceneGround
+from world2minecraft.navigation.running.episode_ground import SceneGround
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.values import Stance
 from world2minecraft.paper import figure
-from world2minecraft.paper.walked import spread, views_of_walk
+from world2minecraft.paper.figure import spread, views_of_walk
 
 
 def grid(labels):

@@ -14,7 +14,7 @@ from world2minecraft.minecraftocc.statistics.other_data_sets import (
 )
 from world2minecraft.navigation.data.statistics import PAPER_LENGTHS
 from world2minecraft.paper import filled, read_table, table_names
-from world2minecraft.paper.reading import measured
+from world2minecraft.paper.table_definitions import measured
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = list(table_names())

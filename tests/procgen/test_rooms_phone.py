@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.procgen.sensors.film import TURN, plan_film
 from world2minecraft.procgen.sensors.photo import prepare_photos

@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.furniture.layout_checks import collisions, out_of_bounds
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen import KINDS, SHAPES, generate_room
 from world2minecraft.procgen.rooms.clutter import MAX_ASKEW_DEG
 from world2minecraft.procgen.rooms.ground import Cut, Ground, Roof
@@ -83,7 +83,7 @@ def test_the_polygon_is_the_outline_of_the_air(shape):
 @pytest.mark.parametrize("seed", [1, 6])
 def test_the_shell_is_closed_so_that_no_ray_leaves(shape, seed):
     room = generate_room(seed, kind="living", shape=shape)
-    parts, _ = connected_parts(room.labels == 0, corners=True)
+    parts, _ = label_components(room.labels == 0, corners=True)
     rim = np.concatenate([
         parts[[0, -1]].ravel(), parts[:, [0, -1]].ravel(), parts[:, :, [0, -1]].ravel()
     ])  # fmt: skip

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.furniture_model import Bar, Model, Part
 from world2minecraft.procgen.rooms.place import Item
 from world2minecraft.procgen.rooms.solid_voxels import is_plain, modelled, solid_cells
@@ -47,7 +47,7 @@ def test_a_box_turned_by_quarters_is_the_box_to_the_voxel(yaw_deg):
 def test_a_turned_board_of_one_voxel_has_no_gaps(yaw_deg):
     part = Part((-0.01, -0.2, 0.0, 0.01, 0.2, 0.1), WOOD)
     _, filled = solid_cells(item(part, yaw_deg), part)
-    assert connected_parts(filled, corners=True)[1] == 1
+    assert label_components(filled, corners=True)[1] == 1
     i, j = np.nonzero(filled.any(axis=2))
     assert np.hypot(np.ptp(i), np.ptp(j)) >= 18
 
@@ -57,7 +57,7 @@ def test_a_turned_board_of_one_voxel_has_no_gaps(yaw_deg):
 def test_a_bar_is_one_piece_from_end_to_end(x, y, z):
     bar = Bar((0.0, 0.0, 0.0), (x, y, z), 0.014, WOOD)
     _, filled = solid_cells(item(bar), bar)
-    assert connected_parts(filled)[1] == 1
+    assert label_components(filled)[1] == 1
     assert filled.any(axis=(0, 1)).sum() >= int(z / 0.02)
 
 

@@ -11,8 +11,8 @@ from world2minecraft.core.files import read_json
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import shortest_path
+from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world

@@ -9,7 +9,7 @@ import pytest
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
-from world2minecraft.minecraft.physics.graph import walk_graph
+from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.procgen.worlds.clear_paths import Ways
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
 from world2minecraft.procgen.worlds.house import person_blocks, plan_block_house

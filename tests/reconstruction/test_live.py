@@ -10,7 +10,7 @@ import pytest
 from world2minecraft.capture import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, UsageError
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.procgen import generate_room
 from world2minecraft.procgen.capture import room_views
 from world2minecraft.reconstruction import online as live_module

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.rendering.block_elements import BlockModel, Element, LookSource
 from world2minecraft.rendering.texture import Texture
 

@@ -13,7 +13,7 @@ from world2minecraft.rendering import prepare_scene, render_volume
 from world2minecraft.rendering.batch import render_batch, render_stream
 from world2minecraft.rendering.batch.streaming import ahead_of, done_behind
 from world2minecraft.rendering.output import colour_bytes
-from world2minecraft.rendering.views.poses import Shot
+from world2minecraft.rendering.views.cameras import Shot
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 COUNT = 5

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Entity
-from world2minecraft.minecraft.displays import block_display
+from world2minecraft.minecraft.entities import block_display
 from world2minecraft.minecraft.nbt import Float
 from world2minecraft.rendering import preview, render_parallel, render_volume
 

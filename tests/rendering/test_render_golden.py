@@ -13,7 +13,7 @@ from PIL import Image
 
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.displays import block_display
+from world2minecraft.minecraft.entities import block_display
 from world2minecraft.rendering import LookLight, prepare_scene, render_volume
 from world2minecraft.rendering.path_tracing import render_photo
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.rendering.light_worlds import PALETTE, SLOW_SHAPES, random_world
 
-from world2minecraft.minecraft.rules.flood import DIMS, SHUT, SOLID
+from world2minecraft.minecraft.rules.light import DIMS, SHUT, SOLID
 from world2minecraft.rendering.light import light_field
 from world2minecraft.rendering.light.propagation import light_rows, units, whole_reach, word_of
 

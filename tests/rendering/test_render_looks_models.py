@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.minecraft.block_states import known_blocks, states_of
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 from world2minecraft.rendering.block_elements import BlockModel, Element
 from world2minecraft.rendering.block_models import OwnLooks, stand_in_share, stand_ins
 from world2minecraft.rendering.block_models.models import QUARTERS, model_of, quarter, turned

@@ -6,7 +6,7 @@ from tests.rendering.scenes import random_pose
 
 from world2minecraft.core.coordinates import block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.displays import block_display
+from world2minecraft.minecraft.entities import block_display
 from world2minecraft.rendering import NEUTRAL, prepare_scene, render_volume
 from world2minecraft.rendering.cutaway import without_ceiling, without_near_walls
 from world2minecraft.rendering.light.settings import (

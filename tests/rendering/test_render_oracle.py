@@ -40,7 +40,7 @@ class Boxes:
     """Looks that are the boxes which are drawn of each state."""
 
     def model(self, state: str) -> BlockModel | None:
-        from world2minecraft.minecraft.visual import visual_boxes_of
+        from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
         if state == "minecraft:air":
             return None

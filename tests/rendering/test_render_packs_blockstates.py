@@ -2,7 +2,7 @@
 
 import pytest
 
-from world2minecraft.rendering.resource_packs.blockstates import Part, parts_of
+from world2minecraft.rendering.resource_packs.model_json import Part, parts_of
 
 
 def models(root, **properties) -> list[str]:

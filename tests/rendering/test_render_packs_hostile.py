@@ -22,7 +22,9 @@ from pack_making import (
 )
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.rendering.resource_packs import PackLooks, archive, resources
+from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.resource_packs import pack_files as archive
+from world2minecraft.rendering.resource_packs import pack_files as resources
 
 RED = plain(200, 0, 0)
 TEACHES = (

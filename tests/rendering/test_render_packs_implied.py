@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pack_making import PICTURE, folder_pack, plain
 
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 from world2minecraft.rendering.block_elements import FACE_NAMES, BlockModel
 from world2minecraft.rendering.resource_packs import PackLooks
 

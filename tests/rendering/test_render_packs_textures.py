@@ -8,10 +8,11 @@ from pack_making import PICTURE, cube_files, folder_pack, plain, png
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.rendering.resource_packs import PackLooks
-from world2minecraft.rendering.resource_packs.lab_pbr import material_maps, normal_map
-from world2minecraft.rendering.resource_packs.pixels import (
+from world2minecraft.rendering.resource_packs.textures import (
     decode_png,
     first_frame,
+    material_maps,
+    normal_map,
     resampled,
     side_for,
 )

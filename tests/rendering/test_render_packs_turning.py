@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pack_making import look_up
 
 from world2minecraft.rendering.block_elements import FACE_NAMES, Element, FaceLook, face_uv
-from world2minecraft.rendering.resource_packs.shapes import element_of
-from world2minecraft.rendering.resource_packs.turning import (
+from world2minecraft.rendering.resource_packs.elements import (
     carry,
+    element_of,
     free_turn,
     is_quarter,
     quarter_turn,

@@ -24,9 +24,9 @@ from world2minecraft.rendering.views import (
     with_open_doors,
     write_lines,
 )
-from world2minecraft.rendering.views.heading import TURN_COST, _best_sequence
-from world2minecraft.rendering.views.hiding import hiding_of
 from world2minecraft.rendering.views.orbit import corner_points_m
+from world2minecraft.rendering.views.visibility import hiding_of
+from world2minecraft.rendering.views.walk_through import TURN_COST, _best_sequence
 
 CAMERA = camera_of(48, 36, vertical_fov_deg=70)
 DOOR = "minecraft:oak_door[facing=west,half={half},hinge=left,open=false,powered=false]"

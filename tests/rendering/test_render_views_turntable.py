@@ -6,8 +6,7 @@ from scenes import volume_of
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions
-from world2minecraft.rendering.presentation.studio import GROUND, studio_of
-from world2minecraft.rendering.presentation.turntable import turntable
+from world2minecraft.rendering.presentation.turntable import GROUND, studio_of, turntable
 from world2minecraft.rendering.views import camera_of, orbit_shots
 
 CAMERA = camera_of(48, 36, vertical_fov_deg=24)

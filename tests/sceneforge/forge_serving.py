@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 from websockets.sync.client import connect
 
-from world2minecraft.formats.occupancy import labels_grid
+from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.serve import ForgeServer
 from world2minecraft.sceneforge.sources import Opened

@@ -5,8 +5,7 @@ from pathlib import Path
 
 from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.editing.scene.voxels import CellCommand
-from world2minecraft.sceneforge.cell_queries import CELL_QUERIES
-from world2minecraft.sceneforge.object_queries import Doubtful
+from world2minecraft.sceneforge.queries import CELL_QUERIES, Doubtful
 
 PAGE = (Path(__file__).parents[2] / "docs" / "forge-editing.md").read_text()
 ROWS = dict(re.findall(r"^\| `(\w+)` \| (.*)$", PAGE, re.M))

@@ -9,7 +9,7 @@ from forge_serving import client, heard, paint, served, small_editor, tab
 
 from world2minecraft.editing.scene.mending import Smooth
 from world2minecraft.sceneforge import session
-from world2minecraft.sceneforge.cell_queries import Floaters
+from world2minecraft.sceneforge.queries import Floaters
 
 SHAPE = (40, 30, 24)
 

@@ -18,13 +18,13 @@ from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.cleanup.passes import mended
-from world2minecraft.formats.occupancy import inner_corner_m
+from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
 from world2minecraft.minecraft.physics import player_motion as step
-from world2minecraft.minecraft.physics.sweep import overlapping
+from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge import block_preview as blocks
-from world2minecraft.sceneforge.arrays import packed_arrays
+from world2minecraft.sceneforge.array_messages import packed_arrays
 from world2minecraft.sceneforge.block_preview import Build, BuildOptions, HeldScene
 from world2minecraft.sceneforge.server import build_routes
 from world2minecraft.sceneforge.session import Session

@@ -13,7 +13,7 @@ from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import difference, labels_in_cells
 from world2minecraft.editing.scene.runs import cells_of_runs
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
-from world2minecraft.formats.occupancy import labels_grid
+from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor
 
 labels_of = st.integers(0, 10_000).map(

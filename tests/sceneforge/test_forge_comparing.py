@@ -8,10 +8,10 @@ from forge_serving import client, served, small_editor
 
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.sceneforge.array_messages import HEADER
 from world2minecraft.sceneforge.comparison import labels_of_truth
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.volumes import HEADER
 
 
 def test_the_truth_of_a_generated_room_meets_its_run(small_run):

@@ -12,9 +12,9 @@ from forge_serving import client, served
 from PIL import Image
 
 from world2minecraft.core.files import read_json
-from world2minecraft.formats.forms import form_names, read_form
 from world2minecraft.formats.paper_json import read_occ_json
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.formats.volume_formats import form_names, read_form
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.reconstruction.stages import built_volume
 from world2minecraft.sceneforge.editor import Editor

@@ -13,7 +13,7 @@ from world2minecraft.capture.depth_images import read_depth
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.undistort import undistorted
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.sceneforge.editor import Editor

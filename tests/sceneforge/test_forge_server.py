@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from forge_serving import client, heard, paint, say, served, small_editor, tab
 
-from world2minecraft.sceneforge.volumes import HEADER
+from world2minecraft.sceneforge.array_messages import HEADER
 
 
 @pytest.fixture

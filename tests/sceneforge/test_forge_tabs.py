@@ -18,9 +18,9 @@ from websockets.uri import parse_uri
 from world2minecraft.editing.scene import COMMANDS, Command
 from world2minecraft.sceneforge import broadcast as hub
 from world2minecraft.sceneforge import session
+from world2minecraft.sceneforge.array_messages import HEADER
 from world2minecraft.sceneforge.broadcast import MAX_QUEUED, MAX_TABS, Hub
 from world2minecraft.sceneforge.server.serve import ForgeServer
-from world2minecraft.sceneforge.volumes import HEADER
 
 
 @pytest.mark.parametrize("quick_cells", [session.QUICK_CELLS, 0])  # At once; by the thread.

@@ -14,8 +14,8 @@ from world2minecraft import cli
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.unlabelled_volume import unlabelled
 from world2minecraft.navigation.agents.registry import AGENTS
 from world2minecraft.reconstruction.occupancy import predictor

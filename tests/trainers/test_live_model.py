@@ -20,11 +20,11 @@ from tests.trainers.test_trainers import HERE, python_of, run
 from world2minecraft.external_models.chat_client import open_chat
 from world2minecraft.external_models.reply_cache import ReplyStore
 from world2minecraft.navigation.agents import ModelAgent
-from world2minecraft.navigation.agents.answering import ModelAnswerer
+from world2minecraft.navigation.agents.question_answering import ModelAnswerer
 from world2minecraft.navigation.records import read_items
+from world2minecraft.navigation.running.episode_ground import SceneGround
 from world2minecraft.navigation.running.episode_runner import walk_episode
-from world2minecraft.navigation.running.evaluating import evaluate
-from world2minecraft.navigation.running.scene_ground import SceneGround
+from world2minecraft.navigation.running.item_evaluation import evaluate
 from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
 from world2minecraft.navigation.running.trace import TraceWriter, read_trace
 from world2minecraft.navigation.scene import camera_of, open_scene

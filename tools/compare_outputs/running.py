@@ -173,7 +173,11 @@ def copied(tree: Path, target: Path) -> None:
 
 def sum_of(step: Step, steps: dict[str, Step]) -> str:
     """Return a sum of all that a step's outcome on one commit depends on."""
-    known = [FORM, repr(step), *(sum_of(steps[name], steps) for name in step.before)]
+    known = [
+        FORM,
+        repr((step.name, step.commands, dict(step.given))),
+        *(sum_of(steps[name], steps) for name in step.before),
+    ]
     return hashlib.sha256("\n".join(known).encode()).hexdigest()
 
 
@@ -269,8 +273,9 @@ def _run(side: Side, step: Step) -> Done:
             (logs / f"{number:02d}.stdout").open("wb") as stdout,
             (logs / f"{number:02d}.stderr").open("wb") as stderr,
         ):
-            start, start_script = partial(side.start, cwd=folder), partial(
-                side.start_script, cwd=folder
+            start, start_script = (
+                partial(side.start, cwd=folder),
+                partial(side.start_script, cwd=folder),
             )
             place = Place(folder, start, start_script, stdout, stderr)
             if isinstance(command, str):

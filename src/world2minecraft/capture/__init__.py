@@ -6,9 +6,9 @@ holds. ``write_plain`` writes our own layout.
 """
 
 from world2minecraft.capture.alignment.align import realigned
-from world2minecraft.capture.describing import CaptureSummary, describe_capture
 from world2minecraft.capture.open_scan import open_scan
 from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.summary import CaptureSummary, describe_capture
 from world2minecraft.capture.view_stream import settled
 
 __all__ = ["CaptureSummary", "describe_capture", "open_scan", "realigned", "settled", "write_plain"]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.calibration import estimate_colour_camera
-from world2minecraft.capture.judged import JudgedCapture, judge_capture, spread_over
 from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over
 from world2minecraft.capture.view_stream import CaptureViews, without_colour
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent

@@ -13,7 +13,7 @@ from PIL import Image
 
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_colour
-from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Photo
 

@@ -13,8 +13,7 @@ from world2minecraft.core.errors import InputError, OutputError, UsageError
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
     from world2minecraft.formats.volume_crop import Box
-    from world2minecraft.minecraft.file_format import WriteOptions
-    from world2minecraft.minecraft.losses import Losses
+    from world2minecraft.minecraft.file_format import Losses, WriteOptions
 
 EXAMPLES = """\
 w2m convert house.schem worlds/house        a schematic to a world folder
@@ -75,7 +74,7 @@ def run(
     """
     check_target(source, target, force)
     from world2minecraft.cli.render.options import box_of
-    from world2minecraft.formats.forms import templates_of_run
+    from world2minecraft.formats.volume_formats import templates_of_run
     from world2minecraft.minecraft.file_format import WriteOptions
 
     options = WriteOptions(
@@ -97,10 +96,10 @@ def convert(
     box: "Box | None" = None,
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
-    from world2minecraft.formats.forms import write_form
+    from world2minecraft.formats.volume_formats import write_form
     from world2minecraft.minecraft.block_names import mod_blocks
     from world2minecraft.minecraft.commands.datapack import namespace_of
-    from world2minecraft.minecraft.losses import Losses
+    from world2minecraft.minecraft.file_format import Losses
 
     unread, unwritten = Losses(), Losses()
     volume = with_labels(scaled(read_part(source, box, unread), blocks_per_metre), labels)
@@ -131,7 +130,7 @@ def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume
         UsageError: the box lies beside the build.
     """
     from world2minecraft.formats.build_source import read_source
-    from world2minecraft.formats.forms import read_form
+    from world2minecraft.formats.volume_formats import read_form
 
     return read_form(source, losses) if box is None else read_source(source, box).volume
 
@@ -188,7 +187,7 @@ def check_target(source: Path, target: Path, force: bool) -> None:
     """
     if not source.exists():
         raise InputError(source, "is not there")
-    from world2minecraft.formats.forms import form_to_write
+    from world2minecraft.formats.volume_formats import form_to_write
 
     form = form_to_write(target)
     if not os.path.lexists(target):

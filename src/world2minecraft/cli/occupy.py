@@ -186,7 +186,7 @@ def _of_capture(
     """Run a capture as far as its labels, and write what they are."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.formats.room import read_room
+    from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import (
         cells_in_grid,
         cells_of_room,

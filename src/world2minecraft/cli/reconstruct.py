@@ -18,7 +18,25 @@ from world2minecraft.cli.build.options import (
 
 if TYPE_CHECKING:
     from world2minecraft.core.progress import Progress
+    from world2minecraft.reconstruction.floorplans import PlanWorld
     from world2minecraft.reconstruction.parameters import Parameters
+
+# A plan alone in ``w2m reconstruct``: what came of it, told.
+
+
+def say_plan(out: Path, built: "PlanWorld") -> None:
+    """Print what came of a plan, and how to see it."""
+    from world2minecraft.cli.outcome import say_how_to_play
+
+    size = " x ".join(f"{side:.1f}" for side in built.scan.room_size_m)
+    count = len(built.layouts)
+    print(f"\n{count} room{'s' * (count != 1)} of a plan, {size} m, {built.objects} objects.")
+    print("note: a plan has no colours; floor, walls and furniture have usual ones")
+    for note in built.scan.notes:
+        print(f"note: {note}")
+    print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
+    say_how_to_play(out / "build")
+
 
 EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
@@ -181,7 +199,6 @@ def built_from_plan(
     UsageError for options that need frames, of which a plan has none.
     """
     from world2minecraft.capture.readers.floorplan_only import plan_in
-    from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name

@@ -50,7 +50,7 @@ def run(
     """
     from world2minecraft.capture import describe_capture
     from world2minecraft.capture.readers.floorplan_only import plan_in
-    from world2minecraft.capture.telling import as_data, plan_lines, summary_lines
+    from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan
     from world2minecraft.reconstruction.parameters import Parameters, with_settings

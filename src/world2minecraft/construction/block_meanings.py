@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 LONGEST_WORD = 60
 MOST_OBJECTS = 65_535
@@ -86,7 +86,7 @@ def labelled(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
     following = int(instance.max(initial=0))
     keys = here * len(CLASS_NAMES) + semantic
     for key in np.unique(keys[here > 0]).tolist():
-        parts, count = connected_parts((keys == key) & (here > 0), corners=False)
+        parts, count = label_components((keys == key) & (here > 0), corners=False)
         if following + count > MOST_OBJECTS:
             break
         instance[parts > 0] = (parts[parts > 0] + following).astype(np.uint16)

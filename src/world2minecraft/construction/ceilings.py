@@ -7,7 +7,7 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure_faces import blocks_behind, find_faces, straighten, vote
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.padded_morphology import closed, grown
+from world2minecraft.geometry.morphology import binary_closing, dilate
 
 CEILING = int(SemanticClass.CEILING)
 CEILING_SHARE = 0.4  # Of a storey's plan; of less, most of the ceiling would be made up.
@@ -40,7 +40,7 @@ def find_ceiling(
         votes = vote(straight, grid, lattice)
         sheet = votes.area >= parameters.face_share
         gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
-        ceiling |= closed(sheet, (gap, gap, 0))
+        ceiling |= binary_closing(sheet, (gap, gap, 0))
         coloured.append((votes.cells, blocks_behind(votes, grid, lattice)))
     ceiling[:, :, : lattice.ground + 1] = False
     return ceiling
@@ -84,6 +84,6 @@ def cover_with_glass(
     ground, top = storey
     layers = np.flatnonzero(walls[:, :, ground:top].any((0, 1)))
     level = ground + int(layers.max()) + 1 if len(layers) else top
-    plan = grown(footprint, (1, 1))
+    plan = dilate(footprint, (1, 1))
     if level < min(top, walls.shape[2]) and not (ceiling[:, :, ground:top] & plan[..., None]).any():
         ceiling[:, :, level] |= plan

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
-from world2minecraft.geometry.padded_morphology import nearest_of
+from world2minecraft.geometry.morphology import nearest_set_cells
 from world2minecraft.minecraft.block_colours import colour_of
 
 # Exposure: the brightest twentieth of a room's surfaces comes to this linear light, about that of
@@ -165,7 +165,7 @@ def spread(
         return np.broadcast_to(default, (int(wanted.sum()), 3)).astype(np.float32)
     if known[wanted].all():
         return colours[wanted]
-    nearest, away = nearest_of(known)
+    nearest, away = nearest_set_cells(known)
     result = colours[tuple(axis[wanted] for axis in nearest)]
     result[away[wanted] > NEAR_BLOCKS] = np.median(colours[known], axis=0)
     return result

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.construction.tops import top_cells
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.geometry.padded_morphology import beside
+from world2minecraft.geometry.morphology import dilate_faces
 
 
 class Hues(NamedTuple):
@@ -31,7 +31,9 @@ class Coats:
             close_tops,
         )
         free = (grid.labels == 0) & (grid.source != UNSEEN)
-        self.exposed = beside(free)  # What lies inside an object says nothing of how it looks.
+        self.exposed = dilate_faces(
+            free
+        )  # What lies inside an object says nothing of how it looks.
 
     def with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return an object's cells with its top closed, and the cells that colour them.

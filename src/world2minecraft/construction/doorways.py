@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.padded_morphology import parts_of
+from world2minecraft.geometry.connected_components import label_face_components
 
 NARROWEST_M, WIDEST_M = 0.5, 1.8  # A wider gap is open at any scale.
 THICKEST_M = 0.45  # A gap that goes on for longer is a corridor.
@@ -69,7 +69,7 @@ def find_gaps(grid: OccupancyGrid, free: np.ndarray, floor_m: float) -> list[Gap
     gaps: list[Gap] = []
     for axis in (0, 1):
         between = _between_walls(walled, clear, axis, round(WIDEST_M / grid.voxel_m))
-        parts, sizes = parts_of(between)
+        parts, sizes = label_face_components(between)
         for number in range(1, len(sizes)):
             cells = np.argwhere(parts == number)
             start, stop = cells.min(axis=0), cells.max(axis=0) + 1

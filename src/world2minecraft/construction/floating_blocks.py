@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 REACH_M = 1.25  # A cord is no longer than this,
 SIDE_M = 0.5  # nor a bracket than this.
@@ -28,7 +28,7 @@ def carry_floaters(canvas: Canvas) -> None:
     within reach goes down to whatever lies under it.
     """
     solid = np.isin(canvas.semantic, (*OBJECT_CLASSES, *STRUCTURE_CLASSES))
-    parts, count = connected_parts(solid)
+    parts, count = label_components(solid)
     structure = np.isin(canvas.semantic, STRUCTURE_CLASSES)
     carried = np.zeros(count + 1, bool)
     carried[np.unique(parts[structure])] = True

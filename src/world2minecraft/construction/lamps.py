@@ -11,7 +11,7 @@ import numpy as np
 from world2minecraft.construction.canvas import AIR, Canvas
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.padded_morphology import nearest_of
+from world2minecraft.geometry.morphology import nearest_set_cells
 
 LAMP_M = 0.3  # A shade's width.
 CORD_M = 0.35
@@ -75,7 +75,7 @@ def _places(canvas: Canvas, room: _Room) -> list[tuple[int, int]]:
     scale = canvas.lattice.blocks_per_metre
     free = canvas.mask_of(AIR)[:, :, : room.level]
     clear = room.columns & free[:, :, -max(1, round(CORD_M * scale) + 1) :].all(2)
-    away = nearest_of(~np.pad(room.columns, 1))[1][1:-1, 1:-1]
+    away = nearest_set_cells(~np.pad(room.columns, 1))[1][1:-1, 1:-1]
     places: list[tuple[int, int]] = []
     for middle in _tables(canvas, room):
         _take(places, clear, middle)

@@ -7,7 +7,7 @@ dark, more are set. Lamps and glowing furniture that stand already count.
 import numpy as np
 
 from world2minecraft.construction.canvas import AIR, LIGHT, Canvas
-from world2minecraft.geometry.padded_morphology import parts_of
+from world2minecraft.geometry.connected_components import label_face_components
 from world2minecraft.minecraft.rules.light import (
     BRIGHTEST,
     lets_light_through,
@@ -62,7 +62,7 @@ def _air_of(air, walkable, footprint, layers) -> np.ndarray:
     room = np.zeros_like(air)
     inside = slice(ground, top + 1)
     room[:, :, inside] = air[:, :, inside] & footprint[:, :, None]
-    parts, _ = parts_of(room)
+    parts, _ = label_face_components(room)
     seen = np.unique(parts[:, :, ground][walkable])
     return np.isin(parts, seen[seen > 0])
 

@@ -6,7 +6,7 @@ from world2minecraft.construction.spawn import find_spawn
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.formats.scene import scene_of, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
-from world2minecraft.minecraft.displays import check_displays
+from world2minecraft.minecraft.entities import check_displays
 from world2minecraft.minecraft.schematics.sponge import write_schem
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world

@@ -8,7 +8,7 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture.solids import OWN_CELLS
-from world2minecraft.geometry.padded_morphology import grown
+from world2minecraft.geometry.morphology import dilate
 
 LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 
@@ -18,7 +18,7 @@ def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarr
     within = np.zeros(canvas.states.shape, bool)
     walls = canvas.semantic == SemanticClass.WALL
     for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
-        columns = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
+        columns = dilate(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
         within[:, :, ground:top] = columns[:, :, None]
     return within
 

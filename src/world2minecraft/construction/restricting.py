@@ -19,8 +19,8 @@ from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
-from world2minecraft.minecraft.displays import BLOCK_DISPLAY
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.entities import BLOCK_DISPLAY
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
 # Endings of names that are one shape in many materials.

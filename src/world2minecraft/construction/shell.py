@@ -9,7 +9,7 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.standout import PICTURE, RUG, standing_out
 from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.construction.surfaces import block_colours, painted, put_painted
-from world2minecraft.geometry.padded_morphology import grown
+from world2minecraft.geometry.morphology import dilate
 
 STAND_OUT = {WALL: PICTURE, FLOOR: RUG}
 LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
@@ -133,7 +133,7 @@ def put_edge(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
     highest = int(layers.max()) if len(layers) else 0
     below = np.zeros_like(footprints[0])
     for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
-        ring = grown(footprint, (1, 1)) & ~footprint & ~below
+        ring = dilate(footprint, (1, 1)) & ~footprint & ~below
         below = footprint
         top = min(max(highest, ground + 1), end - 1)
         open_cells = canvas.states[:, :, ground : top + 1] == 0

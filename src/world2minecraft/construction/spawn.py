@@ -8,7 +8,11 @@ from world2minecraft.construction.canvas import AIR, LIGHT
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.geometry.padded_morphology import nearest_of, parts_of, shrunk
+from world2minecraft.geometry.morphology import (
+    erode_faces,
+    label_face_components,
+    nearest_set_cells,
+)
 
 PLAYER_BLOCKS = 2  # 1.8 high.
 CLEARANCE = 3.0  # Blocks to the nearest thing beyond which more room is worth no more. A guess.
@@ -32,9 +36,9 @@ def find_spawn(volume: BlockVolume) -> Spawn:
     standing = standing_cells(volume)
     if not standing.any():
         return _on_top(volume)
-    parts, sizes = parts_of(standing)
+    parts, sizes = label_face_components(standing)
     largest = parts == int(np.argmax(sizes))
-    room = np.minimum(nearest_of(~np.pad(standing, 1))[1][1:-1, 1:-1], CLEARANCE)
+    room = np.minimum(nearest_set_cells(~np.pad(standing, 1))[1][1:-1, 1:-1], CLEARANCE)
     focus = _focus(volume, standing)
     cells = np.argwhere(largest)
     offsets = focus - (cells + 0.5)
@@ -61,7 +65,7 @@ def standing_cells(volume: BlockVolume) -> np.ndarray:
 
 def _within(volume: BlockVolume, ground: int) -> np.ndarray:
     """Return the columns whose four neighbours are floor too: not the rim beyond the walls."""
-    return shrunk(volume.states[:, ground - 1] > 0)
+    return erode_faces(volume.states[:, ground - 1] > 0)
 
 
 def _focus(volume: BlockVolume, standing: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
@@ -54,7 +54,7 @@ def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: St
     sheet = np.zeros((2, *(at.max(0) + 1)), bool)
     sheet[:, at[:, 0], at[:, 1]] = sure, maybe
     wide = np.asarray(ndimage.binary_opening(sheet[1], np.ones((2, 2), bool)), bool)
-    parts, _ = connected_parts(wide, corners=False)
+    parts, _ = label_components(wide, corners=False)
     sizes = np.bincount(parts.ravel())
     held = np.bincount(parts[sheet[0]], minlength=len(sizes))
     good = (sizes * step_m**2 >= steps.least_m2) & (sizes <= MOST_SHARE * len(places))

@@ -21,14 +21,14 @@ from world2minecraft.construction.structure_faces import (
 )
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.padded_morphology import (
-    beside,
-    closed,
-    grown,
-    nearest_of,
-    parts_of,
-    shrunk,
-    without_holes,
+from world2minecraft.geometry.morphology import (
+    binary_closing,
+    dilate,
+    dilate_faces,
+    erode_faces,
+    fill_holes,
+    label_face_components,
+    nearest_set_cells,
 )
 
 CEILING, FLOOR, WALL, WINDOW = (
@@ -169,15 +169,15 @@ def _closed(sheet, axis, open_share, lattice, parameters) -> np.ndarray:
     """Close the small unseen holes of wall sheets square to an axis, leaving openings open."""
     gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
     reach = tuple(0 if other == axis else gap for other in range(3))
-    return sheet | (closed(sheet, reach) & (open_share < OPEN_SHARE))
+    return sheet | (binary_closing(sheet, reach) & (open_share < OPEN_SHARE))
 
 
 def _unfaced(grid, solid, free, walls, lattice, parameters) -> np.ndarray:
     """Return wall blocks whose cells touch no seen free space, away from the walls that do."""
-    faced = beside(free)
+    faced = dilate_faces(free)
     edges = [lattice.edges_of(grid, axis) for axis in range(3)]
     rest = face_shares(solid & ~faced, edges, lattice.shape) >= max(0.5, parameters.face_share)
-    near = grown(walls, (1, 1, 0))
+    near = dilate(walls, (1, 1, 0))
     return rest & ~near
 
 
@@ -245,14 +245,14 @@ def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarr
     stood = cover[0] @ low @ cover[1].T >= FOOTPRINT_SHARE
     stood |= (open_share[:, :, ground:top] >= 0.5).any(2)
     walled = walls[:, :, ground:top].any(2)
-    whole = without_holes(closed(stood & ~walled & ~open_floor, (1, 1)))
+    whole = fill_holes(binary_closing(stood & ~walled & ~open_floor, (1, 1)))
     whole = _rooms(whole & ~walled & ~_wide(open_floor, lattice), lattice)
     return whole if ground == lattice.ground else _carried_by_floor(whole, grid, lattice, ground)
 
 
 def _rooms(plan: np.ndarray, lattice: Lattice) -> np.ndarray:
     """Return a plan, bool [X, Y], without what walls part from it and is too small for a room."""
-    parts, sizes = parts_of(plan)
+    parts, sizes = label_face_components(plan)
     least = min(ROOM_M2 * lattice.blocks_per_metre**2, sizes.max(initial=0))
     return plan & (sizes[parts] >= least)
 
@@ -268,7 +268,7 @@ def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarra
     floor = (grid.labels[:, :, near] == FLOOR).any(2).astype(np.float32)
     cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     seen = (cover[0] @ floor @ cover[1].T >= FOOTPRINT_SHARE) & plan
-    parts, sizes = parts_of(plan)
+    parts, sizes = label_face_components(plan)
     share = np.bincount(parts[seen], minlength=len(sizes)) / np.maximum(sizes, 1)
     return plan & (share[parts] >= FLOORED_SHARE)
 
@@ -278,14 +278,14 @@ def _wide(mask: np.ndarray, lattice: Lattice) -> np.ndarray:
     reach = max(0, round(STAIRWELL_M * lattice.blocks_per_metre / 2) - 1)
     core = mask.copy()
     for _ in range(reach):
-        core = shrunk(core)
-    return grown(core, (reach, reach)) & mask
+        core = erode_faces(core)
+    return dilate(core, (reach, reach)) & mask
 
 
 def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured) -> None:
     """Set, in place, a storey's floor: one flat layer under its rooms, walls and open rim."""
     ground, top = storey
-    plan = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(2)
+    plan = dilate(footprint, (1, 1)) | walls[:, :, ground:top].any(2)
     floor[:, :, ground - 1] |= plan & ~_wide(open_floor, lattice)
     cells = np.argwhere(grid.labels == FLOOR)
     height = lattice.edges_of(grid, 2)[cells[:, 2]]
@@ -323,7 +323,7 @@ def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:
     missing = walls & (patches == 0)
     if not missing.any() or not (patches > 0).any():
         return patches
-    nearest, _ = nearest_of(patches > 0)
+    nearest, _ = nearest_set_cells(patches > 0)
     result = patches.copy()
     result[missing] = patches[tuple(axis[missing] for axis in nearest)]
     return result

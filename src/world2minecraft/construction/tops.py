@@ -7,7 +7,7 @@ above unseen ones. Such a step, level with the rim of an object and joined to it
 import numpy as np
 
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.padded_morphology import grown, grown_within, nearest_of
+from world2minecraft.geometry.morphology import dilate, dilate_within, nearest_set_cells
 
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
 REACH_M = 0.7  # How far from the rim: the depth of a worktop.
@@ -33,7 +33,7 @@ def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.nd
     upper = flat if flat.any() else upper  # The edge over a front mixes both their colours.
     if not joined.any() or not upper.any():
         return np.zeros((0, 3), int), np.zeros((0, 3), int)
-    nearest, _ = nearest_of(upper)
+    nearest, _ = nearest_set_cells(upper)
     return np.argwhere(joined) + low, np.stack([axis[joined] for axis in nearest], 1) + low
 
 
@@ -60,7 +60,7 @@ def _joined_to(
     body = np.zeros(steps.shape, bool)
     tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
     body[tuple((cells[tall] - low).T)] = True
-    return body, _joined(steps, grown(body, (0, 0, RIM_LAYERS)), reach)
+    return body, _joined(steps, dilate(body, (0, 0, RIM_LAYERS)), reach)
 
 
 def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -76,4 +76,4 @@ def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
     """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
     flat = np.zeros((3, 3, 3), bool)
     flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
-    return grown_within(rim, steps | rim, flat, reach) & steps & ~rim
+    return dilate_within(rim, steps | rim, flat, reach) & steps & ~rim

@@ -9,7 +9,7 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
 from world2minecraft.construction.surfaces import painted
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.padded_morphology import grown, without_holes
+from world2minecraft.geometry.morphology import dilate, fill_holes
 
 
 def put_cells_exactly(
@@ -70,11 +70,11 @@ def _footprint(grid: OccupancyGrid, ground: int) -> np.ndarray:
     labels, source = grid.labels[:, :, low:high], grid.source[:, :, low:high]
     stood = (((labels == 0) & (source != UNSEEN)) | ((labels > WINDOW) & (labels != 255))).any(2)
     walls = np.isin(labels, (WALL, WINDOW)).any(2)
-    return without_holes(stood & ~walls)
+    return fill_holes(stood & ~walls)
 
 
 def _close_floor(canvas: Canvas, footprint: np.ndarray) -> None:
     layer = canvas.lattice.ground - 1
-    plan = grown(footprint, (1, 1))
+    plan = dilate(footprint, (1, 1))
     holes = plan & (canvas.states[:, :, layer] == 0)
     canvas.states[:, :, layer][holes] = canvas.id_of(BARRIER)

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.padded_morphology import beside
+from world2minecraft.geometry.morphology import dilate_faces
 
 
 class Window(NamedTuple):
@@ -43,4 +43,4 @@ def window_on(
     stands = canvas.states[around] > 0
     free = ~stands[1:-1, 1:-1, 1:-1] & within[inside]
     wall = canvas.semantic[inside] == SemanticClass.WALL
-    return Window(box, start, free, wall, beside(stands)[1:-1, 1:-1, 1:-1])
+    return Window(box, start, free, wall, dilate_faces(stands)[1:-1, 1:-1, 1:-1])

@@ -13,7 +13,7 @@ from world2minecraft.construction.halves import FULL, LOWER
 from world2minecraft.construction.lattice import Lattice, overlaps
 from world2minecraft.construction.tops import step_cells
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.padded_morphology import closed, grown
+from world2minecraft.geometry.morphology import binary_closing, dilate
 
 LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
 LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.
@@ -89,7 +89,7 @@ def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
     by_size = sorted(tops, key=lambda number: (-_area(tops[number]), number))
     result: dict[int, Worktop] = {}
     for number in by_size:
-        near = grown(tops[number].columns, (1, 1))
+        near = dilate(tops[number].columns, (1, 1))
         whole = next((one for one in result.values() if _meets(tops[number], one, near)), None)
         result[number] = tops[number]
         if whole is not None:
@@ -130,4 +130,4 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
     pillar = own[:, :, low:level].all(2) & own[:, :, level + 2 : high].any(2)
     plan = np.asarray(own[:, :, level : level + 3].any(2) & ~pillar)
     plan[steps[:, 0], steps[:, 1]] = True
-    return closed(plan, (GAP_CELLS, GAP_CELLS))
+    return binary_closing(plan, (GAP_CELLS, GAP_CELLS))

@@ -15,17 +15,18 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.chunk_edit import (
+from world2minecraft.minecraft.worlds.in_place_editing import (
+    RegionFile,
     StateNumbers,
     data_of,
     forget_light,
     new_chunk,
     open_chunk,
+    read_region_file,
     read_sections,
     set_data,
     set_section,
 )
-from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
 from world2minecraft.minecraft.worlds.world_reader import read_level
 
 MAX_CELLS = 64 << 20

@@ -12,7 +12,7 @@ from world2minecraft.core.types import Entity
 from world2minecraft.editing.world_box import Place, chunks_of, overworld_folder, region_of
 from world2minecraft.minecraft.entities import entity_nbt, entity_tags
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
-from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
+from world2minecraft.minecraft.worlds.in_place_editing import RegionFile, read_region_file
 
 BUILT = "w2m_built"  # The tag of the entities that were built into a world.
 

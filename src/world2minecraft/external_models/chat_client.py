@@ -17,9 +17,8 @@ from typing import Any, Protocol
 
 from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.external_models.chat_costs import Ledger, price_of, read_prices
-from world2minecraft.external_models.chat_endpoints import endpoint_of
 from world2minecraft.external_models.chat_messages import Question, Reply, Turn
-from world2minecraft.external_models.chat_wire import BusyServerError, ChatWire
+from world2minecraft.external_models.chat_transport import BusyServerError, ChatWire, endpoint_of
 from world2minecraft.external_models.reply_cache import ReplyStore
 
 ATTEMPTS = 5  # As often is a busy server asked; with the waits below that is about a minute.

@@ -20,7 +20,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_bytes
 from world2minecraft.external_models.chat_messages import Question, Reply
-from world2minecraft.external_models.chat_wire import (
+from world2minecraft.external_models.chat_transport import (
     BusyServerError,
     RefusedQuestionError,
     UselessReplyError,

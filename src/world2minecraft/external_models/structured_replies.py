@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import Reply, Turn
-from world2minecraft.external_models.chat_wire import RefusedQuestionError, UselessReplyError
+from world2minecraft.external_models.chat_transport import RefusedQuestionError, UselessReplyError
 
 RUNGS = ("json_schema", "json_object", "text")
 REPAIRS = 2

@@ -10,9 +10,8 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.forms import read_form
-from world2minecraft.formats.labelled import labelled, place_of_blocks
 from world2minecraft.formats.volume_crop import Box, cropped, trimmed
+from world2minecraft.formats.volume_formats import labelled, place_of_blocks, read_form
 from world2minecraft.minecraft.worlds.world_writer import read_level, read_world
 
 AROUND = (64, 32, 64)  # Blocks to each side of the spawn, of a world that comes without a scene,

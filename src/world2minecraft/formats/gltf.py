@@ -10,21 +10,235 @@ file that no editor has written since, ``read_gltf`` gives the volume back, labe
 """
 
 import io
+import json
+import struct
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from PIL import Image
 
 from world2minecraft import __version__
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.core.files import write_bytes
-from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.blob import pack_volume, unpack_volume
-from world2minecraft.formats.bodies import Body, Look, bodies_of
-from world2minecraft.formats.glb import GlbWriter, read_glb, view_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.formats.block_meshes import Body, Look, bodies_of
+from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
+
+# The container of binary glTF 2.0: one JSON chunk and one chunk of numbers.
+#
+# ``GlbWriter`` gathers arrays and lists and gives the bytes; ``read_glb`` gives the tree and the
+# numbers back, checked. The numbers are little-endian, each view starting at a multiple of four.
+
+MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+MAX_BYTES = 192 << 20
+MAX_JSON_BYTES = 8 << 20  # A thousand objects take one; JSON grows thirtyfold in memory.
+VERTICES, INDICES = 34962, 34963  # Which buffer of a graphics card a view is for.
+_COMPONENTS = {np.dtype("<f4"): 5126, np.dtype("<u4"): 5125, np.dtype("<u2"): 5123}
+_KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_HEAD, _CHUNK = struct.Struct("<III"), struct.Struct("<II")
+
+
+class GlbWriter:
+    """A glTF tree that grows: add arrays and rows of lists, then take the bytes."""
+
+    def __init__(self, generator: str) -> None:
+        self.tree: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
+        self._numbers = bytearray()
+
+    def add(self, kind: str, row: dict[str, Any]) -> int:
+        """Add a row to a list of the tree, such as ``meshes``; return its index."""
+        self.tree.setdefault(kind, []).append(row)
+        return len(self.tree[kind]) - 1
+
+    def view(self, data: bytes, target: int | None = None) -> int:
+        """Add bytes; return the index of their buffer view."""
+        self._numbers += bytes(-len(self._numbers) % 4)
+        row: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._numbers)}
+        row["byteLength"] = len(data)
+        if target is not None:
+            row["target"] = target
+        self._numbers += data
+        return self.add("bufferViews", row)
+
+    def accessor(self, values: np.ndarray, use: Literal["vertices", "indices"]) -> int:
+        """Add an array [N] or [N, 2 to 4] of float32, uint32 or uint16; return its accessor.
+
+        Bounds are written for vertices of three numbers, which positions need.
+        """
+        target = VERTICES if use == "vertices" else INDICES
+        packed = np.ascontiguousarray(values).astype(values.dtype.newbyteorder("<"))
+        row: dict[str, Any] = {
+            "bufferView": self.view(packed.tobytes(), target),
+            "componentType": _COMPONENTS[packed.dtype],
+            "count": len(values),
+            "type": _KINDS[1 if values.ndim == 1 else values.shape[1]],
+        }
+        if use == "vertices" and row["type"] == "VEC3":
+            row["min"] = values.min(axis=0).tolist()
+            row["max"] = values.max(axis=0).tolist()
+        return self.add("accessors", row)
+
+    def to_bytes(self) -> bytes:
+        """Return the whole file; the same tree gives the same bytes."""
+        numbers = bytes(self._numbers) + bytes(-len(self._numbers) % 4)
+        tree = dict(self.tree)
+        if numbers:
+            tree["buffers"] = [{"byteLength": len(numbers)}]
+        text = json.dumps(tree, separators=(",", ":"), sort_keys=True, allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = _CHUNK.pack(len(text), JSON_CHUNK) + text
+        if numbers:
+            chunks += _CHUNK.pack(len(numbers), BIN_CHUNK) + numbers
+        return _HEAD.pack(MAGIC, 2, _HEAD.size + len(chunks)) + chunks
+
+
+def read_glb(path: str | Path) -> tuple[dict[str, Any], memoryview]:
+    """Read a binary glTF file.
+
+    Returns:
+        The tree of its JSON chunk, and the bytes of its chunk of numbers (empty without one).
+
+    Raises:
+        InputError: there is no file. DamagedFileError: it is no binary glTF 2.0.
+        LimitError: it is too large.
+    """
+    data = read_bytes(path, MAX_BYTES)
+    if len(data) < _HEAD.size + _CHUNK.size or _HEAD.unpack_from(data)[:2] != (MAGIC, 2):
+        raise DamagedFileError(path, "is no binary glTF 2.0")
+    chunks: dict[int, memoryview] = {}
+    at, end = _HEAD.size, min(len(data), _HEAD.unpack_from(data)[2])
+    while at + _CHUNK.size <= end:
+        size, kind = _CHUNK.unpack_from(data, at)
+        at += _CHUNK.size
+        if size > end - at:
+            raise DamagedFileError(path, f"says {size:,} bytes in a chunk and holds fewer")
+        chunks.setdefault(kind, memoryview(data)[at : at + size])
+        at += size
+    nothing = memoryview(b"")
+    return _tree_of(chunks.get(JSON_CHUNK, nothing), path), chunks.get(BIN_CHUNK, nothing)
+
+
+def view_bytes(tree: dict[str, Any], numbers: memoryview, index: Any, path: str | Path) -> bytes:
+    """Return the bytes of a buffer view.
+
+    Raises:
+        DamagedFileError: there is no such view, or it reaches beyond the numbers.
+    """
+    try:
+        view = tree["bufferViews"][int(index)]
+        start, size = int(view.get("byteOffset", 0)), int(view["byteLength"])
+        if int(index) < 0 or int(view["buffer"]) != 0:
+            raise ValueError("it lies in another file")
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+        raise DamagedFileError(path, f"has no buffer view {str(index)[:20]}") from error
+    if start < 0 or size < 0 or start + size > len(numbers):
+        raise DamagedFileError(path, f"its buffer view {index} reaches beyond its numbers")
+    return bytes(numbers[start : start + size])
+
+
+def _tree_of(text: memoryview, path: str | Path) -> dict[str, Any]:
+    if len(text) > MAX_JSON_BYTES:
+        raise LimitError(path, f"has {len(text):,} bytes of JSON; at most {MAX_JSON_BYTES:,}")
+    try:
+        tree = json.loads(bytes(text))
+    except (ValueError, RecursionError) as error:
+        raise DamagedFileError(path, f"its JSON chunk is no JSON ({error})") from error
+    if not isinstance(tree, dict):
+        raise DamagedFileError(path, "its JSON chunk is no object")
+    return tree
+
+
+# A whole volume as bytes: what files that are no format of the game carry of it.
+#
+# One NBT tree, packed by gzip: sides, corner, ``block_to_room``, palette, states, labels, block
+# entities and entities. It is read within the same bounds as every NBT file.
+
+MAX_CELLS = 32 << 20  # 320 blocks a side; with its labels such a volume takes 160 MB.
+LIMITS = NbtLimits(bytes=6 * MAX_CELLS)
+_ARRAYS = (("states", np.uint16), ("semantic", np.uint8), ("instance", np.uint16))
+
+
+def pack_volume(volume: BlockVolume) -> bytes:
+    """Return the bytes of a volume; the same volume gives the same bytes.
+
+    Raises:
+        UsageError: it is larger than is read back.
+    """
+    if volume.states.size > MAX_CELLS:
+        raise UsageError(f"a .glb holds at most {MAX_CELLS:,} blocks, not {volume.states.size:,}")
+    tree: dict[str, Any] = {
+        "format": 1,
+        "size": np.array(volume.states.shape, np.int32),
+        "corner": np.array(volume.corner, np.int32),
+        "block_to_room": volume.block_to_room.ravel().tolist(),
+        "palette": list(volume.palette),
+        "block_entities": [
+            {"pos": np.array(e.block_pos, np.int32), "id": e.id, "nbt": dict(e.nbt)}
+            for e in volume.block_entities
+        ],
+        "entities": [
+            {
+                "pos": [float(value) for value in e.position],
+                "id": e.id,
+                "nbt": dict(e.nbt),
+                "class": e.class_id,
+                "instance": e.instance,
+            }
+            for e in volume.entities
+        ],
+    }
+    for name, kind in _ARRAYS:
+        values = np.ascontiguousarray(getattr(volume, name)).astype(
+            np.dtype(kind).newbyteorder("<")
+        )
+        tree[name] = np.frombuffer(values.tobytes(), np.int8)
+    return pack_gzip(write_nbt(tree))
+
+
+def unpack_volume(data: bytes, path: str | Path) -> BlockVolume:
+    """Return the volume of ``pack_volume``'s bytes.
+
+    Raises:
+        DamagedFileError: they are no volume. LimitError: they ask for too much.
+    """
+    _, tree = read_nbt(unpack(data, path, LIMITS.bytes), path, LIMITS)
+    try:
+        if tree["format"] != 1:
+            raise ValueError(f"its blocks are of format {tree['format']}, not 1")
+        x, y, z = (int(side) for side in tree["size"])
+        if min(x, y, z) < 0 or x * y * z > MAX_CELLS:
+            raise LimitError(path, f"says {x} x {y} x {z} blocks; at most {MAX_CELLS:,} are read")
+        east, up, south = (int(value) for value in tree["corner"])
+        return BlockVolume(
+            **{name: _array(tree[name], kind, (x, y, z)) for name, kind in _ARRAYS},
+            palette=tuple(str(state) for state in tree["palette"]),
+            corner=(east, up, south),
+            block_to_room=np.array(tree["block_to_room"], np.float64).reshape(4, 4),
+            block_entities=tuple(map(_block_entity, tree["block_entities"])),
+            entities=tuple(map(_entity, tree["entities"])),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DamagedFileError(path, f"holds no volume of blocks ({error})") from error
+
+
+def _array(raw: np.ndarray, kind: type, shape: tuple[int, int, int]) -> np.ndarray:
+    return raw.view(np.dtype(kind).newbyteorder("<")).reshape(shape).astype(kind, copy=False)
+
+
+def _block_entity(row: dict[str, Any]) -> BlockEntity:
+    x, y, z = (int(value) for value in row["pos"])
+    return BlockEntity((x, y, z), str(row["id"]), dict(row["nbt"]))
+
+
+def _entity(row: dict[str, Any]) -> Entity:
+    x, y, z = (float(value) for value in row["pos"])
+    return Entity(
+        (x, y, z), str(row["id"]), dict(row["nbt"]), int(row["class"]), int(row["instance"])
+    )
+
 
 EXTRAS_KEY = "world2minecraft"
 TRIANGLES = np.array([0, 1, 2, 0, 2, 3])

@@ -28,9 +28,9 @@ from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.bodies import Body, bodies_of
-from world2minecraft.formats.glb import GlbWriter
+from world2minecraft.formats.block_meshes import Body, bodies_of
 from world2minecraft.formats.gltf import (
+    GlbWriter,
     body_extras,
     finish,
     foot_of,

@@ -9,7 +9,7 @@ from world2minecraft.furniture.block_designs import Idiom, IdiomBlock, idiom
 from world2minecraft.furniture.facing import Facing, facing, surroundings
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
 from world2minecraft.furniture.materials import Material
-from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
+from world2minecraft.furniture.rasterization import cells_of, raster, size_in_cells, surface
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 from world2minecraft.furniture.template_validation import check_template
 

@@ -12,8 +12,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture.overlap import overlaps
-from world2minecraft.furniture.raster import raster
+from world2minecraft.furniture.rasterization import overlaps, raster
 from world2minecraft.furniture.template import Template
 
 AGAINST, OWN = 1, 2  # As in the codes that ``overlaps`` reads.

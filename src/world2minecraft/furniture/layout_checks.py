@@ -24,7 +24,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture.solids import depth_m, solids_m
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
 OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
@@ -202,7 +202,7 @@ def floaters(labels: np.ndarray) -> Floaters:
     """
     is_object = np.isin(labels, OBJECT_CLASSES)
     structure = np.isin(labels, STRUCTURE_CLASSES)
-    parts, count = connected_parts(is_object | structure)
+    parts, count = label_components(is_object | structure)
     carried = np.zeros(count + 1, bool)
     carried[np.unique(parts[structure])] = True
     mask = is_object & ~carried[parts]

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture.raster import raster, size_in_cells
+from world2minecraft.furniture.rasterization import raster, size_in_cells
 from world2minecraft.furniture.template import Part, Template
 
 GAP_M = 1e-6  # Parts nearer than this touch.

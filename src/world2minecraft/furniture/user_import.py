@@ -192,13 +192,13 @@ def front_of(volume: BlockVolume, kind: str) -> str | None:
 
 def _parts(volume: BlockVolume) -> list[tuple]:
     """Return boxes (role, x0 .. z1) in the piece's own axes, in eighths of a block."""
-    from world2minecraft.geometry.boxes import partition  # noqa: PLC0415  # It needs numba.
+    from world2minecraft.geometry.box_decomposition import partition_boxes  # noqa: PLC0415  # It needs numba.
 
     roles = sorted({role_of(state) for state in volume.palette[1:]})
     labels = block_axes_to_grid(_fine(volume, roles))
     for coarse in (1, 2, 4, 8):
         seen = labels if coarse == 1 else _pooled(labels, coarse)
-        boxes = partition(seen)
+        boxes = partition_boxes(seen)
         if len(boxes) <= MAX_PARTS:
             break
     else:
@@ -208,7 +208,7 @@ def _parts(volume: BlockVolume) -> list[tuple]:
 
 def _fine(volume: BlockVolume, roles: list[str]) -> np.ndarray:
     """Return the role, from 1, that is seen in each eighth of a block, int16 in block axes."""
-    from world2minecraft.minecraft.visual import visual_boxes_of  # noqa: PLC0415
+    from world2minecraft.minecraft.visual_shapes import visual_boxes_of  # noqa: PLC0415
 
     count = PARTS_PER_BLOCK
     fine = np.zeros(np.array(volume.states.shape) * count, np.int16)

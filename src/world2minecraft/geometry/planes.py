@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 SAME_HEIGHT_M = 0.03  # Two columns of one plane differ by sensor noise, about 1 cm.
 MIN_AREA_M2 = 0.08  # A chair's seat has 0.16 m2, a screen's foot 0.05.
@@ -45,7 +45,7 @@ def level_planes(
         near = np.abs(heights - peak) <= SAME_HEIGHT_M
         plan = np.zeros(labels.shape[:2], bool)
         plan[tuple(columns[near].T)] = True
-        parts, count = connected_parts(plan)
+        parts, count = label_components(plan)
         owner = parts[tuple(columns[near].T)]
         for part in range(1, count + 1):
             inside = owner == part

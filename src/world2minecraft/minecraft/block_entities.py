@@ -12,9 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.minecraft.sign_texts import sign_for
+from world2minecraft.minecraft.signs import sign_for
 
 FIRST_COMPONENTS = 3837  # 1.20.5.
 OLD, NEW = ("Count", "tag"), ("count", "components")

@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_entities import count_lost_data
 from world2minecraft.minecraft.block_states import BlockState, parse_state
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
 
 FIRST_1_14 = 1952  # Its first release; the names changed in snapshots before.

@@ -1,13 +1,18 @@
 """Entities as NBT."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.types import Entity
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume, Entity
+from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.nbt import Float
+from world2minecraft.minecraft.versions import GameVersion
 
 
 def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
@@ -30,3 +35,218 @@ def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
     """
     tags = nbt.get("Tags")
     return [str(tag) for tag in tags] if isinstance(tags, list | tuple) else []
+
+
+# Display entities: blocks of any size and turn, drawn by the game since 1.19.4.
+#
+# A ``block_display`` draws one block state. Its ``transformation`` carries the unit cube of the
+# block: turned by ``right_rotation``, stretched by ``scale``, turned by ``left_rotation``, moved by
+# ``translation``; then the entity's own ``Rotation`` turns it and its position moves it. All that is
+# in block axes: x east, y up, z south.
+#
+# Entities have no collision. What they belong to stands in their tags, so that it lasts through
+# files: ``w2m``, ``w2m_object_7`` and ``w2m_class_chair``.
+
+BLOCK_DISPLAY = "minecraft:block_display"
+FIRST_VERSION = 3337  # 1.19.4, the first game with display entities.
+TAG = "w2m"
+VIEW_BLOCKS = 64.0  # How far the game draws a display of view range 1, at its usual setting.
+DECIMALS = 6  # Of blocks: finer than single precision tells at the edge of a room.
+
+
+@dataclass(frozen=True, eq=False)
+class DisplayCube:
+    """What a display entity draws: a block state, and where its unit cube goes.
+
+    ``cube_to_world`` float64 [4, 4] carries [0, 1] cubed to world block coordinates.
+    """
+
+    state: str
+    cube_to_world: np.ndarray
+    class_id: int = 0
+    instance: int = 0
+
+
+def block_display(
+    state: str,
+    box: np.ndarray,
+    position: Sequence[float],
+    *,
+    yaw_deg: float = 0.0,
+    class_id: int = 0,
+    instance: int = 0,
+    view_range: float = 1.0,
+    light: int | None = None,
+) -> Entity:
+    """Return an entity that draws a box of one block.
+
+    Args:
+        state: the block.
+        box: float64 [6], x0 y0 z0 x1 y1 z1 in blocks, from the position, before it is turned.
+        position: where the entity stands, in world block coordinates. The game lights it by the
+            light there.
+        yaw_deg: the turn about the position, counter-clockwise from above.
+        class_id: the class of what it belongs to.
+        instance: the object that it belongs to.
+        view_range: how far it is drawn, in lengths of 64 blocks.
+        light: 0 to 15 where it is drawn as lit by that, whatever the light there is.
+
+    Raises:
+        UsageError: the state is no block state.
+    """
+    quarters = int(np.round(yaw_deg / 90.0))
+    turned, rest = _turned_box(np.asarray(box, np.float64), quarters), yaw_deg - 90.0 * quarters
+    low, size = turned[:3], turned[3:] - turned[:3]
+    half = np.radians(rest) / 2
+    nbt: dict[str, Any] = {
+        "block_state": _state_nbt(state),
+        "transformation": {
+            "left_rotation": _floats([0.0, np.sin(half), 0.0, np.cos(half)]),
+            "right_rotation": _floats([0.0, 0.0, 0.0, 1.0]),
+            "scale": _floats(size),
+            "translation": _floats(_about_y(rest) @ low),
+        },
+        "view_range": Float(view_range),
+        # Said outright, so that whoever turns the volume finds it and turns it.
+        "Rotation": _floats([0.0, 0.0]),
+        "Tags": tags_of(class_id, instance),
+    }
+    if light is not None:
+        nbt["brightness"] = {"block": int(light), "sky": int(light)}
+    x, y, z = (round(float(value), DECIMALS) for value in position)
+    return Entity((x, y, z), BLOCK_DISPLAY, nbt, class_id, instance)
+
+
+def tags_of(class_id: int, instance: int) -> list[str]:
+    """Return the tags that tell what an entity belongs to."""
+    tags = [TAG]
+    if class_id:
+        tags.append(f"{TAG}_class_{CLASS_NAMES[class_id]}")
+    return [*tags, f"{TAG}_object_{instance}"] if instance else tags
+
+
+def owner_of(entity: Entity) -> tuple[int, int]:
+    """Return the class and the object that an entity belongs to: its own, else by its tags."""
+    class_id, instance = entity.class_id, entity.instance
+    for tag in entity_tags(entity.nbt):
+        kind, _, name = tag.removeprefix(f"{TAG}_").partition("_")
+        if kind == "class" and not class_id and name in CLASS_NAMES:
+            class_id = CLASS_NAMES.index(name)
+        elif kind == "object" and not instance and name.isdecimal() and int(name) < 1 << 16:
+            instance = int(name)
+    return class_id, instance
+
+
+def display_cubes(entities: Iterable[Entity]) -> list[DisplayCube]:
+    """Return what the block displays among entities draw; others, and broken ones, draw nothing."""
+    found = (_cube_of(entity) for entity in entities if entity.id == BLOCK_DISPLAY)
+    return [cube for cube in found if cube is not None]
+
+
+def check_displays(volume: BlockVolume, version: GameVersion) -> None:
+    """Refuse to write display entities for a game that does not know them.
+
+    Raises:
+        UsageError: the game is older than 1.19.4, and the volume has display entities.
+    """
+    if version.data_version < FIRST_VERSION and any(
+        entity.id.endswith("_display") for entity in volume.entities
+    ):
+        raise UsageError(
+            f"Minecraft {version.name} has no display entities, which came with 1.19.4; choose "
+            "build.style=blocks or another --mc-version"
+        )
+
+
+def _cube_of(entity: Entity) -> DisplayCube | None:
+    try:
+        state = _state_of(entity.nbt["block_state"])
+        placed = np.eye(4)
+        placed[:3, 3] = entity.position
+        matrix = placed @ _own_turn(entity.nbt) @ _matrix_of(entity.nbt.get("transformation"))
+    except (KeyError, TypeError, ValueError, AttributeError, UsageError):
+        return None  # The file is not ours, and a game that reads it draws nothing either.
+    if not np.isfinite(matrix).all() or abs(matrix).max() > 1e9:
+        return None
+    class_id, instance = owner_of(entity)
+    return DisplayCube(state, matrix, class_id, instance)
+
+
+def _matrix_of(transformation: Any) -> np.ndarray:
+    """Return the 4x4 of a transformation: of parts, or of 16 numbers row by row."""
+    if transformation is None:
+        return np.eye(4)
+    if not isinstance(transformation, Mapping):
+        return np.array(transformation, np.float64).reshape(4, 4)
+    turn = _rotation_of(transformation.get("left_rotation"))
+    stretch = np.diag(_three(transformation.get("scale"), 1.0))
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn @ stretch @ _rotation_of(transformation.get("right_rotation"))
+    matrix[:3, 3] = _three(transformation.get("translation"), 0.0)
+    return matrix
+
+
+def _three(values: Any, default: float) -> np.ndarray:
+    return np.array([default] * 3 if values is None else values, np.float64).reshape(3)
+
+
+def _rotation_of(stated: Any) -> np.ndarray:
+    """Return the 3x3 of a quaternion x y z w, or of an axis and an angle in radians."""
+    if stated is None:
+        return np.eye(3)
+    if isinstance(stated, Mapping):
+        axis = np.array(stated["axis"], np.float64).reshape(3)
+        half = float(stated["angle"]) / 2
+        axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
+        x, y, z, w = *(axis * np.sin(half)), np.cos(half)
+    else:
+        quaternion = np.array(stated, np.float64).reshape(4)
+        x, y, z, w = quaternion / max(float(np.linalg.norm(quaternion)), 1e-12)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _own_turn(nbt: Mapping[str, Any]) -> np.ndarray:
+    """Return the 4x4 of an entity's Rotation: its yaw is clockwise from above, its pitch down."""
+    yaw, pitch = (float(value) for value in nbt.get("Rotation", (0.0, 0.0)))
+    cosine, sine = np.cos(np.radians(pitch)), np.sin(np.radians(pitch))
+    turn = np.eye(4)
+    turn[:3, :3] = _about_y(-yaw) @ [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]
+    return turn
+
+
+def _about_y(yaw_deg: float) -> np.ndarray:
+    """Return the 3x3 turn of block axes, counter-clockwise from above: east goes to north."""
+    cosine, sine = np.cos(np.radians(yaw_deg)), np.sin(np.radians(yaw_deg))
+    return np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]])
+
+
+def _turned_box(box: np.ndarray, quarter_turns: int) -> np.ndarray:
+    """Return a box turned about the up axis by whole quarters: x goes to -z, z to x."""
+    for _ in range(quarter_turns % 4):
+        x0, y0, z0, x1, y1, z1 = box
+        box = np.array([z0, y0, -x1, z1, y1, -x0])
+    return box
+
+
+def _floats(values: Iterable[float]) -> list[Float]:
+    """Return numbers as tags, rounded so that each machine writes the same bytes."""
+    return [Float(round(float(value), DECIMALS) + 0.0) for value in values]
+
+
+def _state_nbt(state: str) -> dict[str, Any]:
+    parsed = parse_state(state)
+    if not parsed.properties:
+        return {"Name": parsed.name}
+    return {"Name": parsed.name, "Properties": dict(parsed.properties)}
+
+
+def _state_of(nbt: Mapping[str, Any]) -> str:
+    """Return the text of a state, checked: it may come from a file of anyone's."""
+    pairs = ",".join(f"{key}={value}" for key, value in dict(nbt.get("Properties", {})).items())
+    return str(parse_state(f"{nbt['Name']}[{pairs}]" if pairs else str(nbt["Name"])))

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.file_format import FileFormat
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import FileFormat, Losses
 
 if TYPE_CHECKING:
     from world2minecraft.minecraft.file_format import WriteOptions

@@ -4,7 +4,8 @@ A sign is made as 1.20.1 keeps it; ``sign_texts`` brings it to the form of other
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from textwrap import wrap
 from typing import Any
 
@@ -12,8 +13,200 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import Byte
 
+# The texts of signs as each game keeps them.
+#
+# Four tags until 1.19, two sides of four lines of JSON since 1.20, and lines of NBT since 1.21.5, for
+# which JSON is letters to be shown. The game brings an older block entity up to date only where the
+# chunk says that it is older. A volume keeps signs as 1.20.1 has them: readers bring them to that
+# form, and writers to the form of the game that is written for.
+
+FIRST_TWO_SIDES = 3463  # 1.20.
+FIRST_NBT_LINES = 4325  # 1.21.5.
+SIGNS = ("minecraft:sign", "minecraft:hanging_sign")
+LEGACY_TEXT_KEYS = ("Text1", "Text2", "Text3", "Text4")
+SIDES = ("front_text", "back_text")
+EMPTY = '{"text":""}'
+MAX_DEPTH = 20  # Of a text in a text; what lies deeper is left out.
+_PARTS = ("extra", "with")  # Lists of texts in a text.
+_FLAGS = ("bold", "italic", "underlined", "strikethrough", "obfuscated", "interpret")
+# What a click's value is called since 1.21.5, by its action.
+_CLICKS = {
+    "open_url": "url",
+    "run_command": "command",
+    "suggest_command": "command",
+    "change_page": "page",
+}
+
+
+def signs_of_today(held: Iterable[BlockEntity], data_version: int) -> tuple[BlockEntity, ...]:
+    """Return block entities with their signs as 1.20.1 has them.
+
+    Args:
+        held: block entities of a file.
+        data_version: that of the game that wrote it.
+    """
+    if data_version < FIRST_TWO_SIDES:
+        return _changed(held, sign_of_today)
+    if data_version < FIRST_NBT_LINES:
+        return tuple(held)
+    return _changed(held, lambda nbt: _with_lines(nbt, _json_of_line))
+
+
+def signs_of_commands(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...]:
+    """Return block entities that commands of any game set, with their signs as 1.20.1 has them.
+
+    A line that is a text in quotes is taken for JSON: only a line of NBT tells its game.
+    """
+    return _changed(
+        held,
+        lambda nbt: _with_lines(
+            nbt, lambda line: _json_of_line(line) if isinstance(line, dict) else line
+        ),
+    )
+
+
+def sign_for(entity: BlockEntity, data_version: int) -> BlockEntity:
+    """Return a block entity of a volume as a game has it; what is no sign stays as it is.
+
+    Before 1.20 a sign has its front alone.
+    """
+    if entity.id not in SIGNS or FIRST_TWO_SIDES <= data_version < FIRST_NBT_LINES:
+        return entity
+    if data_version < FIRST_TWO_SIDES:
+        return replace(entity, nbt=_before(entity.nbt))
+    return replace(entity, nbt=_with_lines(entity.nbt, _nbt_of_line))
+
+
+def sign_of_today(nbt: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tags of a sign with two sides.
+
+    Example:
+        >>> sign_of_today({"Text1": "Exit"})["front_text"]["messages"][0]
+        '{"text": "Exit"}'
+    """
+    rest = {key: nbt[key] for key in nbt if key not in (*LEGACY_TEXT_KEYS, "Color", "GlowingText")}
+    if "front_text" in nbt:
+        return rest
+    front = {
+        "has_glowing_text": Byte(bool(nbt.get("GlowingText", 0))),
+        "color": str(nbt.get("Color", "black")),
+        "messages": [_component(nbt.get(line, EMPTY)) for line in LEGACY_TEXT_KEYS],
+    }
+    back = {"has_glowing_text": Byte(0), "color": "black", "messages": [EMPTY] * 4}
+    return {**rest, "is_waxed": Byte(0), "front_text": front, "back_text": back}
+
+
+def _changed(
+    held: Iterable[BlockEntity], change: Callable[[Mapping[str, Any]], dict[str, Any]]
+) -> tuple[BlockEntity, ...]:
+    return tuple(replace(e, nbt=change(e.nbt)) if e.id in SIGNS else e for e in held)
+
+
+def _component(text: Any) -> str:
+    """Return a line as JSON; before 1.8 it was plain text."""
+    line = str(text)
+    try:
+        json.loads(line)
+    except (ValueError, RecursionError):
+        return json.dumps({"text": line})
+    return line
+
+
+def _before(nbt: Mapping[str, Any]) -> dict[str, Any]:
+    front = nbt.get("front_text")
+    if not isinstance(front, Mapping):
+        return dict(nbt)
+    rest = {key: nbt[key] for key in nbt if key not in (*SIDES, "is_waxed")}
+    lines = [str(line) for line in front.get("messages", ())][:4]
+    texts = dict(zip(LEGACY_TEXT_KEYS, lines + [EMPTY] * (4 - len(lines)), strict=True))
+    glows = Byte(bool(front.get("has_glowing_text", 0)))
+    return {**rest, **texts, "Color": str(front.get("color", "black")), "GlowingText": glows}
+
+
+def _with_lines(nbt: Mapping[str, Any], change: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return a sign's tags with each line of both sides changed."""
+    result = dict(nbt)
+    for side in SIDES:
+        held = nbt.get(side)
+        for key in ("messages", "filtered_messages"):
+            if isinstance(held, Mapping) and isinstance(held.get(key), list):
+                held = {**held, key: [change(line) for line in held[key]]}
+        if side in nbt:
+            result[side] = held
+    return result
+
+
+def _nbt_of_line(line: Any) -> dict[str, Any]:
+    """Return a line of JSON as NBT; one that is NBT already stays."""
+    if isinstance(line, Mapping):
+        return dict(line)
+    try:
+        return _nbt_of(json.loads(str(line)), 0)
+    except (ValueError, RecursionError):
+        return {"text": str(line)}
+
+
+def _nbt_of(text: Any, depth: int) -> dict[str, Any]:
+    """Return a text of JSON as a compound, so that lists of texts hold one kind."""
+    if text is None or depth > MAX_DEPTH:
+        return {"text": ""}
+    if isinstance(text, list):
+        first, *rest = [_nbt_of(part, depth + 1) for part in text] or [{"text": ""}]
+        return {**first, "extra": [*first.get("extra", []), *rest]} if rest else first
+    if not isinstance(text, dict):
+        return {"text": str(text).lower() if isinstance(text, bool) else str(text)}
+    found: dict[str, Any] = {}
+    for key, value in text.items():
+        if key in _PARTS and isinstance(value, list) and value:
+            found[key] = [_nbt_of(part, depth + 1) for part in value]
+        elif key == "clickEvent" and isinstance(value, dict):
+            found["click_event"] = _click_of_1_21_5(value)
+        elif isinstance(value, bool):
+            found[key] = Byte(value)
+        elif isinstance(value, str) or (isinstance(value, int) and abs(value) < 1 << 31):
+            found[key] = value
+    return found or {"text": ""}
+
+
+def _click_of_1_21_5(click: Mapping[str, Any]) -> dict[str, Any]:
+    action, value = str(click.get("action", "")), str(click.get("value", ""))
+    if action == "change_page":
+        return {"action": action, "page": int(value) if value.isdecimal() else 1}
+    return {"action": action, _CLICKS.get(action, "value"): value}
+
+
+def _json_of_line(line: Any) -> str:
+    """Return a line of NBT as JSON."""
+    text = {"text": line} if isinstance(line, str) else _json_of(line, 0)
+    return json.dumps(text, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+def _json_of(text: Any, depth: int) -> Any:
+    if depth > MAX_DEPTH:
+        return ""
+    if isinstance(text, list):
+        return [_json_of(part, depth + 1) for part in text] or ""
+    if not isinstance(text, dict):
+        return text if isinstance(text, str) else str(text)
+    if list(text) == [""]:  # What NBT puts around a text in a list of other things.
+        return _json_of(text[""], depth + 1)
+    found: dict[str, Any] = {}
+    for key, value in text.items():
+        if key in _PARTS and isinstance(value, list) and value:
+            found[key] = [_json_of(part, depth + 1) for part in value]
+        elif key == "click_event" and isinstance(value, dict):
+            action = str(value.get("action", ""))
+            said = value.get(_CLICKS.get(action, "value"), "")
+            found["clickEvent"] = {"action": action, "value": str(said)}
+        elif isinstance(value, str):
+            found[key] = value
+        elif isinstance(value, int):
+            found[key] = bool(value) if key in _FLAGS else int(value)
+    return found or {"text": ""}
+
+
 SIGN = "minecraft:sign"
-LINES = 4
+LINE_COUNT = 4
 LINE_LETTERS = 15  # Of about six pixels; a line has 90.
 
 
@@ -30,10 +223,10 @@ def sign_entity(
     Raises:
         UsageError: there are more than four lines.
     """
-    if len(lines) > LINES:
-        raise UsageError(f"a sign has {LINES} lines, not {len(lines)}")
+    if len(lines) > LINE_COUNT:
+        raise UsageError(f"a sign has {LINE_COUNT} lines, not {len(lines)}")
     texts: list[dict[str, Any]] = [{"text": line} for line in lines]
-    texts += [{"text": ""}] * (LINES - len(texts))
+    texts += [{"text": ""}] * (LINE_COUNT - len(texts))
     if command:
         click = {"action": "run_command", "value": command}
         texts[0] = {**texts[0], "clickEvent": click}
@@ -42,7 +235,7 @@ def sign_entity(
         SIGN,
         {
             "front_text": _side(texts),
-            "back_text": _side([{"text": ""}] * LINES),
+            "back_text": _side([{"text": ""}] * LINE_COUNT),
             "is_waxed": Byte(1),
         },
     )

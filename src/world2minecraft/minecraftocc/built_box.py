@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.formats.build_source import around_spawn, spawn_of
 from world2minecraft.formats.volume_crop import Box
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.world_reader import read_level, region_files
@@ -124,7 +124,7 @@ def _group(
     halves = np.minimum((places - low) // 2, size - 1)
     grid = np.zeros(tuple(size.tolist()), bool)
     grid[tuple(halves.T)] = True
-    parts, count = connected_parts(grid)
+    parts, count = label_components(grid)
     own = parts[tuple(halves.T)]
     weight = np.array([sections[tuple(place)] for place in places.tolist()])
     sums = np.bincount(own, weight, minlength=count + 1)

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.forms import templates_of_run
-from world2minecraft.formats.labelled import common_cells
 from world2minecraft.formats.scene import read_scene
+from world2minecraft.formats.volume_formats import common_cells, templates_of_run
 
 
 def designs_beside(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray, tuple[str, ...]]:

@@ -20,9 +20,9 @@ from world2minecraft.minecraftocc.formats.depth_codes import metres_of
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
 from world2minecraft.reconstruction.fusion import CleanParameters, EvidenceMap, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
+from world2minecraft.reconstruction.semantics.completion import CompletionModel, likeliest
 from world2minecraft.reconstruction.semantics.completion_channels import sight_of
-from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, likeliest
 
 SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
 FILE_AXES = (0, 2, 1)

@@ -18,9 +18,8 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.name_patterns import NEEDED, USUAL, NamePattern
 from world2minecraft.minecraftocc.png_text import PngFacts, read_png_facts
-from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.cameras import GamePose, camera_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour
-from world2minecraft.rendering.views.poses import GamePose
 
 At = Literal["feet", "eye"]
 SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")

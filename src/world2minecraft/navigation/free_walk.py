@@ -1,10 +1,9 @@
 """A stroll through a scene: a person walks as agents walk and sees as they see, with no task."""
 
-from world2minecraft.navigation.keyboard import PATIENCE_S, pressed_move
 from world2minecraft.navigation.moves import moved
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Move
-from world2minecraft.navigation.window import Window
+from world2minecraft.navigation.window import PATIENCE_S, Window, pressed_move
 
 VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
 

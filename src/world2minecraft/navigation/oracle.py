@@ -10,17 +10,146 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.navigation.moves import (
     body_size,
     forward_blocks,
     heading,
     moved,
     named_set,
+    walked,
     wrapped_yaw,
 )
-from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.search import searched
+from world2minecraft.navigation.scene import VlnScene, distance_over
 from world2minecraft.navigation.values import Move, MoveSet, Stance
+
+# The search behind the oracle, compiled: A* over real moves, each tried as the walker makes it.
+#
+# A node is a place that some run of moves comes to, with its own exact coordinates, so that nothing
+# is rounded; of nodes that are nearly at one place the cheapest is followed. The way on foot to the
+# goal is what is at least left, times a share, since the graph's own ways have corners.
+
+SHARE = 0.98  # Between places the field is too long by little: by so much at most.
+
+
+@njit
+def searched(solid, corner, floor, field, begin, ways, size, step_m, goal_m, turn_m, fine, most):
+    """Return the headings, int64 [T], of the steps from a place to a goal, and whether one is.
+
+    Args:
+        solid: the blocks.
+        corner: the world place of their first cell.
+        floor: ``Floor`` of the graph.
+        field: metres from each place to the goal.
+        begin: float64 [3], feet.
+        ways: float64 [K, 2], the step along each heading in blocks; 0 is the first heading.
+        size: the body.
+        step_m: the length of a step.
+        goal_m: how near to the goal ends the search.
+        turn_m: what a turn by one heading counts, in metres.
+        fine: how many places a step is as long as that are told apart.
+        most: nodes to try.
+    """
+    count = len(ways)
+    feet = np.empty((most, 3))
+    cost, before = np.empty(most), np.empty(most, np.int32)
+    turned, keys = np.zeros(most, np.int32), np.empty(most)
+    heap = np.empty(most, np.int32)
+    seen = np.full(1 << 20, -1, np.int64)
+    cell = np.sqrt(ways[0, 0] ** 2 + ways[0, 1] ** 2) / fine
+    feet[0] = begin
+    cost[0], before[0], used, waiting = 0.0, -1, 1, 1
+    heap[0], keys[0] = 0, 0.0
+    while waiting > 0:
+        here = heap[0]
+        waiting = _lifted(heap, keys, waiting)
+        if _taken(seen, feet[here], cell):
+            continue
+        x, y, z = feet[here]
+        if distance_over(floor, field, x, y, z) <= goal_m:
+            return _headings(before, turned, here), True
+        for n in range(count):
+            if used == most:
+                return np.zeros(0, np.int64), False
+            way = (turned[here] + n) % count
+            to_x, to_y, to_z, stopped = walked(
+                solid, corner, x, y, z, ways[way, 0], ways[way, 1], size, False
+            )
+            if stopped:
+                continue
+            left = distance_over(floor, field, to_x, to_y, to_z)
+            if not np.isfinite(left):
+                continue
+            feet[used, 0], feet[used, 1], feet[used, 2] = to_x, to_y, to_z
+            cost[used] = cost[here] + step_m + turn_m * min(n, count - n)
+            before[used], turned[used] = here, way
+            keys[used] = cost[used] + SHARE * left
+            waiting = _laid(heap, keys, waiting, used)
+            used += 1
+    return np.zeros(0, np.int64), False
+
+
+@njit
+def _headings(before, turned, last):
+    length, here = 0, last
+    while before[here] >= 0:
+        length, here = length + 1, before[here]
+    result, here = np.empty(length, np.int64), last
+    for n in range(length - 1, -1, -1):
+        result[n], here = turned[here], before[here]
+    return result
+
+
+@njit
+def _taken(seen, feet, cell):
+    """Whether a place nearly the same was followed before; it is from now on."""
+    i, k = int(np.floor(feet[0] / cell)), int(np.floor(feet[2] / cell))
+    j = int(np.floor(feet[1] * 4))
+    key = ((i + 524288) << 42) | ((k + 524288) << 21) | (j + 524288)
+    at = (key * 0x9E3779B1 >> 7) & (len(seen) - 1)
+    while seen[at] != -1:
+        if seen[at] == key:
+            return True
+        at = (at + 1) & (len(seen) - 1)
+    seen[at] = key
+    return False
+
+
+@njit
+def _laid(heap, keys, waiting, node):
+    """Put a node into the heap; of equal keys the earlier node comes first."""
+    n = waiting
+    while n > 0:
+        up = (n - 1) // 2
+        if not _sooner(keys, node, heap[up]):
+            break
+        heap[n] = heap[up]
+        n = up
+    heap[n] = node
+    return waiting + 1
+
+
+@njit
+def _lifted(heap, keys, waiting):
+    """Take the first node out of the heap."""
+    waiting -= 1
+    node, n = heap[waiting], 0
+    while 2 * n + 1 < waiting:
+        low = 2 * n + 1
+        if low + 1 < waiting and _sooner(keys, heap[low + 1], heap[low]):
+            low += 1
+        if _sooner(keys, node, heap[low]):
+            break
+        heap[n] = heap[low]
+        n = low
+    heap[n] = node
+    return waiting
+
+
+@njit
+def _sooner(keys, one, other):
+    return keys[one] < keys[other] or (keys[one] == keys[other] and one < other)
+
 
 ORACLE_VERSION = "w2m-oracle-2"
 GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,

@@ -10,7 +10,7 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume, Layout
-from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 from world2minecraft.minecraftocc.tours.rooms import TourRoom
 from world2minecraft.procgen.sensors.navmesh import is_inside
 

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Collection, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -15,9 +16,10 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply, focal_px_of_fov, invert
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume, Camera, Layout
-from world2minecraft.formats.labelled import place_of_blocks
 from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.volume_formats import place_of_blocks
 from world2minecraft.furniture.library import TEMPLATES
 from world2minecraft.minecraft.physics.any_angle_paths import (
     Lattice,
@@ -25,14 +27,18 @@ from world2minecraft.minecraft.physics.any_angle_paths import (
     straight_distances_m,
 )
 from world2minecraft.minecraft.physics.body import EYE
-from world2minecraft.minecraft.physics.columns import Solid
-from world2minecraft.minecraft.physics.doors import doors_opened
-from world2minecraft.minecraft.physics.graph import WalkGraph, WalkRule, solid_of, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import parts
+from world2minecraft.minecraft.physics.walk_graph import (
+    Solid,
+    WalkGraph,
+    WalkRule,
+    doors_opened,
+    solid_of,
+    walk_graph,
+)
 from world2minecraft.minecraftocc.source import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
 from world2minecraft.minecraftocc.tours.values import TourRule
-from world2minecraft.navigation.floor import Floor, distance_over, floor_of
 from world2minecraft.navigation.landmarks import Landmark, landmarks_of
 from world2minecraft.navigation.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.navigation.values import Stance
@@ -40,7 +46,62 @@ from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
-from world2minecraft.rendering.views.poses import GamePose
+from world2minecraft.rendering.views.cameras import GamePose
+
+# The walkable graph as a table, so that a place between those of the graph finds them at once.
+
+REACH = 1.5  # Spacings: places so near to a body are on its own side of any wall,
+LEVEL = 0.6  # and so near in height, in sizes of the body, are on its own floor.
+
+
+class Floor(NamedTuple):
+    """The places of a graph by columns of a regular grid; of each column those in a row."""
+
+    origin: np.ndarray  # float64 [2], x and z of the first column, world blocks
+    shape: np.ndarray  # int64 [2], columns along x and z
+    start: np.ndarray  # int64 [C + 1]
+    place: np.ndarray  # int32 [N]
+    feet: np.ndarray  # float64 [N, 3], by place
+    spacing: float  # blocks from a column to the next
+    level: float  # blocks
+    metres_per_block: float
+
+
+def floor_of(graph: WalkGraph) -> Floor:
+    """Return the table of a graph with one place or more."""
+    origin = graph.feet[:, [0, 2]].min(axis=0)
+    at = np.round((graph.feet[:, [0, 2]] - origin) / graph.spacing).astype(np.int64)
+    shape = at.max(axis=0) + 1
+    column = at[:, 0] * shape[1] + at[:, 1]
+    counts = np.bincount(column, minlength=int(shape.prod()))
+    start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    place = np.argsort(column, kind="stable").astype(np.int32)
+    return Floor(
+        origin, shape, start, place, graph.feet, graph.spacing, LEVEL * graph.scale,
+        1 / graph.blocks_per_metre,
+    )  # fmt: skip
+
+
+@njit
+def distance_over(floor, field, x, y, z):
+    """Return the way in metres from feet by a field over places, float64 [N]; inf off the floor."""
+    i = int(np.floor((x - floor.origin[0]) / floor.spacing))
+    k = int(np.floor((z - floor.origin[1]) / floor.spacing))
+    reach = REACH * floor.spacing
+    best = np.inf
+    for column_x in range(max(0, i - 1), min(floor.shape[0] - 1, i + 2) + 1):
+        for column_z in range(max(0, k - 1), min(floor.shape[1] - 1, k + 2) + 1):
+            column = column_x * floor.shape[1] + column_z
+            for n in range(floor.start[column], floor.start[column + 1]):
+                place = floor.place[n]
+                there = floor.feet[place]
+                dx, dy, dz = there[0] - x, there[1] - y, there[2] - z
+                if abs(dy) > floor.level or dx * dx + dz * dz > reach * reach:
+                    continue
+                away = np.sqrt(dx * dx + dy * dy + dz * dz) * floor.metres_per_block
+                best = min(best, away + field[place])
+    return best
+
 
 BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
 LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.

@@ -18,6 +18,9 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 from PIL import Image
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.values import Move
+
 LOOPBACK = "127.0.0.1"
 MOST_WAITING = 64  # Keys; what nobody reads is dropped.
 IDLE_S = 5.0  # A page that saw no frame for so long gets the last again.
@@ -174,3 +177,34 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
                     self.wfile.write(head.encode() + b"\r\n\r\n" + frame + b"\r\n")
 
     return Handler
+
+
+# The keys by which a person walks, as they come from a window.
+
+PATIENCE_S = 600.0  # Without a key for so long nobody is there.
+KEYS = {
+    "ArrowUp": Move.FORWARD,
+    "w": Move.FORWARD,
+    "ArrowLeft": Move.LEFT,
+    "a": Move.LEFT,
+    "ArrowRight": Move.RIGHT,
+    "d": Move.RIGHT,
+    " ": Move.STOP,
+}
+
+
+def pressed_move(window: Window, patience_s: float = PATIENCE_S) -> Move:
+    """Wait for a key that means a move, and return the move.
+
+    Raises:
+        UsageError: nobody pressed a key for that long.
+    """
+    while True:
+        try:
+            key = window.keys.get(timeout=patience_s)
+        except queue.Empty:
+            raise UsageError(
+                f"nobody pressed a key in {patience_s:g} s; {window.link} is the page for them"
+            ) from None
+        if key in KEYS:
+            return KEYS[key]

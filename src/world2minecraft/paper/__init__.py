@@ -6,8 +6,13 @@ that tells it. ``from_program`` reads what the program itself knows: the mapping
 recipes of fine-tuning, the sizes. ``layout`` puts all of it into one table, ``writing`` prints it.
 """
 
-from world2minecraft.paper.filling import filled
-from world2minecraft.paper.reading import read_results, read_table, table_names
-from world2minecraft.paper.values import Ours, PaperTable
+from world2minecraft.paper.measured_values import filled
+from world2minecraft.paper.table_definitions import (
+    Ours,
+    PaperTable,
+    read_results,
+    read_table,
+    table_names,
+)
 
 __all__ = ["Ours", "PaperTable", "filled", "read_results", "read_table", "table_names"]

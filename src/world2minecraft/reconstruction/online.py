@@ -26,7 +26,7 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, Scan, View
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.reconstruction.fusion import EvidenceMap, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
 from world2minecraft.reconstruction.occupancy import predictor

@@ -12,7 +12,7 @@ from world2minecraft.capture.sfm import PosingParameters
 from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.formats.forms import form_named
+from world2minecraft.formats.volume_formats import form_named
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
 from world2minecraft.reconstruction.instances import FindParameters

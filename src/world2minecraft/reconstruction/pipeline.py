@@ -21,9 +21,14 @@ from world2minecraft import __version__
 from world2minecraft.capture import realigned, settled
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
-from world2minecraft.formats.evidence import write_evidence
-from world2minecraft.formats.poses import read_poses, write_poses
-from world2minecraft.formats.scan import placed_as_written, read_registration, write_scan
+from world2minecraft.formats.run_arrays import write_evidence
+from world2minecraft.formats.scan import (
+    placed_as_written,
+    read_poses,
+    read_registration,
+    write_poses,
+    write_scan,
+)
 from world2minecraft.furniture.user_library import own_files, own_folder
 from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
 from world2minecraft.reconstruction.fusion import fuse_views

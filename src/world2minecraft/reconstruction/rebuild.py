@@ -9,8 +9,8 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.occupancy import read_occupancy
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.occupancy_files import read_occupancy
+from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import BUILT_FROM, check_finished, check_writable

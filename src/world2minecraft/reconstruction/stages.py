@@ -15,21 +15,18 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 from world2minecraft.editing.cleanup.passes import mended
 from world2minecraft.editing.journal import write_edits
-from world2minecraft.formats.centers import write_centers
-from world2minecraft.formats.evidence import read_evidence
-from world2minecraft.formats.forms import form_named, templates_of_run, write_forms
-from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.layout import read_rooms, write_layouts
 from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.formats.occupancy import inner_corner_m
+from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
-from world2minecraft.formats.room import read_room, write_room
-from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.run_arrays import read_evidence, read_room, write_centers, write_room
 from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
+from world2minecraft.formats.volume_formats import form_named, templates_of_run, write_forms
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.reconstruction.fusion import (
     calibrate,
@@ -47,7 +44,7 @@ from world2minecraft.reconstruction.semantics import (
     with_whole_walls,
     without_wall_guesses,
 )
-from world2minecraft.reconstruction.semantics.completion_net import LEARNT_VOXEL_M, VOXEL_TOLERANCE
+from world2minecraft.reconstruction.semantics.completion import LEARNT_VOXEL_M, VOXEL_TOLERANCE
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:

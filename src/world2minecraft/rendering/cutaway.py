@@ -15,8 +15,8 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.minecraft.displays import display_cubes, owner_of
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.minecraft.entities import display_cubes, owner_of
 
 # Entities of a volume that is cut open: what goes with the blocks, and where the rest moves.
 
@@ -230,7 +230,7 @@ def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
     things = named.any(axis=1) & ~_wall_columns(semantic)
     side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
     wide = np.asarray(ndimage.binary_opening(floor | things, np.ones((side, side))), bool)
-    parts, count = connected_parts(wide, corners=False)
+    parts, count = label_components(wide, corners=False)
     floors = np.bincount(parts[floor], minlength=count + 1)
     rooms = wide & (floors[parts] >= ROOM_M2 * blocks_per_metre**2)
     return rooms if rooms.any() else floor

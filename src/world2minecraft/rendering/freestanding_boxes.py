@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.rendering.block_elements import BlockModel, Element, LookSource
 from world2minecraft.rendering.scene_baking import Baker, element_corners, is_pane, reaches_out
 from world2minecraft.rendering.scene_tables import ABSOLUTE, PANE, owner_of_cell

@@ -8,8 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.minecraft.block_colours import colour_of
-from world2minecraft.minecraft.glow import is_luminous
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
 from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook
 from world2minecraft.rendering.texture import Texture
 

@@ -20,7 +20,7 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
 from world2minecraft.reconstruction.stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
-from world2minecraft.sceneforge.arrays import packed_arrays
+from world2minecraft.sceneforge.array_messages import packed_arrays
 from world2minecraft.sceneforge.editor import Editor
 
 MAGIC = b"W2MB"

@@ -10,7 +10,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.types import ObjectInstance, OccupancyGrid
-from world2minecraft.formats.paper_forms import Center
+from world2minecraft.formats.occupancy_files import Center
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 
 MAX_CENTERS = 65535

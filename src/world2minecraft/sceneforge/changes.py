@@ -6,8 +6,8 @@ import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.sceneforge.array_messages import as_bytes
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.volumes import as_bytes
 from world2minecraft.sceneforge.wire import counts_json, object_json
 
 MAX_HELD_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.

@@ -15,7 +15,7 @@ from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import labels_in_cells
 from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.evaluation.scoring.truth import read_truth
-from world2minecraft.formats.occupancy import read_occupancy
+from world2minecraft.formats.occupancy_files import read_occupancy
 
 SUFFIXES = (".npz", ".npy", ".json")
 

@@ -19,10 +19,10 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import write_text
 from world2minecraft.editing.scene import instances_of, placements_of
-from world2minecraft.formats.forms import form_names
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.formats.volume_formats import form_names
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
 from world2minecraft.sceneforge.editor import Editor
 

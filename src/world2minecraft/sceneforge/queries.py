@@ -4,15 +4,332 @@ Like a command, a query is a small checked value; it changes nothing. A new one 
 its line in ``QUERIES``.
 """
 
-from typing import Any
+from abc import abstractmethod
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, Protocol
 
-from pydantic import ValidationError
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.progress import Progress
+from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.command_registry import first_fault
-from world2minecraft.sceneforge.cell_queries import CELL_QUERIES
-from world2minecraft.sceneforge.object_queries import OBJECT_QUERIES
-from world2minecraft.sceneforge.query import QueriedScene, Query
+from world2minecraft.editing.scene.diagnostics import Doubt, find_doubts, ordered
+from world2minecraft.editing.scene.difference import difference
+from world2minecraft.editing.scene.floaters import MAX_CELLS, find_floaters
+from world2minecraft.editing.scene.furniture_commands import ObjectClass
+from world2minecraft.editing.scene.holes import HOLE_M2, hole_cells, plane_gaps
+from world2minecraft.editing.scene.object_boxes import object_named
+from world2minecraft.editing.scene.objects import Id
+from world2minecraft.editing.scene.objects_of import instance_of, placements_of
+from world2minecraft.editing.scene.planes import find_planes
+from world2minecraft.editing.scene.runs import runs_of_cells
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
+from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
+from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances.density_clustering import (
+    candidate_cells,
+    centroids,
+    cluster_candidates,
+    density_map,
+    object_cells,
+)
+from world2minecraft.reconstruction.retrieval import ranked_matches
+from world2minecraft.sceneforge.comparison import labels_of_file, labels_of_truth, truth_folder
+from world2minecraft.sceneforge.sources import Opened
+
+# What all questions about a scene share; ``queries`` has them by name.
+
+
+class QueriedScene(Protocol):
+    """What a question may look at: an open editor has all of it."""
+
+    progress: Progress
+
+    @property
+    def draft(self) -> SceneDraft:
+        """The scene as it is now."""
+        ...
+
+    @property
+    def opened(self) -> Opened:
+        """The scene as it was opened first."""
+        ...
+
+
+class Query(BaseModel):
+    """A small checked value, as a command is; it changes nothing."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @abstractmethod
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return the answer as JSON values.
+
+        Raises:
+            UsageError: it cannot be answered for this scene; the message says why.
+        """
+
+
+# Questions about the cells of a scene: what floats, where holes are, how it differs.
+
+OPENED, TRUTH = "opened", "truth"
+DECIMALS = 4
+
+
+class Floaters(Query):
+    """Pieces of at most ``max_cells`` that hold to nothing, the largest first."""
+
+    max_cells: Annotated[int, Field(ge=1)] = MAX_CELLS
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"cells", "runs", "class_id", "object_ids", "at_m"}]``."""
+        draft = scene.draft
+        scene.progress("pieces", 0, 0)
+        return [
+            {
+                "cells": len(one.cells),
+                "runs": runs_of_cells(one.cells, draft.shape).tolist(),
+                "class_id": one.class_id,
+                "object_ids": list(one.object_ids),
+                "at_m": middle_m(draft, one.cells),
+            }
+            for one in find_floaters(draft, self.max_cells)
+        ]
+
+
+class Holes(Query):
+    """The planes of the room, and the holes and openings of each.
+
+    ``share`` is the part of the plane that is holes; openings, such as doors, are left out of it.
+    ``runs`` are the cells that ``fill_holes`` would fill, ``openings`` what it leaves open unless
+    a cell of it is named.
+    """
+
+    hole_m2: Annotated[float, Field(ge=0)] = HOLE_M2
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"plane", "class_id", "axis", "at_m", "area_m2", "share", "cells", "runs",
+        "openings"}]``, floors and ceilings first.
+        """  # noqa: D205
+        draft, rows, progress = scene.draft, [], scene.progress
+        progress("planes", 0, 0)
+        planes = find_planes(draft)
+        for done, plane in enumerate(planes):
+            progress("planes", done, len(planes))
+            gaps = plane_gaps(draft, plane, hole_m2=self.hole_m2)
+            holes = hole_cells(draft, gaps, gaps.holes)
+            area = int(gaps.own[plane.window].sum() + gaps.holes.sum())
+            at_m = draft.origin_m[plane.axis] + (plane.layer + 0.5) * draft.voxel_m
+            openings = hole_cells(draft, gaps, gaps.openings)
+            rows.append(
+                {
+                    "plane": plane.name,
+                    "class_id": plane.class_id,
+                    "axis": plane.axis,
+                    "at_m": round(float(at_m), DECIMALS),
+                    "area_m2": round(area * draft.voxel_m**2, 3),
+                    "share": round(gaps.share, DECIMALS),
+                    "cells": len(holes),
+                    "runs": runs_of_cells(holes, draft.shape).tolist(),
+                    "openings": runs_of_cells(openings, draft.shape).tolist(),
+                }
+            )
+        return rows
+
+
+class Compare(Query):
+    """How the scene differs from another occupancy of the same room, and the IoU.
+
+    ``path`` is a file in the scene's folder, such as a prediction; or ``truth``, of a generated
+    room that was scanned; or ``opened``: the scene as it was when it was opened, its unseen cells
+    taken for empty. The other one counts as the truth.
+    """
+
+    path: Annotated[str, Field(max_length=1000)] = OPENED
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``{"added", "removed", "changed"}`` runs, ``cells`` of each and the figures."""
+        return compared(scene.draft, self._other(scene))
+
+    def _other(self, scene: QueriedScene) -> np.ndarray:
+        if self.path == OPENED:
+            labels = scene.opened.grid.labels
+            return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
+        folder = scene.opened.folder
+        if self.path != TRUTH:
+            return labels_of_file(file_within(folder, self.path), scene.draft)
+        place = truth_folder(folder, None)
+        if place is None:
+            raise UsageError("no truth lies in the scene's folder; only generated rooms have one")
+        return labels_of_truth(place, scene.draft, scene.opened.scan_to_room)
+
+
+def compared(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
+    """Return what ``compare`` answers for other labels uint8 [X, Y, Z] in the scene's cells."""
+    found = difference(draft.labels, other)
+    masks = {"added": found.added, "removed": found.removed, "changed": found.changed}
+    counts = count_occupancy(draft.labels, other)
+    classes = zip(CLASS_NAMES[1:], counts.class_iou[1:].tolist(), strict=True)
+    return {
+        **{name: runs_of_mask(mask, draft) for name, mask in masks.items()},
+        "cells": {name: int(mask.sum()) for name, mask in masks.items()},
+        "iou": round(counts.iou, DECIMALS),
+        "miou": round(counts.miou_present, DECIMALS),
+        "class_iou": {name: round(iou, DECIMALS) for name, iou in classes},
+    }
+
+
+def file_within(folder: Path, path: str) -> Path:
+    """Return a file in a folder or below it.
+
+    Raises:
+        UsageError: the path leads out of it.
+    """
+    place = (folder / path).resolve()
+    if not place.is_relative_to(folder.resolve()):
+        raise UsageError(f"{path[:80]!r} lies outside the scene's folder: copy the file into it")
+    return place
+
+
+def runs_of_mask(mask: np.ndarray, draft: SceneDraft) -> list[list[int]]:
+    """Return the runs of a mask bool [X, Y, Z]."""
+    return runs_of_cells(np.argwhere(mask), draft.shape).tolist()
+
+
+def middle_m(draft: SceneDraft, cells: np.ndarray) -> list[float]:
+    """Return the middle of cells int [N, 3] in the room, rounded to a millimetre."""
+    return np.round(draft.origin_m + (cells.mean(axis=0) + 0.5) * draft.voxel_m, 3).tolist()
+
+
+CELL_QUERIES: dict[str, type[Query]] = {
+    "floaters": Floaters,
+    "holes": Holes,
+    "compare": Compare,
+}
+
+
+# Questions about the objects of a scene: other furniture, centres, clashes, doubtful places.
+
+OFFERED = 5
+LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
+MOST_PLACES = 200
+
+
+def _odd(value: int) -> int:
+    if value % 2 == 0:
+        raise ValueError("density_kernel must be odd")
+    return value
+
+
+class Alternatives(Query):
+    """The best five templates for an object, each in its best turn, with the IoU of its cells."""
+
+    id: Id
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"template", "quarter_turns", "iou"}]``, best first; none without cells."""
+        one = object_named(scene.draft, self.id)
+        found = instance_of(one, scene.draft.cells_of(one.id))
+        rows = ranked_matches(scene.draft.grid(), found, OFFERED, scene.opened.rooms)
+        return [{"template": name, "quarter_turns": turns, "iou": iou} for name, turns, iou in rows]
+
+
+class Centers(Query):
+    """The paper's centres for some figures of its clustering, as a preview; nothing is changed.
+
+    ``recluster`` goes on from these clusters: it parts what they join and joins what they part.
+    """
+
+    density_kernel: Annotated[int, Field(ge=1, le=31), AfterValidator(_odd)]
+    density_threshold: Annotated[float, Field(ge=0, le=1)]
+    cluster_radius: Annotated[float, Field(gt=0, le=100)]
+    class_id: ObjectClass | None = None
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"class_id", "at_m", "cells"}]``: a centre and how many cells it has."""
+        draft = scene.draft
+        binary = object_cells(draft.labels)
+        density = density_map(binary, self.density_kernel)
+        if self.class_id is not None:
+            binary &= draft.labels == self.class_id
+        candidates = candidate_cells(binary, density, self.density_threshold)
+        classes = draft.labels[tuple(candidates.T)]
+        samples = FindParameters.min_samples
+        clusters = cluster_candidates(candidates, classes, self.cluster_radius, samples)
+        middles_m = draft.origin_m + (centroids(candidates, clusters) + 0.5) * draft.voxel_m
+        kinds = dict(zip(clusters.tolist(), classes.tolist(), strict=True))
+        counts = np.bincount(clusters[clusters >= 0], minlength=len(middles_m)).tolist()
+        return [
+            {"class_id": kinds[n], "at_m": np.round(at, 4).tolist(), "cells": counts[n]}
+            for n, at in enumerate(middles_m)
+        ]
+
+
+class Warnings(Query):
+    """Furniture that collides or reaches out of its room, by the metrics of the report."""
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"kind": "collision" or "outside", "ids", "at_m"}]``, in the order of ids."""
+        return list(_clashes(scene))
+
+
+class Doubtful(Query):
+    """Places worth a look, the most doubtful first, each with the reason in ``why``.
+
+    ``kind`` is ``outside``, ``collision``, ``floater``, ``unsupported``, ``low_iou``,
+    ``near_tie``, ``no_template`` (built from its cells), ``low_confidence``, ``unsure_cells``,
+    ``crumb`` or ``completed``.
+    """
+
+    def answer(self, scene: QueriedScene) -> Any:
+        """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
+        found = ordered([*_clash_doubts(scene), *find_doubts(scene.draft, scene.progress)])
+        return [
+            {
+                "at_m": np.round(one.at_m, 3).tolist(),
+                "why": one.why,
+                "kind": one.kind,
+                "doubt": round(one.doubt, 3),
+                "object_id": one.object_id or None,
+            }
+            for one in found[:MOST_PLACES]
+            if one.doubt >= LEAST_DOUBT
+        ]
+
+
+def _clash_doubts(scene: QueriedScene) -> Iterator[Doubt]:
+    for clash in _clashes(scene):
+        number = clash["ids"][-1]
+        name = CLASS_NAMES[scene.draft.objects[number].class_id]
+        doubt, why = 1.0, f"this {name} reaches out of its room"
+        if clash["kind"] == "collision":
+            other = scene.draft.objects[clash["ids"][0]]
+            doubt, why = 0.95, f"this {name} and {CLASS_NAMES[other.class_id]} {other.id} collide"
+        yield Doubt(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
+
+
+def _clashes(scene: QueriedScene) -> Iterator[dict[str, Any]]:
+    placed = placements_of(scene.draft.objects.values())
+    for m, n in collisions(placed, grid=scene.draft.grid()):
+        middle = np.round((placed[m].center_m + placed[n].center_m) / 2, 3).tolist()
+        ids = [placed[m].object_id, placed[n].object_id]
+        yield {"kind": "collision", "ids": ids, "at_m": middle}
+    rooms = scene.opened.rooms
+    for index in out_of_rooms(placed, rooms) if rooms else ():
+        at_m = np.round(placed[index].center_m, 3).tolist()
+        yield {"kind": "outside", "ids": [placed[index].object_id], "at_m": at_m}
+
+
+OBJECT_QUERIES: dict[str, type[Query]] = {
+    "alternatives": Alternatives,
+    "centers": Centers,
+    "doubtful": Doubtful,
+    "warnings": Warnings,
+}
 
 
 class Counts(Query):

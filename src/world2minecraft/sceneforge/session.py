@@ -16,12 +16,12 @@ from typing import Any, TypeVar
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import Command, parse_command
+from world2minecraft.sceneforge.array_messages import volume_of
 from world2minecraft.sceneforge.broadcast import Hub
 from world2minecraft.sceneforge.changes import change_of, preview_of
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.background_job import TITLES, beside, copy_of
 from world2minecraft.sceneforge.jobs.jobs import Jobs
-from world2minecraft.sceneforge.volumes import volume_of
 from world2minecraft.sceneforge.wire import PROTOCOL
 
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})

@@ -2,7 +2,7 @@
 
 ==============================  ================================================================
 a run's folder, its room.npz    its grid, objects and placements as they stand
-``occ.json``                    in any of the forms of ``formats/paper_forms.py``, its objects
+``occ.json``                    in any of the forms of ``formats/occupancy_files.py``, its objects
                                 from ``centers.json`` beside it, where there is one
 any other occupancy file        objects are found and matched first, as ``w2m build`` does
 nothing                         the demo room that comes with the program
@@ -18,11 +18,15 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import objects_of
+from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_objects, read_placements
-from world2minecraft.formats.occupancy import read_occupancy
-from world2minecraft.formats.paper_forms import Center, read_any_centers, read_any_occ
-from world2minecraft.formats.room import read_room
-from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.occupancy_files import (
+    Center,
+    read_any_centers,
+    read_any_occ,
+    read_occupancy,
+)
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import furnish
 from world2minecraft.sceneforge.centred import instances_at

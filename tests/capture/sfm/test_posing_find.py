@@ -4,13 +4,8 @@ import numpy as np
 import pytest
 from tests.capture.sfm.box_room import CAMERA, photos, poses
 
-from world2minecraft.capture.sfm import (
-    PosingParameters,
-    align_similarity,
-    find_poses,
-    links,
-    matching,
-)
+from world2minecraft.capture.sfm import PosingParameters, align_similarity, find_poses, matching
+from world2minecraft.capture.sfm import matching as links
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import SparseScene
 from world2minecraft.core.types.photos import Photo

@@ -7,8 +7,9 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
-from world2minecraft.capture.sfm import PosingParameters, colmap, find_poses, reasons
-from world2minecraft.capture.sfm.bundle import projected
+from world2minecraft.capture.sfm import PosingParameters, colmap, find_poses
+from world2minecraft.capture.sfm import results as reasons
+from world2minecraft.capture.sfm.bundle_adjustment import projected
 from world2minecraft.capture.sfm.camera_groups import (
     from_colmap,
     is_sane,
@@ -17,9 +18,9 @@ from world2minecraft.capture.sfm.camera_groups import (
     usual_camera,
 )
 from world2minecraft.capture.sfm.features import sharpness
-from world2minecraft.capture.sfm.joining import joined
+from world2minecraft.capture.sfm.incremental_mapping import joined
 from world2minecraft.capture.sfm.matching import matches, worth_matching
-from world2minecraft.capture.sfm.placing import outliers, sampson
+from world2minecraft.capture.sfm.pose_verification import outliers, sampson
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 from world2minecraft.core.types import Camera

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.capture.stereo.guide import (
+from world2minecraft.capture.stereo.monocular_depth import (
     DEPTH_MODELS,
     FILLED_TRUST,
     _inverse_line,

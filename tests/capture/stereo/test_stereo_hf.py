@@ -6,10 +6,10 @@ import sys
 import numpy as np
 import pytest
 
-from world2minecraft.capture.stereo.guide import depth_model
+from world2minecraft.capture.stereo.monocular_depth import depth_model
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError
 from world2minecraft.core.types import Camera
-from world2minecraft.external_models.pictures import prepared, wanted_size
+from world2minecraft.external_models.transformers_hub import prepared, wanted_size
 
 CAMERA = Camera(60, 40, 50.0, 50.0, 30.0, 20.0)
 COLOUR = np.random.default_rng(0).integers(0, 256, (40, 60, 3), dtype=np.uint8)

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from world2minecraft.capture.stereo.agree import confirm
-from world2minecraft.capture.stereo.cost import sweep_costs
-from world2minecraft.capture.stereo.islands import without_islands
-from world2minecraft.capture.stereo.paths import best_planes, sum_paths
+from world2minecraft.capture.stereo.consistency import confirm, without_islands
+from world2minecraft.capture.stereo.plane_sweep import best_planes, sum_paths, sweep_costs
 
 
 def halves(rng, *shape):

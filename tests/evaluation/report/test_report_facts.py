@@ -16,7 +16,7 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
-from world2minecraft.evaluation.report.facts import in_solid_block, scene_facts, surface_explained
+from world2minecraft.evaluation.report.figures import in_solid_block, scene_facts, surface_explained
 from world2minecraft.evaluation.report.scene import FinishedScene, read_built
 
 VOXEL_M = 0.08

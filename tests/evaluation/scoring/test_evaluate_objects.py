@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from world2minecraft.evaluation.scoring.true_objects import _majority
+from world2minecraft.evaluation.scoring.oracle_stages import _majority
 
 
 @given(arrays.arrays(np.int64, (7, 5), elements=st.integers(0, 3)))

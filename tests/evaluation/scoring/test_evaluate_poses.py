@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import look_at, rotation_about_z
-from world2minecraft.evaluation.scoring.poses import pose_error, scale_error
+from world2minecraft.evaluation.scoring.pose_errors import pose_error, scale_error
 
 EYES = np.array([[1.0, 2, 1.5], [3, 1, 1.4], [2, 3, 1.6], [0.5, 0.5, 1.2]])
 TRUE = [look_at(eye, np.array([2.0, 2.0, 1.0])) for eye in EYES]

@@ -20,13 +20,12 @@ from world2minecraft.evaluation.scoring.scannet.labelled_mesh import (
     LabelledMesh,
     read_labelled_mesh,
 )
-from world2minecraft.evaluation.scoring.scannet.seen import seen_free
-from world2minecraft.evaluation.scoring.scannet.surface import surface_voxels
+from world2minecraft.evaluation.scoring.scannet.truth import seen_free, surface_voxels
 from world2minecraft.evaluation.scoring.truth import read_instances
 from world2minecraft.evaluation.scoring.used_frames import all_frames
 from world2minecraft.evaluation.scoring.visibility import reached_cells
 from world2minecraft.formats.objects import write_objects
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.run_arrays import write_room
 
 VOXEL_M = 0.08
 NAME, CUBE = scenes.NAME, np.ones((3, 3, 3), bool)

@@ -11,7 +11,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.formats.objects import read_objects, write_objects
-from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.run_arrays import read_room, write_room
 
 
 def copied(run, tmp_path):

@@ -5,15 +5,15 @@ import pytest
 
 from world2minecraft.capture import open_scan
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.recorded import recorded_parameters
-from world2minecraft.evaluation.scoring.stages import (
+from world2minecraft.evaluation.scoring.oracle_stages import true_evidence
+from world2minecraft.evaluation.scoring.stage_ablation import (
     AFTER,
     TrueViews,
     allowed_cells,
     open_case,
+    recorded_parameters,
     stage_losses,
 )
-from world2minecraft.evaluation.scoring.true_evidence import true_evidence
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.reconstruction.fusion import extract_grid as read_out

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.evaluation.scoring import read_truth
-from world2minecraft.evaluation.scoring.frame_error import frame_error
+from world2minecraft.evaluation.scoring.pose_errors import frame_error
 
 
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])

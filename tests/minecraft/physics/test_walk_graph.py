@@ -11,8 +11,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
 from world2minecraft.minecraft.physics import player_motion as step
-from world2minecraft.minecraft.physics.doors import doors_opened, is_shut, opened
-from world2minecraft.minecraft.physics.graph import WalkRule, walk_graph
+from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.minecraft.physics.shortest_paths import (
     distances_m,
     elbow_room_m,
@@ -20,7 +19,13 @@ from world2minecraft.minecraft.physics.shortest_paths import (
     reachable,
     shortest_path,
 )
-from world2minecraft.minecraft.physics.sweep import overlapping
+from world2minecraft.minecraft.physics.walk_graph import (
+    WalkRule,
+    doors_opened,
+    is_shut,
+    opened,
+    walk_graph,
+)
 
 DOOR = "minecraft:oak_door[facing=west,half={half},hinge=left,open=false,powered=false]"
 PALETTE = (

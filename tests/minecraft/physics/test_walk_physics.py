@@ -21,7 +21,7 @@ from world2minecraft.minecraft.physics import (
     standing_place,
 )
 from world2minecraft.minecraft.physics import player_motion as step
-from world2minecraft.minecraft.physics.sweep import free_way, overlapping
+from world2minecraft.minecraft.physics.collisions import free_way, overlapping
 
 PLAIN = BoxWorld([[-1e4, -1, -1e4, 1e4, 0, 1e4]])
 STANDING = Body((0.0, 0.0, 0.0), on_ground=True)

@@ -15,8 +15,8 @@ from world2minecraft.minecraft.physics.any_angle_paths import (
     straight_distances_m,
     straight_m,
 )
-from world2minecraft.minecraft.physics.graph import WalkRule, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import distances_m
+from world2minecraft.minecraft.physics.walk_graph import WalkRule, walk_graph
 
 SIDE = 7
 SCALE = 4  # Blocks a metre of the floor with pillars, as builds have it by default.

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.navigation.discretise import Walker
 from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.walk_discretization import Walker
 from world2minecraft.navigation.walk_stream import wrapped_deg
 
 

@@ -13,9 +13,8 @@ from PIL import Image
 from world2minecraft import cli
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.data import generated_scenes as made_scenes
-from world2minecraft.navigation.data.building import BuildRule, build_set, composition_of
-from world2minecraft.navigation.data.crew import _Count
-from world2minecraft.navigation.data.quotas import PAPER_HELD, PAPER_SIZE, cut_as_the_paper
+from world2minecraft.navigation.data.building import BuildRule, _Count, build_set, composition_of
+from world2minecraft.navigation.data.item_building import PAPER_HELD, PAPER_SIZE, cut_as_the_paper
 from world2minecraft.navigation.data.scene_items import WorkRule
 from world2minecraft.navigation.data.splits import PAPER_SHARE, paper_splits, tour_of
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories

@@ -6,14 +6,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.navigation.data.free_floor import free_walker
 
-from world2minecraft.navigation.data.album import Album, Pictured, are_apart, unlike
+from world2minecraft.navigation.data.distractors import (
+    MOST_OF_A_KIND,
+    TAKEN,
+    RankDeck,
+    Scout,
+    Slot,
+    Taker,
+    differs,
+)
 from world2minecraft.navigation.data.keyframes import marks_of
-from world2minecraft.navigation.data.next_view import FOUND_OF, GRADES, MOST_FAR, view_question
-from world2minecraft.navigation.data.pictures import Shot
-from world2minecraft.navigation.data.taking import MOST_OF_A_KIND, RankDeck, Slot, Taker, differs
-from world2minecraft.navigation.data.wrong_views import TAKEN, Scout
-from world2minecraft.navigation.discretise import Walk
+from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, are_apart, unlike
+from world2minecraft.navigation.data.tasks import FOUND_OF, GRADES, MOST_FAR, view_question
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
+from world2minecraft.navigation.walk_discretization import Walk
 
 VLNCE = MOVE_SETS["vlnce"]
 F, L, R, STOP = Move.FORWARD, Move.LEFT, Move.RIGHT, Move.STOP

@@ -11,19 +11,26 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.navigation.data.album import are_apart
 from world2minecraft.navigation.data.blind_baselines import baselines
 from world2minecraft.navigation.data.building import BuildRule, build_set, composition_of
-from world2minecraft.navigation.data.histograms import write_histograms
+from world2minecraft.navigation.data.item_building import LetterDeck, cut
 from world2minecraft.navigation.data.keyframes import Mark
-from world2minecraft.navigation.data.leaks import leaks_of, without_shared_pictures
-from world2minecraft.navigation.data.letters import LetterDeck
-from world2minecraft.navigation.data.next_action import action_steps
-from world2minecraft.navigation.data.quotas import cut
+from world2minecraft.navigation.data.pictures import are_apart
 from world2minecraft.navigation.data.scene_items import WorkRule
-from world2minecraft.navigation.data.splits import scene_splits, split_of_tour
-from world2minecraft.navigation.data.statistics import lengths_of, statistics_of
-from world2minecraft.navigation.data.statistics_text import figures, statistics_text
+from world2minecraft.navigation.data.splits import (
+    leaks_of,
+    scene_splits,
+    split_of_tour,
+    without_shared_pictures,
+)
+from world2minecraft.navigation.data.statistics import (
+    figures,
+    lengths_of,
+    statistics_of,
+    statistics_text,
+    write_histograms,
+)
+from world2minecraft.navigation.data.tasks import action_steps
 from world2minecraft.navigation.language.parsing import told_in
 from world2minecraft.navigation.oracle import expert
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories

@@ -10,12 +10,15 @@ from tests.navigation.data.free_floor import free_walker
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import DamagedFileError
-from world2minecraft.navigation.data.keyframes import marks_of
+from world2minecraft.navigation.data.keyframes import (
+    fault_of_pictures,
+    fault_of_way,
+    marks_of,
+    path_m,
+)
 from world2minecraft.navigation.data.stream_cleaning import segments_of
-from world2minecraft.navigation.data.validity import fault_of_pictures, fault_of_way, path_m
-from world2minecraft.navigation.discretise import discretise
-from world2minecraft.navigation.simplify import corners_of
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
+from world2minecraft.navigation.walk_discretization import corners_of, discretise
 from world2minecraft.navigation.walk_stream import StreamFrame, frame_of
 from world2minecraft.rendering.views.pose_file import read_tour
 

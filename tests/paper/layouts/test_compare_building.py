@@ -12,7 +12,7 @@ from world2minecraft.paper.layouts import ComparedScene
 from world2minecraft.paper.layouts.designs import design_of, designs
 from world2minecraft.paper.layouts.importers.reading import Box, object_of
 from world2minecraft.paper.layouts.world import plan_of
-from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)
 

@@ -107,7 +107,7 @@ def test_a_model_describes_photos():
 
 
 def test_photos_are_spread_over_a_capture_and_made_small(tmp_path, monkeypatch):
-    from world2minecraft.paper.layouts import photos
+    from world2minecraft.paper.layouts import describing as photos
 
     paths = []
     for n in range(10):

@@ -11,14 +11,14 @@ from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Layout, Opening
 from world2minecraft.formats.layout import layout_row, write_layouts
 from world2minecraft.formats.objects import write_placements
-from world2minecraft.formats.room import write_room
+from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.paper.layouts import ComparedScene, score_scene
 from world2minecraft.paper.layouts.importers import How, read_layouts_of
 from world2minecraft.paper.layouts.importers.reading import Box, object_of
 from world2minecraft.paper.layouts.reference import is_truth, true_scene
 from world2minecraft.paper.layouts.world import plan_of
 from world2minecraft.reconstruction.floorplans import layouts_of
-from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2, 3], 0.9, 2),))
 THINGS = (

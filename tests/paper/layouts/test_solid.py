@@ -7,7 +7,7 @@ from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture.solids import solids_m
 from world2minecraft.paper.layouts import ComparedScene, score_scene
 from world2minecraft.paper.layouts.importers.reading import Box, object_of
-from world2minecraft.paper.layouts.solid import solid_collisions, solid_parts
+from world2minecraft.paper.layouts.scores import solid_collisions, solid_parts
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)
 TABLE = ("dining_table", (2.0, 1.5, 0.375), (0.9, 1.6, 0.75), 0.0)

@@ -10,15 +10,15 @@ from test_plans_roomplan import layout
 
 from world2minecraft import cli
 from world2minecraft.capture.readers.floorplan_only import plan_in
-from world2minecraft.cli.from_plan import say_plan
+from world2minecraft.cli.reconstruct import say_plan
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.progress import silent
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects import read_objects, read_placements
-from world2minecraft.formats.room import read_room
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.floorplans import (
     PlanMismatchError,
     build_plan,
@@ -29,8 +29,8 @@ from world2minecraft.reconstruction.floorplans import (
     straightened,
     with_plan_openings,
 )
-from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 from world2minecraft.reconstruction.floorplans.furniture_categories import template_of
+from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import moved_plan
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import make_from_plan
@@ -132,9 +132,9 @@ def test_rooms_of_a_structure_are_parted_by_walls_and_joined_by_doors(tmp_path):
     path.write_text(json.dumps({"identifier": "x", "rooms": rooms, "walls": []}))
     grid = cells_of_plan(straightened(read_roomplan(path))).grid
     shoulder = grid.labels[:, :, round((1.5 - grid.origin_m[2]) / grid.voxel_m)]
-    assert connected_parts(shoulder == 0, corners=False)[1] == 1
+    assert label_components(shoulder == 0, corners=False)[1] == 1
     high = grid.labels[:, :, round((2.2 - grid.origin_m[2]) / grid.voxel_m)]
-    assert connected_parts(high == 0, corners=False)[1] == 2
+    assert label_components(high == 0, corners=False)[1] == 2
 
 
 def evidence_of(held, scan_to_room):

@@ -8,7 +8,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import MAX_ARRAY_BYTES
 from world2minecraft.core.types import PointEvidence
 from world2minecraft.reconstruction.fusion import EvidenceMap
-from world2minecraft.reconstruction.fusion.kernels import place_of
+from world2minecraft.reconstruction.fusion.integration import place_of
 from world2minecraft.reconstruction.fusion.voxel_blocks import BLOCK_CELLS, MAX_CELLS, SIDE, Blocks
 
 

@@ -13,7 +13,7 @@ from world2minecraft.reconstruction.fusion import (
     remove_floaters,
 )
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 CAMERA = Camera(80, 60, 70.0, 70.0, 40.0, 30.0)
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.types import PointEvidence
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
-from world2minecraft.reconstruction.fusion.kernels import place_of
+from world2minecraft.reconstruction.fusion.integration import place_of
 
 RULES = FuseParameters(min_points=3, min_share=0.1, nudge_m=0.01)
 seeds = st.integers(0, 10_000)

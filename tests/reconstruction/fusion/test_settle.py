@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.types import Camera, PointEvidence, View
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
 from world2minecraft.reconstruction.fusion.surface_decision import _depth_of_solid
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 CELL_M = 0.08
 CAMERA = Camera(160, 120, 140.0, 140.0, 80.0, 60.0)

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.reconstruction.floorplans import layouts_of
-from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
 from world2minecraft.reconstruction.homes import Run
 
 KITCHEN = (0.0, 0.0, 3.6, 2.8)

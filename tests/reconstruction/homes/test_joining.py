@@ -11,8 +11,8 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.formats.layout import read_layouts, write_layouts
 from world2minecraft.formats.objects import read_objects, write_objects, write_placements
-from world2minecraft.formats.room import read_room, write_room
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.formats.run_arrays import read_room, write_room
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.homes import (
     Move,
     merged,
@@ -21,7 +21,7 @@ from world2minecraft.reconstruction.homes import (
     place_runs,
     read_runs,
 )
-from world2minecraft.reconstruction.homes.fits import fits
+from world2minecraft.reconstruction.homes.room_placement import fits
 
 ANYWHERE = Move(3, (17, -40, 2))
 
@@ -96,7 +96,7 @@ def test_each_room_stays_as_it_was_and_doors_are_open():
         )
         assert np.array_equal(mine, theirs)
     shoulder = grid.labels[:, :, round((1.4 - grid.origin_m[2]) / grid.voxel_m)]
-    assert connected_parts(shoulder == 0, corners=False)[1] == 1
+    assert label_components(shoulder == 0, corners=False)[1] == 1
     assert len(home.run.layouts) == 3
     assert home.size_m == pytest.approx([5.2, 6.0, 2.5], abs=0.17)
     assert "2 doors between the rooms stand open" in home.told

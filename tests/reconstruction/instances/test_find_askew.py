@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.reconstruction.instances.askew import askew_rectangle
+from world2minecraft.reconstruction.instances.object_extent import askew_rectangle
 
 CHAIR = SemanticClass.CHAIR
 VOXEL_M = 0.08

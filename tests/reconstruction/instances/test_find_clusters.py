@@ -4,7 +4,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.reconstruction.instances.clusters import centroids, cluster_candidates
+from world2minecraft.reconstruction.instances.density_clustering import (
+    centroids,
+    cluster_candidates,
+)
 
 
 def _slow_clusters(points, radius, min_samples):

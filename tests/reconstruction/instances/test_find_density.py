@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.reconstruction.instances.density import (
+from world2minecraft.reconstruction.instances.density_clustering import (
     candidate_cells,
     density_map,
     object_cells,

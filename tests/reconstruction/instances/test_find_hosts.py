@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances.hosts import part_by_hosts
-from world2minecraft.reconstruction.instances.posts import join_posts
+from world2minecraft.reconstruction.instances.merge_pieces import join_posts
+from world2minecraft.reconstruction.instances.split_by_support import part_by_hosts
 
 SHAPE = (30, 30, 34)
 GREEN, BEIGE = (40, 120, 40), (220, 200, 150)

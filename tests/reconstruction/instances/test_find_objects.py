@@ -14,7 +14,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import cells_of, surface, template
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
 from world2minecraft.reconstruction.instances.denoise import without_specks
-from world2minecraft.reconstruction.instances.growth import grow
+from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 
 
 def grid_of(labels: np.ndarray) -> OccupancyGrid:
@@ -159,7 +159,7 @@ def test_growth_is_a_search_by_steps(seed):
     binary = labels > 0
     candidates = np.argwhere(binary & (rng.random(labels.shape) < 0.08)).astype(np.int32)
     clusters = rng.integers(-1, 3, len(candidates)).astype(np.int32)
-    found = grow(labels, binary, candidates, clusters)
+    found = assign_voxels(labels, binary, candidates, clusters)
     np.testing.assert_array_equal(found, _slow_growth(labels, candidates, clusters))
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import surface
-from world2minecraft.reconstruction.instances.rows import part_rows
+from world2minecraft.reconstruction.instances.cabinet_runs import part_rows
 
 
 def _room(*boxes):

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.instances.reach import layers_reached
+from world2minecraft.reconstruction.instances.object_extent import layers_reached
 
 TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
 

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.reconstruction.occupancy import PREDICTORS, predictor
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 DEPTH = Camera(32, 24, 30.0, 30.0, 16.0, 12.0)
 

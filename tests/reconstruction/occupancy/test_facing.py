@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import lift_depth, pixel_rays
-from world2minecraft.reconstruction.occupancy.facing import facing_of_depth
+from world2minecraft.reconstruction.occupancy.depth_evidence import facing_of_depth
 
 CAMERA = Camera(320, 240, 262.0, 262.0, 160.0, 120.0)
 ALL = np.arange(320 * 240, dtype=np.int32)

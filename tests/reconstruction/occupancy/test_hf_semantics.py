@@ -15,7 +15,7 @@ from world2minecraft.core.errors import (
     UsageError,
 )
 from world2minecraft.reconstruction.occupancy.label_names import label_classes, read_table
-from world2minecraft.reconstruction.occupancy.segmenters import segmenter
+from world2minecraft.reconstruction.occupancy.semantic_fusion import segmenter
 
 COLOUR = np.random.default_rng(3).integers(0, 256, (48, 64, 3), dtype=np.uint8)
 CLASSES = label_classes(NAMES, read_table()).matrix
@@ -77,7 +77,7 @@ def test_a_universal_one_says_what_the_librarys_own_read_out_says(folders, kind)
     got = model.predict(COLOUR, EACH)[..., : len(NAMES)]
     values = np.asarray(model.predict(COLOUR, EACH))
     assert values.shape == (*got.shape[:2], CLASS_COUNT)
-    from world2minecraft.external_models.pictures import prepared
+    from world2minecraft.external_models.transformers_hub import prepared
 
     with torch.inference_mode():
         pixels = torch.from_numpy(prepared(COLOUR, READY))

@@ -10,7 +10,8 @@ from tests.reconstruction.occupancy.tiny_network import write_network
 from tests.reconstruction.occupancy.tiny_segmenters import write_segmenter
 
 from world2minecraft.capture import write_plain
-from world2minecraft.reconstruction.occupancy import OccupyParameters, kept
+from world2minecraft.reconstruction.occupancy import OccupyParameters
+from world2minecraft.reconstruction.occupancy import semantic_fusion as kept
 from world2minecraft.reconstruction.occupancy.hf_segmenter import HuggingFaceSemantics
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct

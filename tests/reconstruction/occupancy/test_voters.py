@@ -12,16 +12,12 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.reconstruction.fusion import EvidenceMap
-from world2minecraft.reconstruction.occupancy import (
-    OccupyParameters,
-    kept,
-    notes_of,
-    predictor,
-    voters,
-)
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy import OccupyParameters, notes_of, predictor
+from world2minecraft.reconstruction.occupancy import semantic_fusion as kept
+from world2minecraft.reconstruction.occupancy import semantic_fusion as voters
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
-from world2minecraft.reconstruction.occupancy.voters import CellVoter, PixelVoter, spread
+from world2minecraft.reconstruction.occupancy.semantic_fusion import CellVoter, PixelVoter, spread
 
 ROOM = BoxRoom()
 

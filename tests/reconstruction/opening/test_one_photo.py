@@ -12,7 +12,7 @@ from tests.reconstruction.occupancy.tiny_network import FACTS, write_network
 from world2minecraft.capture import describe_capture
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.telling import summary_lines
+from world2minecraft.capture.summary import summary_lines
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera

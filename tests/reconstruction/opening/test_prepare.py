@@ -9,8 +9,8 @@ from PIL import Image
 from tests.exact_room import BoxRoom
 
 from world2minecraft.capture import open_scan, write_plain
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View

@@ -11,7 +11,7 @@ from world2minecraft.core.types import Camera, Corrections, Scan, View
 from world2minecraft.geometry.oriented_points import Surface, collect_surface
 from world2minecraft.reconstruction.registration import RegisterParameters, register, told
 from world2minecraft.reconstruction.registration import corrected_scan as corrected
-from world2minecraft.reconstruction.registration.refine import register_surface
+from world2minecraft.reconstruction.registration.pose_refinement import register_surface
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 SIZE_M = np.array([4.2, 3.1, 2.6])

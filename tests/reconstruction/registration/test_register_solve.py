@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from world2minecraft.reconstruction.registration.kernels import (
+from world2minecraft.reconstruction.registration.gauss_newton import (
+    Observations,
     apply_rows,
     frame_blocks,
     gather_rows,
+    solve,
     surfel_means,
 )
-from world2minecraft.reconstruction.registration.solve import Observations, solve
 from world2minecraft.reconstruction.registration.surfels import find_surfels
 
 FRAMES, SURFELS, COUNT = 4, 30, 400

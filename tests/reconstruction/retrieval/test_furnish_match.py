@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
 from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
-from world2minecraft.furniture.overlap import overlaps
+from world2minecraft.furniture.rasterization import overlaps
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import (
     FurnishParameters,

@@ -10,16 +10,14 @@ from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.reconstruction.semantics import labeller
 from world2minecraft.reconstruction.semantics.completion import (
+    WEIGHTS,
     CompletionLabeller,
+    CompletionModel,
     CompletionParameters,
+    likeliest,
     piece_votes,
 )
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
-from world2minecraft.reconstruction.semantics.completion_net import (
-    WEIGHTS,
-    CompletionModel,
-    likeliest,
-)
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
 from world2minecraft.reconstruction.stages import usual_labeller
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
-from world2minecraft.reconstruction.layout.outline import outline_of
+from world2minecraft.reconstruction.layout.room_layouts import outline_of
 from world2minecraft.reconstruction.semantics import find_structure
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.surface import profile
+from world2minecraft.capture.alignment.axis_profiles import profile
 from world2minecraft.geometry.oriented_points import Surface
 
 DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.places import face_place_m
-from world2minecraft.capture.alignment.surface import profile
+from world2minecraft.capture.alignment.axis_profiles import face_place_m, profile
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.geometry.oriented_points import Surface
 

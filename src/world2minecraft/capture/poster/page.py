@@ -22,9 +22,7 @@ from world2minecraft.capture.poster.canvas import (
     Point,
     Sheet,
 )
-from world2minecraft.capture.poster.looks_panel import draw_looks
-from world2minecraft.capture.poster.photos_panel import draw_bars, draw_photos
-from world2minecraft.capture.poster.plan_panel import draw_plan
+from world2minecraft.capture.poster.panels import draw_bars, draw_looks, draw_photos, draw_plan
 from world2minecraft.capture.poster_marker import MARK
 from world2minecraft.capture.quality.diagnostics import (
     ALONE_SHARE,
@@ -36,7 +34,7 @@ from world2minecraft.capture.quality.diagnostics import (
 )
 
 if TYPE_CHECKING:
-    from world2minecraft.capture.describing import CaptureSummary
+    from world2minecraft.capture.summary import CaptureSummary
 
 WIDTH_PX, HEIGHT_PX = 1600, 1040
 EDGE_PX = 40

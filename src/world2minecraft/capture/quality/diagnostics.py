@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.capture.quality.pictures import Picture
+from world2minecraft.capture.quality.picture_quality import Picture
 from world2minecraft.capture.quality.processing_route import Route
 from world2minecraft.capture.quality.survey import Survey
 from world2minecraft.core.errors import MissingExtraError

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.validation import JudgedCapture
 
 Kind = Literal["rgbd", "posed photos", "photos", "video", "unposed rgbd", "solid"]
 # Seconds on two cores: rgbd from the kitchen's 40 frames (10 s in all), pictures from 100 of a

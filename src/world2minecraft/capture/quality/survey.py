@@ -4,11 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.judged import JudgedCapture
-from world2minecraft.capture.quality.overlap import neighbour_shares
-from world2minecraft.capture.quality.pictures import Picture, look_at_pictures
+from world2minecraft.capture.quality.picture_quality import (
+    Picture,
+    look_at_pictures,
+    neighbour_shares,
+)
 from world2minecraft.capture.quality.top_view import Plan, plan_of
 from world2minecraft.capture.quality.view_directions import Directions, directions_of
+from world2minecraft.capture.validation import JudgedCapture
 
 PICTURES_POSED = 40  # Where poses tell what was seen, pictures are judged by a sample.
 

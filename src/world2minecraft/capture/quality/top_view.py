@@ -12,9 +12,9 @@ import numpy as np
 from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.alignment.gravity import frame_of_up
 from world2minecraft.capture.frames import FrameFiles
-from world2minecraft.capture.judged import JudgedCapture, spread_over
 from world2minecraft.capture.open_scan import ALIGNED_FRAMES
 from world2minecraft.capture.quality.view_directions import up_of_cameras
+from world2minecraft.capture.validation import JudgedCapture, spread_over
 from world2minecraft.capture.view_stream import CaptureViews
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError

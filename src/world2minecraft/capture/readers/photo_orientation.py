@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageOps
 
-from world2minecraft.capture.image_names import NamedByFile
-from world2minecraft.capture.images import ImageHeader, check_whole, opened_image
+from world2minecraft.capture.images import ImageHeader, NamedByFile, check_whole, opened_image
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera

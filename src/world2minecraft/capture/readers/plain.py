@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES
-from world2minecraft.capture.numbers import as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, UnknownNameError
 from world2minecraft.core.files import read_json, write_bytes, write_json

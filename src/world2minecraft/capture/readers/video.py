@@ -4,7 +4,12 @@
 found. They are decoded when they are read, upright, in the order of the video.
 """
 
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
+
+import numpy as np
+from scipy import fft
 
 from world2minecraft.capture.alignment.image_rotation import TurnedImage
 from world2minecraft.capture.frames import Capture, FrameFiles
@@ -12,11 +17,243 @@ from world2minecraft.capture.images import MAX_PIXELS, ImagePlace
 from world2minecraft.capture.options import LEAST_FRAMES, ScanOptions
 from world2minecraft.capture.poster_marker import lies_about
 from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open_movie
-from world2minecraft.capture.readers.motion import VideoLook, look_through, picked
 from world2minecraft.capture.readers.photo_orientation import DIAGONAL_MM
-from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import (
+    CaptureError,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
 from world2minecraft.core.types import Camera
+
+# How a video moves and how sharp its pictures are, and which of them to take.
+#
+# One pass over the video at low resolution. Motion is the shift of blocks of the picture against
+# the last reference picture, found by phase correlation: it sees walking, turning and coming nearer
+# alike, and a hand's shake does not add up. Sharpness is the strength of fine edges.
+
+SMALL_PX = 192  # The longer side of the small pictures.
+BLOCK = 48  # The side of a block of them; shifts of up to half of it are seen.
+LEAST_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
+NEW_REFERENCE = 0.04  # Of the longer side: less than this is a shaking hand.
+STEP = 0.12  # Of the longer side, from one picture taken to the next: seven eighths overlap.
+REACH = 0.4  # How far from its place, in steps, the sharpest picture is looked for.
+MAX_SECONDS = 3600.0
+SHARP_ROWS = 6  # Each sixth row tells the sharpness.
+
+
+@dataclass(frozen=True, eq=False)
+class VideoLook:
+    """What one pass over a video found, a value for each of its N pictures.
+
+    ``times`` int64 [N] in ticks of ``tick_s``, ascending; ``path`` float64 [N] is how far the view
+    has moved since the start, in shares of the longer side; ``sharpness`` float64 [N]. ``stated_s``
+    is the length that the file states, 0 where it does not; ``whole`` is false where decoding
+    broke off. ``quarter_turns`` turn its pictures upright, counter-clockwise.
+    """
+
+    size: tuple[int, int]
+    times: np.ndarray
+    tick_s: float
+    path: np.ndarray
+    sharpness: np.ndarray
+    stated_s: float
+    quarter_turns: int
+    metadata: dict[str, Any]
+    whole: bool
+
+    @property
+    def duration_s(self) -> float:
+        """From the first picture to the last, and one more."""
+        count = len(self.times)
+        if count < 2:
+            return 0.0
+        return float((self.times[-1] - self.times[0]) * self.tick_s * count / (count - 1))
+
+
+def look_through(path: AnyPath) -> VideoLook:
+    """Decode a video once, at low resolution; what was found is kept until its file changes.
+
+    Raises:
+        DamagedFileError: it is no video, holds no pictures or only sound. LimitError: its pictures
+            are too large, or it is over an hour long. InputError: it is missing.
+        MissingExtraError: ``av`` is not installed.
+    """
+    try:
+        found = (path.path if isinstance(path, ArchivePath) else path).stat()
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+    return _look(path, (found.st_size, found.st_mtime_ns))
+
+
+@lru_cache(maxsize=4)
+def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
+    try:
+        import av  # noqa: PLC0415
+        from av.error import FFmpegError  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingExtraError("reading videos", "capture") from error
+    failures = (FFmpegError, ValueError, IndexError, OSError)
+    try:
+        with path.open("rb") as file, av.open(file, "r") as container:
+            return _looked(path, container, failures)
+    except InputError:
+        raise
+    except failures as error:
+        reason = reason_of(error, 80)
+        raise DamagedFileError(path, f"is no whole video ({reason}); copy it again") from error
+
+
+def _looked(path: AnyPath, container: Any, failures: tuple[type[Exception], ...]) -> VideoLook:
+    if not container.streams.video:
+        kind = "sound only" if container.streams.audio else "no video"
+        raise DamagedFileError(path, f"holds {kind}; give a video of the room")
+    stream = container.streams.video[0]
+    size = (stream.codec_context.width, stream.codec_context.height)
+    if not 0 < size[0] * size[1] <= MAX_PIXELS:
+        raise LimitError(
+            path,
+            f"has pictures of {size[0]}x{size[1]}; at most 64 megapixels are read: make it smaller",
+        )
+    stated_s = (container.duration or 0) / 1e6  # Some containers state it for the whole alone.
+    if stream.duration:
+        stated_s = float(stream.duration * stream.time_base)
+    if stated_s > MAX_SECONDS:
+        raise LimitError(path, f"is {stated_s / 60:.0f} minutes long; at most 60 are read: cut it")
+    stream.thread_type = "AUTO"  # The pictures are the same on any number of threads.
+    times: list[int] = []
+    sharpness: list[float] = []
+    follower, turns, whole = _Follower(), 0, True
+    try:
+        for frame in container.decode(stream):
+            if frame.pts is None or (times and frame.pts <= times[-1]):
+                continue
+            light = _light(frame)
+            turns = turns if times else round(getattr(frame, "rotation", 0) / 90) % 4
+            times.append(frame.pts)
+            sharpness.append(_sharpness(light))
+            follower.add(_small(light))
+    except failures:
+        if not times:
+            raise
+        whole = False
+    metadata = {**container.metadata, **stream.metadata}
+    return VideoLook(
+        size, np.array(times, np.int64), float(stream.time_base), np.array(follower.path),
+        np.array(sharpness), stated_s, turns, metadata, whole,
+    )  # fmt: skip
+
+
+def _light(frame: Any) -> np.ndarray:
+    """Return the brightness plane as it lies in memory, uint8 [H, W], without a copy if it can."""
+    kind = frame.format
+    if not kind.name.startswith(("yuv", "gray", "nv12", "nv21")) or kind.components[0].bits > 8:
+        frame = frame.reformat(format="gray")
+    plane = frame.planes[0]
+    rows = np.frombuffer(plane, np.uint8).reshape(-1, plane.line_size)
+    return rows[: frame.height, : frame.width]
+
+
+def _sharpness(light: np.ndarray) -> float:
+    """Return the mean square of the second differences along some rows."""
+    rows = light[::SHARP_ROWS].astype(np.int16)
+    bent = (rows[:, 2:] - 2 * rows[:, 1:-1] + rows[:, :-2]).astype(np.float32)
+    return float((bent * bent).mean()) if bent.size else 0.0
+
+
+def _small(light: np.ndarray) -> np.ndarray:
+    """Return a picture of about ``SMALL_PX``: means along the rows, each n-th row."""
+    step = max(1, max(light.shape) // SMALL_PX)
+    height, width = (side // step * step for side in light.shape)
+    rows = light[step // 2 : height : step, :width]
+    return rows.reshape(len(rows), -1, step).mean(axis=2, dtype=np.float32)
+
+
+class _Follower:
+    """Adds up how far the view has moved."""
+
+    def __init__(self) -> None:
+        self.path: list[float] = []
+        self._gone = 0.0
+        self._reference: np.ndarray | None = None
+
+    def add(self, small: np.ndarray) -> None:
+        """Take the next picture."""
+        blocks = _spectra(small)
+        if self._reference is None:
+            self._reference = blocks
+            self.path.append(0.0)
+            return
+        moved = shift_of(self._reference, blocks) / max(small.shape)
+        last = self.path[-1]
+        if moved > NEW_REFERENCE:
+            self._gone = max(last, self._gone + moved)
+            self._reference = blocks
+            moved = 0.0
+        self.path.append(max(last, self._gone + moved))
+
+
+def _spectra(small: np.ndarray) -> np.ndarray:
+    """Return the spectra of B blocks of a small picture, complex [B, BLOCK, BLOCK // 2 + 1]."""
+    high, wide = (min(BLOCK, side) for side in small.shape)
+    window = np.outer(np.hanning(high), np.hanning(wide)).astype(np.float32)
+    tops = np.linspace(0, small.shape[0] - high, 3).astype(int)
+    lefts = np.linspace(0, small.shape[1] - wide, 4).astype(int)
+    blocks = np.stack([small[a : a + high, b : b + wide] for a in tops for b in lefts])
+    blocks = (blocks - blocks.mean(axis=(1, 2), keepdims=True)) * window
+    return np.asarray(fft.rfft2(blocks, (BLOCK, BLOCK)))
+
+
+def shift_of(first: np.ndarray, second: np.ndarray) -> float:
+    """Return by how many pixels blocks have moved between two pictures, the mean of those sure.
+
+    Args:
+        first: spectra of the blocks of one picture.
+        second: of the other, of the same shape.
+
+    Returns:
+        The mean length of the shifts; half a block where no block is found again.
+    """
+    cross = second * np.conj(first)
+    cross /= np.maximum(np.abs(cross), 1e-3)
+    peaks = np.asarray(fft.irfft2(cross, (BLOCK, BLOCK))).reshape(len(first), -1)
+    best = peaks.argmax(axis=1)
+    sure = peaks[np.arange(len(peaks)), best] > LEAST_PEAK
+    marked = np.abs(first[:, 1:4, 1:4]).mean(axis=(1, 2)) > 40.0
+    if not marked.any():
+        return 0.0  # Nothing to see: a covered lens, a bare wall.
+    if not (sure & marked).any():
+        return BLOCK / 2
+    v, u = np.divmod(best[sure & marked], BLOCK)
+    v, u = ((axis + BLOCK // 2) % BLOCK - BLOCK // 2 for axis in (v, u))
+    return float(np.hypot(v, u).mean())
+
+
+def picked(look: VideoLook, wanted: int) -> list[int]:
+    """Return which pictures to take, ascending: a steady way apart, each the sharpest near by.
+
+    Args:
+        look: of the video.
+        wanted: how many at most; a camera that moves little gives fewer.
+    """
+    way = float(look.path[-1]) if len(look.path) else 0.0
+    count = min(wanted, int(way / STEP) + 1, len(look.path))
+    if count < 2:
+        return [int(look.sharpness.argmax())] if len(look.path) else []
+    step = way / (count - 1)
+    chosen: list[int] = []
+    for place in np.arange(count) * step:
+        low = int(np.searchsorted(look.path, place - REACH * step))
+        high = int(np.searchsorted(look.path, place + REACH * step, side="right"))
+        near = np.arange(max(low, chosen[-1] + 1 if chosen else 0), high)
+        if len(near):
+            off = np.abs(look.path[near] - place) / step
+            chosen.append(int(near[(look.sharpness[near] * (1 - 0.5 * off)).argmax()]))
+    return chosen
+
 
 SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
 DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.

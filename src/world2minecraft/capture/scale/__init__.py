@@ -6,13 +6,13 @@ name, ``KnownPoints`` by two pixels.
 """
 
 from world2minecraft.capture.scale.estimate import ScaleEstimate, estimate_scale
-from world2minecraft.capture.scale.gathering import collect_unscaled, resized
 from world2minecraft.capture.scale.known_lengths import (
     Known,
     KnownPoints,
     length_between,
     parse_known,
 )
+from world2minecraft.capture.scale.measurements import collect_unscaled, resized
 
 __all__ = [
     "Known",

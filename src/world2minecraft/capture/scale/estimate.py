@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.capture.alignment.align import LEAST_POINTS, ImplausibleRoomError
 from world2minecraft.capture.scale import priors
 from world2minecraft.capture.scale.known_lengths import LEVELS, Known, candidates
-from world2minecraft.capture.scale.measures import Level, Measures, measure
+from world2minecraft.capture.scale.measurements import Level, Measures, measure
 from world2minecraft.capture.scale.posterior import log_density, posterior_of, summed
 from world2minecraft.geometry.oriented_points import Surface
 

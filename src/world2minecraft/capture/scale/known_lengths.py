@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.scale.measures import Measures
+from world2minecraft.capture.scale.measurements import Measures
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.capture.scale import priors
-from world2minecraft.capture.scale.measures import Measures
+from world2minecraft.capture.scale.measurements import Measures
 
 REACH = 1.2  # Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
 STEPS = 961

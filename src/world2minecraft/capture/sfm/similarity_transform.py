@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from world2minecraft.core.types import checks
-from world2minecraft.geometry.rotation import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_of_vector
 
 USUAL_TURN = 0.1  # Radians: sensors on one device look nearly the same way.
 ROUNDS = 60  # It settles to 1e-9 in about ten, with a mount in thirty.

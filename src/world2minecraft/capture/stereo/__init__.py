@@ -1,8 +1,12 @@
 """Depth of photos from each other: a plane sweep, semi-global matching and mutual agreement."""
 
-from world2minecraft.capture.stereo.alone import network_maps
-from world2minecraft.capture.stereo.guide import DEPTH_MODELS, DepthModel, depth_model
-from world2minecraft.capture.stereo.maps import depth_maps
+from world2minecraft.capture.stereo.depth_maps import depth_maps
+from world2minecraft.capture.stereo.monocular_depth import (
+    DEPTH_MODELS,
+    DepthModel,
+    depth_model,
+    network_maps,
+)
 from world2minecraft.capture.stereo.parameters import StereoParameters
 
 __all__ = [

@@ -3,12 +3,11 @@
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.stereo.guide import Kind
+from world2minecraft.capture.stereo.monocular_depth import Kind
 from world2minecraft.core.errors import InputError, first_line
 from world2minecraft.core.types import Camera
-from world2minecraft.external_models import hub
-from world2minecraft.external_models.pictures import prepared
-from world2minecraft.external_models.single_thread import single_thread
+from world2minecraft.external_models import transformers_hub as hub
+from world2minecraft.external_models.transformers_hub import prepared, single_thread
 
 # Models that give metres without saying so in their config. DepthPro gives inverse depth.
 METRIC_TYPES = ("zoedepth", "glpn")

@@ -4,7 +4,7 @@ import os
 from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.minecraft.server.address import note_of, parse_address
+from world2minecraft.minecraft.server.rcon import note_of, parse_address
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
@@ -43,9 +43,8 @@ def on_server(
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.editing.relocation import placed
     from world2minecraft.editing.world_build import built_mask
-    from world2minecraft.minecraft.losses import Losses
-    from world2minecraft.minecraft.server.building import LiveBuilder
-    from world2minecraft.minecraft.server.plan import plan_build
+    from world2minecraft.minecraft.file_format import Losses
+    from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
     from world2minecraft.minecraft.server.rcon import RconClient
     from world2minecraft.minecraft.versions import game_version
 

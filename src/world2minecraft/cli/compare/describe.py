@@ -96,7 +96,6 @@ def run(
 
 def photo_words(capture: Path, count: int, chat: object) -> str:
     """Return what a model says of photos spread over a capture."""
-    from world2minecraft.paper.layouts.describing import describe_photos
-    from world2minecraft.paper.layouts.photos import capture_photos
+    from world2minecraft.paper.layouts.describing import capture_photos, describe_photos
 
     return describe_photos(chat, capture_photos(capture, count))  # type: ignore[arg-type]

@@ -63,7 +63,7 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.metrics.image_quality import niqe_model
-    from world2minecraft.evaluation.metrics.image_quality.niqe_models import available_variants
+    from world2minecraft.evaluation.metrics.image_quality.niqe import available_variants
     from world2minecraft.minecraftocc.picture_sources import pictures_at
     from world2minecraft.minecraftocc.quality import (
         choose,

@@ -48,7 +48,7 @@ def run(
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.scoring import evaluate_reconstruction
     from world2minecraft.evaluation.scoring.foreign_method import evaluate_foreign, foreign_file
-    from world2minecraft.evaluation.scoring.stages import stage_losses
+    from world2minecraft.evaluation.scoring.stage_ablation import stage_losses
 
     foreign = foreign_file(out)
     if foreign is not None and stages:

@@ -65,8 +65,8 @@ def run(
     """
     from world2minecraft.furniture.user_import import Wish, adopt
     from world2minecraft.furniture.user_library import check_name
+    from world2minecraft.minecraft.file_format import Losses
     from world2minecraft.minecraft.formats import read_blocks
-    from world2minecraft.minecraft.losses import Losses
 
     chosen = check_name(name or source.stem.lower().replace("-", "_").replace(" ", "_"))
     target = check_free(chosen, force)

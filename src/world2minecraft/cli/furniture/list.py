@@ -34,7 +34,7 @@ def run(
     """
     from world2minecraft.core.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
-    from world2minecraft.furniture.listing import by_class, markdown
+    from world2minecraft.furniture.library import by_class, markdown
     from world2minecraft.furniture.user_library import own_files
 
     number = class_id(kind) if kind else None

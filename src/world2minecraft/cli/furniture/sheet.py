@@ -59,7 +59,7 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
     """
     from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.furniture.listing import by_class
+    from world2minecraft.furniture.library import by_class
     from world2minecraft.rendering.contact_sheet import contact_sheet, sheet_png
 
     found = by_class(templates).items()

@@ -54,7 +54,7 @@ def run(
 
     from world2minecraft.core.errors import UsageError
     from world2minecraft.paper import filled, read_results, read_table, table_names
-    from world2minecraft.paper.writing import as_latex, as_markdown, as_text, as_values
+    from world2minecraft.paper.table_writer import as_latex, as_markdown, as_text, as_values
 
     if markdown + latex + json_out > 1:
         raise UsageError("choose one of --markdown, --latex and --json")
@@ -77,7 +77,7 @@ def run(
 def _list() -> None:
     """Print a line a table: its number, name, title, and how much of it is filled."""
     from world2minecraft.paper import filled, read_table, table_names
-    from world2minecraft.paper.layout import lacking
+    from world2minecraft.paper.table_writer import lacking
 
     for name in table_names():
         table, ours = filled(read_table(name))

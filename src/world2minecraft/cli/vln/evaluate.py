@@ -81,11 +81,10 @@ def run(
         ServerError, BudgetError: the model cannot be asked.
     """
     from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.external_models.chat_endpoints import is_endpoint
-    from world2minecraft.navigation.agents.answering import ModelAnswerer
+    from world2minecraft.external_models.chat_transport import is_endpoint
+    from world2minecraft.navigation.agents.question_answering import ModelAnswerer
     from world2minecraft.navigation.records import read_items
-    from world2minecraft.navigation.running.evaluating import TRAININGS
-    from world2minecraft.navigation.running.picking import picked_items
+    from world2minecraft.navigation.running.item_evaluation import TRAININGS, picked_items
 
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
@@ -111,7 +110,7 @@ def _evaluate(
     target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
 ) -> None:
     from world2minecraft.cli.progress import shown
-    from world2minecraft.navigation.running.evaluating import evaluate, write_result
+    from world2minecraft.navigation.running.item_evaluation import evaluate, write_result
 
     with shown() as progress:
         found = evaluate(items, answerer, jobs=jobs, progress=progress)
@@ -123,8 +122,8 @@ def _baseline(
 ) -> "tuple[Any, list[Item]]":
     """Return a baseline and the items that it knows the task of."""
     from world2minecraft.core.errors import UnknownNameError, UsageError
-    from world2minecraft.external_models.chat_endpoints import ENDPOINTS
-    from world2minecraft.navigation.agents.answering import LetterAnswerer
+    from world2minecraft.external_models.chat_transport import ENDPOINTS
+    from world2minecraft.navigation.agents.question_answering import LetterAnswerer
     from world2minecraft.navigation.data.blind_baselines import NAMES, baseline_letters
 
     if name not in NAMES:

@@ -171,13 +171,13 @@ class _Grounds:
             body.close()
 
     def __call__(self, episode: "Episode") -> Any:
-        from world2minecraft.navigation.running.scene_ground import SceneGround
+        from world2minecraft.navigation.running.episode_ground import SceneGround
 
         key = (episode.scene, episode.move_set)
         if key not in self._grounds:
             scene = self.scene(episode.scene)
             if self._server:
-                from world2minecraft.navigation.server.ground import ServerGround
+                from world2minecraft.navigation.server.scene import ServerGround
 
                 self._grounds[key] = ServerGround(scene, episode.move_set)
             else:

@@ -50,9 +50,8 @@ def run(
     """
     from world2minecraft.core.files import write_json
     from world2minecraft.navigation.data.blind_baselines import baselines as score
-    from world2minecraft.navigation.data.leaks import leaks_of
-    from world2minecraft.navigation.data.statistics import statistics_of
-    from world2minecraft.navigation.data.statistics_text import figures, statistics_text
+    from world2minecraft.navigation.data.splits import leaks_of
+    from world2minecraft.navigation.data.statistics import figures, statistics_of, statistics_text
     from world2minecraft.navigation.records import read_items
 
     items = read_items(path)
@@ -64,7 +63,7 @@ def run(
         write_json(json_file, figures(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
     if plot is not None:
-        from world2minecraft.navigation.data.histograms import write_histograms
+        from world2minecraft.navigation.data.statistics import write_histograms
 
         write_histograms(items, plot)
         print(f"  wrote  {plot}")

@@ -38,9 +38,9 @@ from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Part, Template, template
 from world2minecraft.furniture.solids import OWN_CELLS, own_cells
-from world2minecraft.geometry.padded_morphology import beside
-from world2minecraft.minecraft.displays import VIEW_BLOCKS
-from world2minecraft.minecraft.glow import is_luminous
+from world2minecraft.geometry.morphology import dilate_faces
+from world2minecraft.minecraft.entities import VIEW_BLOCKS
+from world2minecraft.minecraft.visual_shapes import is_luminous
 
 # Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
 MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
@@ -76,7 +76,7 @@ class DisplayBuilder:
         self.free = free
         self.canvas, self.grid, self.palette, self.parameters = canvas, grid, palette, parameters
         self.colours, self.coloured = colours, coloured
-        self.exposed = coloured & beside(free)
+        self.exposed = coloured & dilate_faces(free)
         self.paints = chair_paints(grid, colours, self.exposed, parameters.lightness_weight)
         self.instances = {one.id: one for one in instances}
         self.settler = Settler(canvas, grid)
@@ -197,7 +197,7 @@ class DisplayBuilder:
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             own = self.shown & (self.grid.instance == key & 0xFFFF) & (self.grid.instance > 0)
-            cells = np.argwhere(rest & (keys == key) & ~beside(own))
+            cells = np.argwhere(rest & (keys == key) & ~dilate_faces(own))
             if len(cells) >= LEFT_CELLS:
                 self.put_cells(cells, key >> 16, key & 0xFFFF)
 
@@ -226,7 +226,7 @@ class DisplayBuilder:
     def _contradicted(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
         """Return the share of a template's volume that was seen free, well off its own cells."""
         own = self.grid.instance == placement.object_id
-        free = self.free & ~beside(beside(own))
+        free = self.free & ~dilate_faces(dilate_faces(own))
         step = FREE_SHARE * self.grid.voxel_m
         inside = total = 0.0
         for part in parts:

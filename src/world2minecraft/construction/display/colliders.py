@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.construction.canvas import BARRIER, LIGHT, Canvas
 from world2minecraft.construction.display.frame import Frame, Piece, boxes_in_room
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.minecraft.glow import is_luminous
+from world2minecraft.minecraft.visual_shapes import is_luminous
 
 FINE = 8  # Samples along the side of a block.
 COVERED = 0.25  # Share of a block's face, seen along its best axis; as objects from cells have it.

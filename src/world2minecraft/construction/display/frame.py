@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, room_to_block, rotation_about_z
 from world2minecraft.core.types import Entity
-from world2minecraft.minecraft.displays import block_display
+from world2minecraft.minecraft.entities import block_display
 
 
 class Piece(NamedTuple):

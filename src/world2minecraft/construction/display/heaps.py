@@ -8,7 +8,7 @@ from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.surfaces import painted
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 MOST_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
 
@@ -77,7 +77,7 @@ def without_specks(cells: np.ndarray, least: int) -> np.ndarray:
     low = cells.min(axis=0)
     mask = np.zeros(cells.max(axis=0) - low + 1, bool)
     mask[tuple((cells - low).T)] = True
-    parts, _ = connected_parts(mask)
+    parts, _ = label_components(mask)
     sizes = np.bincount(parts.ravel())
     numbers = parts[tuple((cells - low).T)]
     kept: np.ndarray = cells[sizes[numbers] >= least]

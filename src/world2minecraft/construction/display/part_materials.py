@@ -13,7 +13,7 @@ from world2minecraft.furniture import Part, Template
 from world2minecraft.furniture.materials import FIXED, Material, swatches
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
-from world2minecraft.minecraft.glow import is_luminous
+from world2minecraft.minecraft.visual_shapes import is_luminous
 
 # Squared distance by which a block of the role's own kind may lie farther off than the nearest
 # block of all that its class may be of: so wood stays wood, and a red door turns red concrete.

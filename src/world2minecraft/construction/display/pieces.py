@@ -11,9 +11,7 @@ import numpy as np
 
 from world2minecraft.construction.display.frame import Piece
 from world2minecraft.furniture import Part
-from world2minecraft.geometry.boxes import partition
-from world2minecraft.geometry.coarse import coarsened
-from world2minecraft.geometry.covers import cover
+from world2minecraft.geometry.box_decomposition import cover_boxes, partition_boxes, simplify_boxes
 
 LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
 FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
@@ -38,9 +36,9 @@ def pieces_of(
     names = sorted(set(states))
     numbers = [names.index(state) + 1 for state in states]
     labels, planes = _cut(parts, numbers)
-    boxes = partition(labels)
+    boxes = partition_boxes(labels)
     if len(boxes) > most:  # Only then boxes may overlap, as those of a round table's top do.
-        boxes = min(boxes, cover(labels), _whole(parts, numbers, planes), key=len)
+        boxes = min(boxes, cover_boxes(labels), _whole(parts, numbers, planes), key=len)
     if len(boxes) > most:
         coarse, fine = _coarse(labels, planes, most)
         if len(coarse) < len(boxes):
@@ -107,7 +105,7 @@ def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, 
         middles = (edges[:-1] + edges[1:]) / 2
         picks.append(np.clip(np.searchsorted(each, middles) - 1, 0, len(each) - 2))
         fine.append(edges)
-    fewer = coarsened(labels[np.ix_(*picks)], LEAST_IOU, enough=most)
+    fewer = simplify_boxes(labels[np.ix_(*picks)], LEAST_IOU, enough=most)
     return fewer, (fine[0], fine[1], fine[2])
 
 
@@ -138,8 +136,8 @@ def heap_pieces(
         low_m: float64 [3], the corner of cell (0, 0, 0) in the object's frame.
         cell_m: the side of a cell.
     """
-    boxes = coarsened(labels, LEAST_IOU, open_cells)
-    exact = partition(labels)
+    boxes = simplify_boxes(labels, LEAST_IOU, open_cells)
+    exact = partition_boxes(labels)
     if len(exact) <= len(boxes):
         boxes = exact
     corners = np.tile(low_m, 2) + boxes[:, 1:] * cell_m

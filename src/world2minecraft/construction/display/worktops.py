@@ -15,7 +15,7 @@ from world2minecraft.construction.display.frame import Frame, Piece
 from world2minecraft.construction.worktops import Worktop
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.geometry.boxes import partition
+from world2minecraft.geometry.box_decomposition import partition_boxes
 
 COUNTER = "counter"
 REACHES_M = 0.2  # A row whose top is this near to a worktop's carries it.
@@ -57,7 +57,7 @@ def plate_pieces(
     """
     if top.plan is None or not (top.plan & ~covered).any():
         return None
-    boxes = partition((top.plan & ~covered)[:, :, None].astype(np.int32))
+    boxes = partition_boxes((top.plan & ~covered)[:, :, None].astype(np.int32))
     low, high = boxes[:, 1:3].min(axis=0), boxes[:, 4:6].max(axis=0)
     size = (high - low) * grid.voxel_m
     base = np.array([*(grid.origin_m[:2] + low * grid.voxel_m + size / 2), top.top_m - PLATE_M])

@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.construction.fitting.problem import WAYS, Problem
 from world2minecraft.construction.fitting.shapes import ShapeSet
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
 LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
@@ -96,4 +96,4 @@ def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
         between[axis] = slice(1, None, 2)
         meet = contact[2 * axis][grid[tuple(inner)], grid[tuple(outer)]]
         board[tuple(between)] = meet
-    return connected_parts(board, corners=False)[0][::2, ::2, ::2]
+    return label_components(board, corners=False)[0][::2, ::2, ::2]

@@ -4,13 +4,19 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 ``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.
 """
 
-from world2minecraft.core.types.capture import Camera, Scan, View, ViewStream
-from world2minecraft.core.types.corrections import Corrections
+from world2minecraft.core.types.capture import Camera, Corrections, Scan, View, ViewStream
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
-from world2minecraft.core.types.evidence import FusedEvidence, GridEvidence, PointEvidence
-from world2minecraft.core.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
 from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
+from world2minecraft.core.types.occupancy import (
+    COMPLETED,
+    OBSERVED,
+    UNSEEN,
+    FusedEvidence,
+    GridEvidence,
+    OccupancyGrid,
+    PointEvidence,
+)
 from world2minecraft.core.types.photos import DepthMap, Photo, PhotoStream, SparseScene
 from world2minecraft.core.types.volume import AIR, BlockEntity, BlockVolume, Entity
 

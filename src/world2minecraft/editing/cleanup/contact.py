@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 GAP = 1 / 8  # Blocks: shapes nearer than this touch for the eye. A fence's bar is 1/8 thick.
 # Half of the 26 neighbours: the others are these, seen from the other side.

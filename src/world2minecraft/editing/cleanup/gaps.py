@@ -11,7 +11,7 @@ from world2minecraft.core.types import Blocks
 from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import move
 from world2minecraft.minecraft.block_states import known_blocks
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 DOWN = np.array([0, -1, 0])
 PLATE = 0.26  # What is no higher than this, in blocks, is a plate: a trapdoor, a carpet.

@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import blocks_in, free_cells, structure_of
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 HOLE_M = 0.5  # A hole is no larger than a square of this side.
 SHELLS = (SemanticClass.WALL, SemanticClass.FLOOR, SemanticClass.CEILING)
@@ -29,7 +29,7 @@ def _close_in_plane(
     draft: Draft, solid: np.ndarray, free: np.ndarray, axis: int, layer: int
 ) -> None:
     plane = np.take(solid, layer, axis)
-    gaps, count = connected_parts(~plane, corners=False)
+    gaps, count = label_components(~plane, corners=False)
     sizes = np.bincount(gaps.ravel(), minlength=count + 1)
     most = blocks_in(draft, HOLE_M) ** 2
     border = np.unique(np.concatenate([gaps[0], gaps[-1], gaps[:, 0], gaps[:, -1]]))

@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import crumb_blocks, structure_of, take_away, things_of
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 CUT_SHARE = 0.25  # A piece of at most this share of its object is what was cut off.
@@ -26,7 +26,7 @@ def trim_cut_off(draft: Draft) -> None:
         if not number:
             continue
         own = things & (draft.instance == number)
-        pieces, count = connected_parts(own)
+        pieces, count = label_components(own)
         if count < 2:
             continue
         sizes = np.bincount(pieces.ravel(), minlength=count + 1)

@@ -16,7 +16,7 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.floaters import find_floaters
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.
 TIE = 0.03  # Nearer than this, noise decides between two.
@@ -161,7 +161,7 @@ KINDS: tuple[Callable[[SceneDraft], Iterator[Doubt]], ...] = (
 
 def _parts(mask: np.ndarray, least: int, most: int | None = None) -> Iterator[np.ndarray]:
     """Yield the cells int [N, 3] of each connected part of a mask that has so many."""
-    parts, count = connected_parts(mask)
+    parts, count = label_components(mask)
     at = np.argwhere(parts > 0)
     if not count:
         return

@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.classes import STRUCTURE_CLASSES
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.planes import WALL_M2
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 # A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
 # lost their hold: so one looks before deleting, and does not begin with large ones.
@@ -33,7 +33,7 @@ class Floater:
 def find_floaters(draft: SceneDraft, max_cells: int = MAX_CELLS) -> list[Floater]:
     """Return the pieces of at most ``max_cells`` that hold to nothing, the largest first."""
     occupied = (draft.labels > 0) & (draft.labels < 255)
-    parts, count = connected_parts(occupied)
+    parts, count = label_components(occupied)
     sizes = np.bincount(parts.ravel(), minlength=count + 1)
     sizes[0] = 0
     small = (sizes > 0) & (sizes <= max_cells)

@@ -26,7 +26,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.planes import WALL_CLASSES, Plane
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
 HIDDEN_M2 = 4.0  # No piece of furniture is larger.
@@ -86,7 +86,7 @@ def hole_cells(draft: SceneDraft, gaps: PlaneGaps, mask: np.ndarray) -> np.ndarr
 
 def gap_at(gaps: PlaneGaps, place: tuple[int, int]) -> np.ndarray:
     """Return the gap bool [A, B], hole or opening, that a place of the plane is in; or nothing."""
-    parts = connected_parts(gaps.holes | gaps.openings, corners=False)[0]
+    parts = label_components(gaps.holes | gaps.openings, corners=False)[0]
     return (parts == parts[place]) & (parts > 0)
 
 
@@ -147,7 +147,7 @@ def _sides(bounds: np.ndarray) -> np.ndarray:
 
 def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
     """The parts, joined by edges, of a mask bool [A, B] that have at most so many cells."""
-    parts = connected_parts(mask, corners=False)[0]
+    parts = label_components(mask, corners=False)[0]
     small = np.bincount(parts.ravel()) <= most
     small[0] = False
     return small[parts]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 Box = tuple[slice, slice, slice]
 
@@ -29,7 +29,7 @@ def parts_of_cells(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarr
     mask = np.zeros(tuple(high - low + 1), bool)
     at = tuple((cells - low).T)
     mask[at] = True
-    numbers = connected_parts(mask, corners=corners)[0][at]
+    numbers = label_components(mask, corners=corners)[0][at]
     order = np.argsort(numbers, kind="stable")
     breaks = np.flatnonzero(np.diff(numbers[order])) + 1
     return np.split(order, breaks)
@@ -40,7 +40,7 @@ def component_of(labels: np.ndarray, seed: tuple[int, int, int]) -> np.ndarray:
 
     ``labels`` is uint8 [X, Y, Z]; the page finds the same in the browser.
     """
-    numbers = connected_parts(labels == labels[seed], corners=False)[0]
+    numbers = label_components(labels == labels[seed], corners=False)[0]
     return np.argwhere(numbers == numbers[seed]).astype(np.int32)
 
 

@@ -19,7 +19,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.editing.scene.draft import SceneDraft
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 FLOOR_M2 = 1.0  # Less is a step or a landing's edge.
 WALL_M2 = 0.5  # As the smallest wall that stage 4 calls one.
@@ -135,7 +135,7 @@ Region = tuple[tuple[int, int], tuple[int, int], int]
 
 def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
     """The corners and the area of each large flat region of a layer, bool [A, B]."""
-    parts, count = connected_parts(flat)
+    parts, count = label_components(flat)
     found = []
     for number, box in enumerate(ndimage.find_objects(parts, count), 1):
         if (parts[box] == number).sum() < least:

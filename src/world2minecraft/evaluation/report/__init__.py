@@ -4,7 +4,6 @@ It tells a person at a glance whether the room came out right, and a program in 
 without photos has a brief one.
 """
 
-from world2minecraft.evaluation.report.brief import write_brief_report
-from world2minecraft.evaluation.report.write import write_report
+from world2minecraft.evaluation.report.writer import write_brief_report, write_report
 
 __all__ = ["write_brief_report", "write_report"]

@@ -14,10 +14,9 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
-from world2minecraft.formats.evidence import read_evidence
+from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_objects, read_placements
-from world2minecraft.formats.room import read_room
-from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.run_arrays import read_evidence, read_room
 from world2minecraft.formats.scan import read_room_size
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.minecraft.schematics.sponge import read_schem

@@ -24,12 +24,12 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNam
 from world2minecraft.core.files import array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import LayoutObject, OccupancyGrid
 from world2minecraft.core.types.checks import floats, positive, transform
-from world2minecraft.evaluation.scoring.frame_error import frame_error
-from world2minecraft.evaluation.scoring.objects import object_counts, object_facts
+from world2minecraft.evaluation.scoring.object_scores import object_counts, object_facts
+from world2minecraft.evaluation.scoring.pose_errors import frame_error
 from world2minecraft.evaluation.scoring.score import HOW, cell_facts, headline, see_truth
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import all_frames
-from world2minecraft.formats.occupancy import DEFAULT_VOXEL_M, labels_grid
+from world2minecraft.formats.occupancy_files import DEFAULT_VOXEL_M, labels_grid
 
 LABELS = ("labels.npz", "labels.npy")
 OBJECTS = "objects.json"

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
 from world2minecraft.evaluation.metrics.calibration import count_calibration
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
@@ -22,23 +23,63 @@ from world2minecraft.evaluation.metrics.surface import (
     free_space_recall,
 )
 from world2minecraft.evaluation.metrics.truth import carry_truth
-from world2minecraft.evaluation.scoring.frame_error import frame_error
-from world2minecraft.evaluation.scoring.layout import in_room, layout_facts
-from world2minecraft.evaluation.scoring.objects import (
+from world2minecraft.evaluation.scoring.object_scores import (
     TrueObjects,
+    in_room,
+    layout_facts,
     object_counts,
     object_facts,
     true_objects,
 )
 from world2minecraft.evaluation.scoring.openings import opening_facts
-from world2minecraft.evaluation.scoring.poses import pose_facts
+from world2minecraft.evaluation.scoring.pose_errors import frame_error, pose_facts
 from world2minecraft.evaluation.scoring.truth import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame, truth_of_run, used_frames
 from world2minecraft.evaluation.scoring.visibility import CROSSED, Reached, reached_cells
-from world2minecraft.evaluation.scoring.world import world_facts
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects import read_objects
-from world2minecraft.formats.room import read_room
+from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.formats.scene import Scene, read_scene
+
+# How much of the true room stands in the blocks of the world that was built.
+
+NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
+
+
+def world_facts(out: Path, true_labels: np.ndarray, reached: Reached) -> dict[str, Any]:
+    """Return the shares of seen true surface that blocks stand for; empty where none were built.
+
+    ``explained`` cells lie within one cell of a block of any class, ``right_class`` ones within
+    one cell of a block of their own.
+
+    Args:
+        out: the folder of the run.
+        true_labels: uint8 [X, Y, Z] in the box of ``reached``.
+        reached: where rays came; only cells in which one met a surface are asked for.
+    """
+    if not (out / "build" / "scene.json").is_file():
+        return {}
+    scene = read_scene(out / "build")
+    cells = np.argwhere(reached.met & (true_labels > 0) & (true_labels != UNKNOWN))
+    if not len(cells):
+        return {"explained": 1.0, "right_class": 1.0}
+    wanted = true_labels[tuple(cells.T)]
+    centers_m = cell_centers_m(cells, reached.low * reached.voxel_m, reached.voxel_m)
+    explained, right = np.zeros(len(cells), bool), np.zeros(len(cells), bool)
+    for step in NEAR:
+        block = class_at(scene, centers_m + step * reached.voxel_m)
+        explained |= block > 0
+        right |= block == wanted
+    return {"explained": float(explained.mean()), "right_class": float(right.mean())}
+
+
+def class_at(scene: Scene, points_m: np.ndarray) -> np.ndarray:
+    """Return the class of the block that holds each room point [N, 3]; 0 where there is none."""
+    blocks = np.floor(apply(invert(scene.block_to_room), points_m) - scene.corner + 1e-9)
+    inside = np.asarray(((blocks >= 0) & (blocks < scene.semantic.shape)).all(axis=1))
+    at = np.where(inside[:, None], blocks, 0).astype(np.int64)
+    return np.where(inside, scene.semantic[tuple(at.T)], 0)
+
 
 HOW = (
     "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "

@@ -6,9 +6,8 @@ short, a mattress of wool lies on a frame, under a blanket in the bed's colour.
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import backrest, lay_back, legs, part, slab
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.laying import lay_back
-from world2minecraft.furniture.shapes import backrest, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
 
 MATTRESS = {"mattress_height": Span(0.3, 0.5, 0.7)}

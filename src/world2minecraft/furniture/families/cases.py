@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import legs, part, slab
 from world2minecraft.furniture.families.fronts import (
     Body,
     body_of,
@@ -17,7 +18,6 @@ from world2minecraft.furniture.families.fronts import (
     panels,
 )
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.shapes import legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part
 
 DOOR_M, HANDLE_M, GAP_M, LID_M = 0.02, 0.02, 0.008, 0.04

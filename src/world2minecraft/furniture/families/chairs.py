@@ -6,9 +6,18 @@ three on legs, a seat at its height and a back.
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import (
+    arms,
+    backrest,
+    column,
+    lay_back,
+    lay_legs,
+    lay_plate,
+    legs,
+    part,
+    slab,
+)
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.laying import lay_back, lay_legs, lay_plate
-from world2minecraft.furniture.shapes import arms, backrest, column, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 FINE = 3.0  # Blocks per metre from which a leg is a post of its own.

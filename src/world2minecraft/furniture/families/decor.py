@@ -2,9 +2,9 @@
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import column, part, slab
 from world2minecraft.furniture.families.fronts import body_of
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.shapes import column, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 FINE = 3.0  # Blocks per metre from which small parts are blocks of their own.

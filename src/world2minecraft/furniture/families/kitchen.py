@@ -6,6 +6,7 @@ worktops do over the doors below.
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.families.fronts import (
     Body,
     body_of,
@@ -15,7 +16,6 @@ from world2minecraft.furniture.families.fronts import (
     panels,
 )
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 LIP_M, TOP_M = 0.03, 0.04

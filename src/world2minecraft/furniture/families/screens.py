@@ -6,9 +6,8 @@ post, so that is a panel, or at few blocks a metre a whole block: a panel is bro
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import lay_legs, part, slab
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.laying import lay_legs
-from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 THICK = 0.3  # Blocks: a screen this deep is a whole block.

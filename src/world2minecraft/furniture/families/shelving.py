@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import arms, backrest, part, slab
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.shapes import arms, backrest, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 BOARD_M, POST_M = 0.03, 0.04

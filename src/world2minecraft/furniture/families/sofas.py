@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import FACING, Plan, Side
+from world2minecraft.furniture.box_primitives import arms, backrest, part, slab
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.shapes import arms, backrest, part, slab
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
 
 FINE = 3.0  # Blocks per metre from which a seat has layers of its own.

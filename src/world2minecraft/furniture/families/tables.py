@@ -6,9 +6,18 @@ higher than a block it is a trestle of stairs turned upside down.
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
+from world2minecraft.furniture.box_primitives import (
+    arms,
+    backrest,
+    column,
+    lay_legs,
+    lay_plate,
+    lay_trestle,
+    legs,
+    part,
+    slab,
+)
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.laying import lay_legs, lay_plate, lay_trestle
-from world2minecraft.furniture.shapes import arms, backrest, column, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 CUT = 0.3  # 1 - 1/sqrt(2): where the sides of an octagon in a unit square begin.

@@ -25,8 +25,7 @@ from world2minecraft.minecraft.bedrock.block_entities import (
 from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, java_of_bedrock
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.nbt import NbtLimits
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.unlabelled_volume import check_size, palette_of, unlabelled

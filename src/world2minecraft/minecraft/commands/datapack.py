@@ -26,7 +26,7 @@ from world2minecraft.minecraft.commands.writer import (
     entity_commands,
     entity_tag,
 )
-from world2minecraft.minecraft.displays import check_displays
+from world2minecraft.minecraft.entities import check_displays
 from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
 
 MAX_COMMANDS = 60_000  # Below maxCommandChainLength, 65,536, which counts a whole chain.

@@ -14,9 +14,8 @@ from world2minecraft.minecraft.commands.writer import (
     entity_commands,
     entity_tag,
 )
-from world2minecraft.minecraft.displays import check_displays
-from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.entities import check_displays
+from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
 CHAIN_LIMIT = 65_536  # The most commands that the game runs of one function.

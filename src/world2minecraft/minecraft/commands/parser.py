@@ -23,8 +23,8 @@ from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.commands.snbt import SnbtReader
-from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.sign_texts import signs_of_commands
+from world2minecraft.minecraft.file_format import Losses
+from world2minecraft.minecraft.signs import signs_of_commands
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     check_size,

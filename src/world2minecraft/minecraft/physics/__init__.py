@@ -5,8 +5,8 @@ collision boxes of blocks, ``BoxWorld`` those of a list. ``standing_place`` find
 """
 
 from world2minecraft.minecraft.physics.body import TICKS_PER_S, Body, Keys, body_box, eye_height
+from world2minecraft.minecraft.physics.collisions import BlockWorld, BoxWorld, World, standing_place
 from world2minecraft.minecraft.physics.player_motion import step
-from world2minecraft.minecraft.physics.world import BlockWorld, BoxWorld, World, standing_place
 
 __all__ = [
     "TICKS_PER_S",

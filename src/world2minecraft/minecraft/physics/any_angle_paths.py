@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.physics.graph import WalkGraph
 from world2minecraft.minecraft.physics.shortest_paths import pop, push
+from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 
 LEAST_GAIN_M = 1e-9
 SAME = 1e-9  # Shares of a way that differ by less are one: there it passes a place.

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.physics.body import TOUCH
-from world2minecraft.minecraft.physics.columns import Solid
+from world2minecraft.minecraft.physics.walk_graph import Solid
 
 
 def bodies_fit(

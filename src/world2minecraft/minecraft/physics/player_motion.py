@@ -25,8 +25,7 @@ from world2minecraft.minecraft.physics.body import (
     Keys,
     body_box,
 )
-from world2minecraft.minecraft.physics.sweep import climbed, overlapping, swept
-from world2minecraft.minecraft.physics.world import World
+from world2minecraft.minecraft.physics.collisions import World, climbed, overlapping, swept
 
 _MARGIN = 1.0  # Blocks around what a tick can reach.
 
@@ -41,7 +40,7 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
         scale: how many times larger than the game's the player is; speeds grow alike.
 
     Example:
-        >>> from world2minecraft.minecraft.physics.world import BoxWorld
+        >>> from world2minecraft.minecraft.physics.collisions import BoxWorld
         >>> floor = BoxWorld([[-9, -1, -9, 9, 0, 9]])
         >>> step(floor, Body((0, 0, 0), on_ground=True), Keys(forward=True)).position
         (0.0, 0.0, 0.098)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 
 
 class WalkPath(NamedTuple):

@@ -7,15 +7,217 @@ posts of walls; the halves of doors and of double chests; the distance of leaves
 on grass; the smoke of campfires on hay. Redstone is left alone. docs/states.md has the rules.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.errors import LimitError
+from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.rules import traits
-from world2minecraft.minecraft.rules.board import Board
-from world2minecraft.minecraft.rules.supports import DOWN, EAST, NORTH, OPPOSITE, SOUTH, UP, WEST
-from world2minecraft.minecraft.rules.traits import SIDES, TYPES
+from world2minecraft.minecraft.rules.name_patterns import is_among
+from world2minecraft.minecraft.rules.supports import (
+    DIRECTIONS,
+    DOWN,
+    EAST,
+    NORTH,
+    OPPOSITE,
+    SOUTH,
+    STEPS,
+    UP,
+    WEST,
+    faces_of,
+)
+
+# What the rules of connection ask of a block state by itself, each as a small number.
+#
+# A block is taken for a stair, a fence and so on by its name's end and by having the properties of
+# one, so mods' and newer games' blocks that keep to the game's names are joined as well.
+
+(OTHER, STAIRS, PANE, FENCE, BRICK_FENCE, GATE, WALL, DOOR, CHEST, LEAVES, SNOWY, CAMPFIRE,
+ LOG, OLD_WALL) = range(14)  # fmt: skip
+SIDES = DIRECTIONS[:4]
+TYPES = ("single", "left", "right")
+_ENDS = (  # The end of the name, the properties that it needs, and the kind.
+    ("_stairs", ("facing", "half", "shape"), STAIRS),
+    ("_pane", SIDES, PANE),
+    ("_bars", SIDES, PANE),
+    ("nether_brick_fence", SIDES, BRICK_FENCE),
+    ("_fence", SIDES, FENCE),
+    ("_fence_gate", ("facing", "in_wall"), GATE),
+    ("_wall", (*SIDES, "up"), WALL),
+    ("_door", ("facing", "half", "hinge", "open"), DOOR),
+    ("chest", ("facing", "type"), CHEST),
+    ("_leaves", ("distance",), LEAVES),
+    ("", ("snowy",), SNOWY),
+    ("campfire", ("signal_fire",), CAMPFIRE),
+)
+
+
+class Traits(NamedTuple):
+    """Numbers that say all that a neighbour needs to know of a state."""
+
+    kind: int = OTHER
+    block: int = 0  # the same for states of one block
+    facing: int = -1  # 0 north, 1 east, 2 south, 3 west
+    top: int = 0  # a stair's half or a door's
+    sturdy: int = 0  # bits by direction: a full face, of a block that is joined at all
+    arms: int = 0  # bits: the lower face from its middle to the four sides; 16 for the middle
+    post: int = 0  # raises the post of a wall under it
+    up: int = 0  # a wall's own post
+    variant: int = 0  # a chest's type; leaves' distance; 1 for snow and hay
+
+
+@lru_cache(maxsize=1 << 16)
+def traits_of(text: str) -> Traits:
+    """Return the traits of a block state; ``block`` is 0 and is numbered by who compares blocks.
+
+    Raises:
+        UsageError: the text is no block state.
+    """
+    state = complete(parse_state(text))
+    values = dict(state.properties)
+    kind = _kind(state.name, values)
+    if kind in (STAIRS, GATE, DOOR, CHEST) and values["facing"] not in SIDES:
+        kind = OTHER
+    faces = faces_of(str(state))
+    joined = not is_among(state.name, "unjoinable")
+    arms = sum(1 << side for side, held in enumerate(faces.down_arms) if held)
+    return Traits(
+        kind=kind,
+        facing=SIDES.index(values["facing"]) if values.get("facing") in SIDES else -1,
+        top=int(values.get("half") in ("top", "upper")),
+        sturdy=sum(1 << way for way, held in enumerate(faces.full) if held and joined),
+        arms=arms,
+        post=int(is_among(state.name, "wall_posts")),
+        up=int(kind == WALL and values.get("up") == "true"),
+        variant=_variant(state.name, kind, values),
+    )
+
+
+def _kind(name: str, values: dict[str, str]) -> int:
+    for end, needed, kind in _ENDS:
+        if name.endswith(end) and all(key in values for key in needed):
+            if kind == WALL and values["north"] in ("true", "false"):
+                return OLD_WALL  # Of 1.15 and older: its sides are not low or tall.
+            return kind
+    return LOG if is_among(name, "logs") else OTHER
+
+
+def _variant(name: str, kind: int, values: dict[str, str]) -> int:
+    if kind == CHEST:
+        return TYPES.index(values["type"]) if values["type"] in TYPES else 0
+    if kind == OTHER:
+        return int(is_among(name, "snow")) + 2 * (name == "minecraft:hay_block")
+    return 0
+
+
+# A volume of block states while rules change it by looking at neighbours.
+#
+# Directions are those of ``supports``: north, east, south, west, up, down.
+
+MOST_STATES = 1 << 16  # A volume's states are uint16.
+_NONE = np.empty(0, np.int32)
+
+
+class Board:
+    """A volume with a rim of air around it, whose states are changed by kind.
+
+    Cells are numbers into ``flat``, the volume with its rim in C order.
+    """
+
+    def __init__(self, states: np.ndarray, palette: Iterable[str]):
+        self.palette = list(palette)
+        self._ids = {state: number for number, state in reversed([*enumerate(self.palette)])}
+        self._columns: dict[str, np.ndarray] = {}
+        self._blocks: dict[str, int] = {}
+        self.shape = tuple(side + 2 for side in states.shape)
+        padded = np.full(self.shape, self.id_of(AIR), np.uint16)
+        padded[1:-1, 1:-1, 1:-1] = states
+        self.flat = padded.ravel()
+        strides = np.array([self.shape[1] * self.shape[2], self.shape[2], 1])
+        self.steps = np.array(STEPS) @ strides
+        kinds = self.column("kind").astype(np.uint8)
+        # Rules change the properties of blocks and never their kinds, so one look is enough.
+        self._cells = np.flatnonzero((kinds > 0)[self.flat]) if kinds.any() else np.empty(0, int)
+        self._kinds = kinds[self.flat[self._cells]]
+
+    def result(self) -> tuple[np.ndarray, tuple[str, ...]]:
+        """Return the states without the rim, uint16 [X, Y, Z], and the palette."""
+        inner = self.flat.reshape(self.shape)[1:-1, 1:-1, 1:-1]
+        return np.ascontiguousarray(inner), tuple(self.palette)
+
+    def column(self, name: str) -> np.ndarray:
+        """Return one trait of every state of the palette, int32 [P]."""
+        known = self._columns.get(name, _NONE)
+        if len(known) < len(self.palette):  # States that have joined since it was last asked for.
+            more = [self._trait(text, name) for text in self.palette[len(known) :]]
+            self._columns[name] = known = np.concatenate([known, np.array(more, np.int32)])
+        return known
+
+    def cells_of(self, kind: int) -> np.ndarray:
+        """Return the cells, int [N], whose states are of a kind."""
+        return self._cells[self._kinds == kind]
+
+    def at(self, cells: np.ndarray, direction: int | None = None) -> np.ndarray:
+        """Return the states, uint16 [N], of cells or of their neighbours in a direction."""
+        return self.flat[cells if direction is None else cells + self.steps[direction]]
+
+    def towards(self, cells: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        """Return the states, uint16 [N], of each cell's neighbour in a direction of its own."""
+        return self.flat[cells + self.steps[directions]]
+
+    def heights(self, cells: np.ndarray) -> np.ndarray:
+        """Return the layer, int [N], of each cell, the rim counted."""
+        return cells // self.shape[2] % self.shape[1]
+
+    def change(
+        self, cells: np.ndarray, values: np.ndarray, write: Callable[[list[int]], dict[str, str]]
+    ) -> None:
+        """Give cells new properties.
+
+        Args:
+            cells: int [N].
+            values: int [N, K], what decides the properties of each cell.
+            write: the properties for one row of ``values``.
+        """
+        if not len(cells):
+            return
+        own = self.at(cells)
+        width = values.max(initial=0) + 1
+        keys = own.astype(np.int64)
+        for value in values.T:
+            keys = keys * width + value
+        _, first, index = np.unique(keys, return_index=True, return_inverse=True)
+        made = [self._having(int(own[i]), write(values[i].tolist())) for i in first]
+        self.flat[cells] = np.array(made, np.uint16)[index.ravel()]
+
+    def _having(self, number: int, changed: dict[str, str]) -> int:
+        state = complete(parse_state(self.palette[number]))
+        if all(state.get(key) == value for key, value in changed.items()):
+            return number
+        return self.id_of(str(state.having(**changed)))
+
+    def id_of(self, text: str) -> int:
+        """Return the number of a state, which joins the palette where it is new.
+
+        Raises:
+            LimitError: the palette is full.
+        """
+        if text not in self._ids:
+            if len(self.palette) >= MOST_STATES:
+                raise LimitError("palette", "has more than 65,536 block states")
+            self._ids[text] = len(self.palette)
+            self.palette.append(text)
+        return self._ids[text]
+
+    def _trait(self, text: str, name: str) -> int:
+        if name == "block":
+            block = parse_state(text).name
+            return self._blocks.setdefault(block, len(self._blocks))
+        return int(getattr(traits_of(text), name))
+
 
 SHAPES = ("straight", "inner_left", "inner_right", "outer_left", "outer_right")
 HEIGHTS = ("none", "low", "tall")
@@ -53,13 +255,13 @@ def connected(states: np.ndarray, palette: Iterable[str]) -> tuple[np.ndarray, t
 
 def _doors(board: Board) -> None:
     """The upper half of a door follows its lower half."""
-    cells = board.cells_of(traits.DOOR)
+    cells = board.cells_of(DOOR)
     if not len(cells):
         return
     below = board.at(cells, DOWN)
     top, block = board.column("top"), board.column("block")
     own = board.at(cells)
-    pairs = (top[own] == 1) & (board.column("kind")[below] == traits.DOOR)
+    pairs = (top[own] == 1) & (board.column("kind")[below] == DOOR)
     pairs &= (top[below] == 0) & (block[own] == block[below])
     lower = board.palette
 
@@ -73,7 +275,7 @@ def _doors(board: Board) -> None:
 def _chests(board: Board) -> None:
     """A half of a double chest without its other half is single; a chest joins one that asks."""
     for rule in (_orphan_chests, _asked_chests):
-        cells = board.cells_of(traits.CHEST)
+        cells = board.cells_of(CHEST)
         if len(cells):
             rule(board, cells)
 
@@ -109,7 +311,7 @@ def _partner(board: Board) -> np.ndarray:
 
 def _stairs(board: Board) -> None:
     """A stair bends around the stair before it, else into the one behind it."""
-    cells = board.cells_of(traits.STAIRS)
+    cells = board.cells_of(STAIRS)
     if not len(cells):
         return
     kind, facing, top = (board.column(name) for name in ("kind", "facing", "top"))
@@ -119,10 +321,10 @@ def _stairs(board: Board) -> None:
     for way, first in ((side, 3), ((side + 2) % 4, 1)):
         other = board.towards(cells, way)
         turned = facing[other]
-        bends = (kind[other] == traits.STAIRS) & (top[other] == half) & ((turned - side) % 2 == 1)
+        bends = (kind[other] == STAIRS) & (top[other] == half) & ((turned - side) % 2 == 1)
         # A stair of the same turn beside it, where the corner would open, keeps it straight.
         beside = board.towards(cells, np.where(first == 3, turned + 2, turned) % 4)
-        alike = (kind[beside] == traits.STAIRS) & (facing[beside] == side) & (top[beside] == half)
+        alike = (kind[beside] == STAIRS) & (facing[beside] == side) & (top[beside] == half)
         bends &= ~alike & (shape == 0)
         shape[bends] = first + (turned[bends] != (side[bends] + 3) % 4)
     board.change(cells, shape[:, None], lambda row: {"shape": SHAPES[row[0]]})
@@ -130,10 +332,10 @@ def _stairs(board: Board) -> None:
 
 def _gates(board: Board) -> None:
     """A gate beside a wall hangs lower."""
-    cells = board.cells_of(traits.GATE)
+    cells = board.cells_of(GATE)
     if not len(cells):
         return
-    walls = np.isin(board.column("kind"), (traits.WALL, traits.OLD_WALL))
+    walls = np.isin(board.column("kind"), (WALL, OLD_WALL))
     facing = board.column("facing")[board.at(cells)]
     beside = [walls[board.towards(cells, (facing + turn) % 4)] for turn in (1, 3)]
     sunk = (beside[0] | beside[1]).astype(int)
@@ -142,7 +344,7 @@ def _gates(board: Board) -> None:
 
 def _joints(board: Board) -> None:
     """Panes, bars and fences join what they know, and full faces."""
-    for kind in (traits.PANE, traits.FENCE, traits.BRICK_FENCE):
+    for kind in (PANE, FENCE, BRICK_FENCE):
         cells = board.cells_of(kind)
         if len(cells):
             joined = np.stack([_joins(board, cells, side, kind) for side in _FLAT], axis=1)
@@ -158,21 +360,21 @@ def _joins(board: Board, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
     other = board.at(cells, side)
     kinds = board.column("kind")[other]
     joined = (board.column("sturdy")[other] >> OPPOSITE[side] & 1).astype(bool)
-    if kind in (traits.PANE, traits.WALL):
-        joined |= np.isin(kinds, (traits.PANE, traits.WALL, traits.OLD_WALL))
+    if kind in (PANE, WALL):
+        joined |= np.isin(kinds, (PANE, WALL, OLD_WALL))
     else:
         joined |= kinds == kind
-    if kind != traits.PANE:  # A gate is joined at its two ends.
-        joined |= (kinds == traits.GATE) & ((board.column("facing")[other] - side) % 2 == 1)
+    if kind != PANE:  # A gate is joined at its two ends.
+        joined |= (kinds == GATE) & ((board.column("facing")[other] - side) % 2 == 1)
     return joined
 
 
 def _walls(board: Board) -> None:
     """Walls from the top down: a wall's sides and post depend on what stands on it."""
-    cells = board.cells_of(traits.WALL)
+    cells = board.cells_of(WALL)
     if not len(cells):
         return
-    joined = np.stack([_joins(board, cells, side, traits.WALL) for side in _FLAT], axis=1)
+    joined = np.stack([_joins(board, cells, side, WALL) for side in _FLAT], axis=1)
     heights = board.heights(cells)
     for level in np.unique(heights)[::-1]:
         here = heights == level
@@ -202,11 +404,11 @@ def _wall_layer(board: Board, cells: np.ndarray, joined: np.ndarray) -> None:
 
 def _leaves(board: Board) -> None:
     """Leaves count the way to the nearest log through leaves, up to seven."""
-    cells = board.cells_of(traits.LEAVES)
+    cells = board.cells_of(LEAVES)
     if not len(cells):
         return
     kinds = board.column("kind").astype(np.uint8)[board.flat]
-    distance = np.where(kinds == traits.LOG, 0, FARTHEST).astype(np.uint8)
+    distance = np.where(kinds == LOG, 0, FARTHEST).astype(np.uint8)
     for _ in range(FARTHEST - 1):
         around = [distance[cells + step] for step in board.steps]
         distance[cells] = np.minimum(np.min(around, axis=0) + 1, FARTHEST)
@@ -216,19 +418,19 @@ def _leaves(board: Board) -> None:
 
 def _snowy(board: Board) -> None:
     """Grass and its kin are white under snow."""
-    cells = board.cells_of(traits.SNOWY)
+    cells = board.cells_of(SNOWY)
     if len(cells):
         snow = board.column("variant")[board.at(cells, UP)] == 1
-        snow &= board.column("kind")[board.at(cells, UP)] == traits.OTHER
+        snow &= board.column("kind")[board.at(cells, UP)] == OTHER
         board.change(cells, snow.astype(int)[:, None], lambda row: {"snowy": _text(row[0])})
 
 
 def _campfires(board: Board) -> None:
     """A campfire on hay smokes high."""
-    cells = board.cells_of(traits.CAMPFIRE)
+    cells = board.cells_of(CAMPFIRE)
     if len(cells):
         hay = board.column("variant")[board.at(cells, DOWN)] == 2
-        hay &= board.column("kind")[board.at(cells, DOWN)] == traits.OTHER
+        hay &= board.column("kind")[board.at(cells, DOWN)] == OTHER
         board.change(cells, hay.astype(int)[:, None], lambda row: {"signal_fire": _text(row[0])})
 
 

@@ -16,9 +16,15 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.bit_packing import (
+    bits_for,
+    pack_straddled,
+    unpack_straddled,
+    words_for,
+)
 from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.entities import entity_nbt
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
     Long,
     NbtLimits,
@@ -28,14 +34,8 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.rules.attached_entities import attached
-from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.signs import signs_of_today
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
-from world2minecraft.minecraft.straddled import (
-    bits_for,
-    pack_straddled,
-    unpack_straddled,
-    words_for,
-)
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_FILE_BYTES,

@@ -15,17 +15,17 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.bit_packing import read_keys
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
-from world2minecraft.minecraft.packing import read_keys
 from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
-from world2minecraft.minecraft.schematics.legacy_entities import (
+from world2minecraft.minecraft.schematics.pre_flattening import (
     block_entity_of,
     entity_of,
+    join_halves,
+    legacy_state,
     state_with,
 )
-from world2minecraft.minecraft.schematics.legacy_halves import join_halves
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,

@@ -10,11 +10,12 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.bit_packing import read_varints, write_varints
 from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.block_names import read_state, written_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.entities import entity_nbt
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
     NbtLimits,
     Short,
@@ -23,9 +24,8 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.rules.attached_entities import attached
-from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.signs import signs_of_today
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,

@@ -18,7 +18,7 @@ from world2minecraft.minecraft.commands.datapack import job_files, namespace_of
 from world2minecraft.minecraft.commands.player_scale import pack_mcmeta, pack_zip, size_functions
 from world2minecraft.minecraft.commands.writer import entity_tag
 from world2minecraft.minecraft.entities import entity_tags
-from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.schematics.structure import structure_bytes, structure_of
 from world2minecraft.minecraft.unlabelled_volume import MAX_CELLS, joined
 from world2minecraft.minecraft.versions import GameVersion, game_version

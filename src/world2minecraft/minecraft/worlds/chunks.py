@@ -1,12 +1,22 @@
 """Chunks, columns of sections: written as since 1.18, read as since 1.13."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.types import AIR
+from world2minecraft.minecraft.bit_packing import (
+    SECTION,
+    pack_section,
+    skip_texts,
+    words_before_1_16,
+    words_of_today,
+)
+from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.nbt import (
     BYTE,
     COMPOUND,
@@ -19,16 +29,214 @@ from world2minecraft.minecraft.nbt import (
     NbtReader,
     write_nbt,
 )
-from world2minecraft.minecraft.packing import skip_texts
-from world2minecraft.minecraft.state_nbt import state_text
+from world2minecraft.minecraft.state_nbt import state_entry, state_text
+from world2minecraft.minecraft.unlabelled_volume import MISSHAPEN
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.minecraft.worlds.old_chunks import (
-    FIRST_DATA_VERSION,
-    FIRST_WITHOUT_LEVEL,
-    flattened,
-    old_sections,
-)
-from world2minecraft.minecraft.worlds.sections import Section, SectionPacker, section_of
+
+# Sections, the cubes of 16 blocks a side that chunks of all games since 1.13 are made of.
+
+
+@dataclass(frozen=True)
+class Section:
+    """One packed section: ``place`` counts sections along x, y, z in the world."""
+
+    place: tuple[int, int, int]
+    palette: tuple[str, ...]
+    words: np.ndarray  # uint64 [N] as packed today, N = 0 where one state fills it
+
+
+class SectionPacker:
+    """Packs the sections of one volume."""
+
+    def __init__(self, states: np.ndarray, palette: Sequence[str], data_version: int):
+        self.entries = [state_entry(state, data_version) for state in palette]
+        self._states = states
+        self._numbers = np.full(len(palette), -1, np.int32)
+        self._met = np.zeros(SECTION, np.uint16)
+        self._words = np.zeros(SECTION // 4, np.uint64)
+
+    def numbers(self, origin: np.ndarray) -> tuple[list[int], np.ndarray] | None:
+        """Pack the section whose first cell lies at ``origin`` in the volume.
+
+        Returns:
+            The numbers of its states in the volume's palette, in the section's own order, and
+            its words (a view that the next call overwrites); None where all of it is air.
+        """
+        count, used = pack_section(self._states, origin, self._numbers, self._met, self._words)
+        if count == 1 and self._met[0] == 0:
+            return None
+        return self._met[:count].tolist(), self._words[:used]
+
+    def column(
+        self, place: tuple[int, int], corner: tuple[int, int, int], height: int
+    ) -> Iterator[tuple[int, tuple[list[dict[str, Any]], np.ndarray]]]:
+        """Return the sections of a chunk from below to above: y, palette entries and words."""
+        for y in range(corner[1] >> 4, (corner[1] + height - 1 >> 4) + 1):
+            at = (place[0] * 16 - corner[0], y * 16 - corner[1], place[1] * 16 - corner[2])
+            packed = self.numbers(np.array(at, np.int64))
+            if packed is not None:
+                yield y, ([self.entries[n] for n in packed[0]], packed[1].copy())
+
+
+def section_of(
+    blocks: Any,
+    palette_key: str,
+    words_key: str,
+    place: tuple[int, int],
+    path: Path,
+    data_version: int,
+    *,
+    straddles: bool = False,
+    y: Any = None,
+) -> Section | None:
+    """Return a section from its NBT, or None where it is air alone.
+
+    Args:
+        blocks: the compound that holds the palette and the words.
+        palette_key: the name of the palette in it.
+        words_key: the name of the words in it.
+        place: the chunk's position in the world, in chunks.
+        path: the file that errors name.
+        data_version: that of the game that wrote the chunk.
+        straddles: whether numbers go over from one word to the next, as before 1.16.
+        y: the section's height; ``Y`` of ``blocks`` where it is left out.
+
+    Raises:
+        DamagedFileError: it is broken.
+    """
+    try:
+        palette = tuple(read_state(_text_of(held), data_version) for held in blocks[palette_key])
+        words = blocks.get(words_key, np.zeros(0, np.int64))
+        if words.dtype != np.int64:
+            raise ValueError
+        words = words.view(np.uint64)
+        height = int(blocks["Y"] if y is None else y)
+    except (*MISSHAPEN, UsageError) as error:
+        raise DamagedFileError(path, f"chunk {place} has a broken section") from error
+    is_sized = 1 <= len(palette) <= SECTION
+    packed = words_of_today(words, len(palette), straddles=straddles) if is_sized else None
+    if packed is None:
+        reason = f"{len(palette)} states in {len(words)} words"
+        raise DamagedFileError(path, f"chunk {place}, section {height} has {reason}")
+    if palette == (AIR,):
+        return None
+    return Section((place[0], height, place[1]), palette, packed)
+
+
+def _text_of(entry: str | Mapping[str, Any]) -> str:
+    return entry if isinstance(entry, str) else state_text(entry)
+
+
+# Chunks of 1.13 to 1.17, whose content lies in a compound named ``Level``.
+#
+# The world is 256 blocks high and begins at 0. Until 1.15 numbers are packed without gaps; until
+# 1.16 entities lie in the chunk. 1.13 lights nothing when it loads a chunk, so that its sections
+# are written with full light from the sky.
+
+FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.
+FIRST_1_14 = 1901  # 18w43a: the game lights chunks on loading, and calls the last status full.
+FIRST_1_15 = 2203  # 19w36a: a biome for each 4 x 4 x 4 blocks.
+FIRST_WITHOUT_GAPS = 2529  # 20w17a, of 1.16: no number over two words.
+FIRST_ENTITY_FILES = 2681  # 20w45a, of 1.17: entities in files of their own.
+FIRST_WITHOUT_LEVEL = 2844  # 21w43a, of 1.18.
+VOID_BIOME_ID = 127
+_LIGHT_BYTES = 2048
+
+
+def flattened(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> dict[str, Any]:
+    """Return an old chunk's tree with the keys that chunks have today.
+
+    Raises:
+        DamagedFileError: there is no ``Level``, or it is another thing.
+    """
+    level = root.get("Level")
+    if not isinstance(level, dict):
+        raise DamagedFileError(path, f"chunk {place} has no Level, as its data version says")
+    names = {"TileEntities": "block_entities", "Entities": "Entities", "Sections": "sections"}
+    held = {new: level.get(old, []) for old, new in names.items()}
+    kept = {key: level[key] for key in ("xPos", "zPos", "Status") if key in level}
+    return {"DataVersion": root["DataVersion"], **kept, **held}
+
+
+def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
+    """Return the sections of a flattened old chunk that are not air alone.
+
+    Raises:
+        DamagedFileError: one is broken.
+    """
+    version = root["DataVersion"]
+    straddles = version < FIRST_WITHOUT_GAPS
+    for nbt in root["sections"]:
+        if isinstance(nbt, dict) and "Palette" not in nbt:
+            continue  # It holds light alone.
+        found = section_of(nbt, "Palette", "BlockStates", place, path, version, straddles=straddles)
+        if found is not None:
+            yield found
+
+
+class OldChunkWriter:
+    """Writes the chunks of one volume for a game from 1.13 to 1.17."""
+
+    def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
+        self._packer = SectionPacker(states, palette, version.level_data_version)
+        self._height = states.shape[1]
+        self._version = version.level_data_version
+
+    def chunk(
+        self,
+        place: tuple[int, int],
+        corner: tuple[int, int, int],
+        block_entities: Sequence[Mapping[str, Any]] = (),
+        entities: Sequence[Mapping[str, Any]] = (),
+    ) -> bytes | None:
+        """Return the NBT of the chunk at ``place`` (x, z), or None where nothing is in it.
+
+        Args:
+            place: the chunk's position in the world, in chunks.
+            corner: the world position of the volume's first cell.
+            block_entities: NBT of the block entities in this chunk.
+            entities: NBT of the entities in this chunk, for games that keep them here.
+        """
+        held = entities if self._version < FIRST_ENTITY_FILES else ()
+        sections = [
+            self._section(y, *packed)
+            for y, packed in self._packer.column(place, corner, self._height)
+        ]
+        if not (sections or block_entities or held):
+            return None
+        level = {
+            "xPos": place[0],
+            "zPos": place[1],
+            "Status": "full" if self._version >= FIRST_1_14 else "postprocessed",
+            "LastUpdate": Long(0),
+            "InhabitedTime": Long(0),
+            "Biomes": np.full(
+                1024 if self._version >= FIRST_1_15 else 256, VOID_BIOME_ID, np.int32
+            ),
+            "Heightmaps": {},
+            "Structures": {"References": {}, "Starts": {}},
+            "TileTicks": [],
+            "LiquidTicks": [],
+            "PostProcessing": [],
+            "TileEntities": [dict(entity) for entity in block_entities],
+            "Entities": [dict(entity) for entity in held],
+        }
+        if self._version >= FIRST_1_14:
+            level["isLightOn"] = Byte(0)  # The game lights the chunk when it loads it.
+        head = write_nbt({"DataVersion": self._version})[:-1]
+        body = write_nbt({"Level": {**level, "Sections": sections}})[3:]
+        return head + body
+
+    def _section(self, y: int, entries: list[dict[str, Any]], words: np.ndarray) -> dict[str, Any]:
+        section: dict[str, Any] = {"Y": Byte(y), "Palette": entries}
+        if self._version < FIRST_WITHOUT_GAPS or not len(words):
+            words = words_before_1_16(words, len(entries))
+        section["BlockStates"] = words.view(np.int64)
+        if self._version < FIRST_1_14:
+            section["BlockLight"] = np.zeros(_LIGHT_BYTES, np.int8)
+            section["SkyLight"] = np.full(_LIGHT_BYTES, -1, np.int8)
+        return section
+
 
 PALETTES = ("palette", "Palette")  # Since 1.18, and before.
 MAX_KNOWN = 100_000  # Texts of states of one world, some of them the same in other orders.

@@ -9,9 +9,9 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.bit_packing import SECTION, unpack_section
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
-from world2minecraft.minecraft.packing import SECTION, unpack_section
-from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.signs import signs_of_today
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_STATES,
@@ -20,9 +20,8 @@ from world2minecraft.minecraft.unlabelled_volume import (
     unlabelled,
 )
 from world2minecraft.minecraft.worlds.anvil import read_region, region_position
-from world2minecraft.minecraft.worlds.chunks import read_chunk
+from world2minecraft.minecraft.worlds.chunks import Section, read_chunk
 from world2minecraft.minecraft.worlds.level_dat import no_world
-from world2minecraft.minecraft.worlds.sections import Section
 
 MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
 MAX_UNPACKED_BYTES = 512 << 20  # All chunks that are read together.

@@ -19,13 +19,13 @@ from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.anvil import pack_region
-from world2minecraft.minecraft.worlds.chunks import ChunkWriter
-from world2minecraft.minecraft.worlds.level_dat import MAKER, MAKER_TAG, UNDO_FOLDER, level_data
-from world2minecraft.minecraft.worlds.old_chunks import (
+from world2minecraft.minecraft.worlds.chunks import (
     FIRST_ENTITY_FILES,
     FIRST_WITHOUT_LEVEL,
+    ChunkWriter,
     OldChunkWriter,
 )
+from world2minecraft.minecraft.worlds.level_dat import MAKER, MAKER_TAG, UNDO_FOLDER, level_data
 from world2minecraft.minecraft.worlds.world_reader import Place, read_level, read_world
 
 __all__ = ["read_level", "read_world", "write_world"]

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraftocc.block_map.context import Context
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, matches
 
@@ -64,7 +64,7 @@ def _instances(semantic: np.ndarray) -> np.ndarray:
     instance = np.zeros(semantic.shape, np.uint16)
     following = 0
     for number in OBJECT_CLASSES:
-        parts, count = connected_parts(semantic == number, corners=False)
+        parts, count = label_components(semantic == number, corners=False)
         if following + count > MOST_OBJECTS:
             break
         instance[parts > 0] = (parts[parts > 0] + following).astype(np.uint16)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 OUTSIDE, FLOOR, CEILING, WALL, INSIDE = range(5)
 HEAD_M = 1.8  # A person stands under it; doors are 2 m.
@@ -90,7 +90,7 @@ def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
     least = max(2, FLOOR_M2 * scale**2)
     below: list[tuple[int, np.ndarray]] = []
     for level in range(building.shape[1]):
-        parts, count = connected_parts(stands[:, level], corners=False)
+        parts, count = label_components(stands[:, level], corners=False)
         sizes = np.bincount(parts.ravel(), minlength=count + 1)
         patch = np.zeros(parts.shape, bool)
         for number in np.flatnonzero(sizes >= least).tolist():
@@ -149,7 +149,7 @@ def _ceilings(
     kept = np.zeros(patch.shape, bool)
     least = max(3, PLATEAU_M2 * scale**2)
     for layer in np.unique(over[patch]).tolist():
-        parts, count = connected_parts(patch & (over == layer))
+        parts, count = label_components(patch & (over == layer))
         sizes = np.bincount(parts.ravel(), minlength=count + 1)
         kept |= (sizes >= least)[parts] & (parts > 0)
     if not kept.any():

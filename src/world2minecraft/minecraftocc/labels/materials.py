@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.minecraftocc.values import FineClass
 
 EMPTY = FineClass("minecraft:air")

@@ -14,9 +14,8 @@ from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.tours.values import PlannedView, nyu_camera
-from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.cameras import Shot, camera_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour, tour_line, write_lines
-from world2minecraft.rendering.views.poses import Shot
 
 
 def write_views(

@@ -3,8 +3,14 @@
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.columns import Solid
-from world2minecraft.minecraft.physics.graph import SLIM, WalkGraph, WalkRule, solid_of, walk_graph
+from world2minecraft.minecraft.physics.walk_graph import (
+    SLIM,
+    Solid,
+    WalkGraph,
+    WalkRule,
+    solid_of,
+    walk_graph,
+)
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms, shared
 from world2minecraft.minecraftocc.tours.tourist import Kinds, Tourist
 from world2minecraft.minecraftocc.tours.values import PlannedView, TourRule

@@ -9,8 +9,8 @@ import numpy as np
 from world2minecraft.minecraftocc.screenshots import RecordedView
 from world2minecraft.minecraftocc.tours.files import view_line
 from world2minecraft.minecraftocc.tours.values import PlannedView
+from world2minecraft.rendering.views.cameras import game_pose_of
 from world2minecraft.rendering.views.pose_file import write_lines
-from world2minecraft.rendering.views.poses import game_pose_of
 
 
 def write_recorded(

@@ -18,9 +18,8 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.body import HEIGHT
-from world2minecraft.minecraft.physics.columns import Solid
-from world2minecraft.minecraft.physics.graph import WalkGraph
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
+from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
 from world2minecraft.minecraftocc.tours.values import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
 

@@ -19,7 +19,7 @@ from world2minecraft.minecraftocc.tours.values import KINDS, PlannedView, TourRu
 from world2minecraft.minecraftocc.tours.view_quality import judged
 from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, Grounds, plan_walk
 from world2minecraft.rendering.scene import BlockScene
-from world2minecraft.rendering.views.poses import GamePose
+from world2minecraft.rendering.views.cameras import GamePose
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.

@@ -12,14 +12,13 @@ from scipy.ndimage import gaussian_filter1d
 
 from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
-from world2minecraft.minecraft.physics.columns import Solid
-from world2minecraft.minecraft.physics.graph import WalkGraph
 from world2minecraft.minecraft.physics.shortest_paths import (
     distances_m,
     elbow_room_m,
     parts,
     shortest_path,
 )
+from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
 
 STOP_M2 = 2.0  # Of floor for each stop,
 STOPS = (2, 10)  # and so many of them.

@@ -5,22 +5,22 @@ from collections.abc import Callable
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.registry import Registry
 from world2minecraft.external_models.chat_client import ChatModel
-from world2minecraft.external_models.chat_endpoints import ENDPOINTS, is_endpoint
-from world2minecraft.external_models.chat_pictures import MOST_PX
+from world2minecraft.external_models.chat_messages import MOST_PX
+from world2minecraft.external_models.chat_transport import ENDPOINTS, is_endpoint
 from world2minecraft.navigation.agents.action_format import MOST_MOVES
-from world2minecraft.navigation.agents.model import HISTORY, ModelAgent
 from world2minecraft.navigation.agents.values import Agent
+from world2minecraft.navigation.agents.vlm_agent import HISTORY, ModelAgent
 from world2minecraft.navigation.agents.vlm_prompts import MAPS, MapKind
 
 # Other packages add a class without parameters through the entry points world2minecraft.agent.
 AGENTS = Registry(
     "agent",
     {
-        "oracle": "world2minecraft.navigation.agents.guided:OracleAgent",
-        "shortest": "world2minecraft.navigation.agents.guided:ShortestAgent",
-        "random": "world2minecraft.navigation.agents.simple:RandomAgent",
-        "forward": "world2minecraft.navigation.agents.simple:ForwardAgent",
-        "stop": "world2minecraft.navigation.agents.simple:StopAgent",
+        "oracle": "world2minecraft.navigation.agents.baselines:OracleAgent",
+        "shortest": "world2minecraft.navigation.agents.baselines:ShortestAgent",
+        "random": "world2minecraft.navigation.agents.baselines:RandomAgent",
+        "forward": "world2minecraft.navigation.agents.baselines:ForwardAgent",
+        "stop": "world2minecraft.navigation.agents.baselines:StopAgent",
         "human": "world2minecraft.navigation.running.human_agent:HumanAgent",
     },
 )

@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
-from world2minecraft.navigation.data.next_view import GRADES
+from world2minecraft.navigation.data.tasks import GRADES
 from world2minecraft.navigation.scores import Rate, rate
 from world2minecraft.navigation.values import TASKS, Item
 

@@ -9,6 +9,7 @@ OUT/images/SCENE/TRAJECTORY/NNN.jpg
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,30 @@ from world2minecraft import __version__
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.source import scene_id_of
-from world2minecraft.navigation.data.asking import items_of
-from world2minecraft.navigation.data.crew import SceneJob, work_jobs
-from world2minecraft.navigation.data.leaks import Leaks, leaks_of, without_shared_pictures
-from world2minecraft.navigation.data.quotas import COMPOSITIONS, PAPER_WALKS, cut_as_the_paper
-from world2minecraft.navigation.data.recorded_walks import At, streams_of
-from world2minecraft.navigation.data.scene_items import MADE_BY, SceneWork, WorkRule
-from world2minecraft.navigation.data.splits import UNSEEN_SHARE, paper_splits, scene_splits
+from world2minecraft.navigation.data.item_building import (
+    COMPOSITIONS,
+    PAPER_WALKS,
+    cut_as_the_paper,
+    items_of,
+)
+from world2minecraft.navigation.data.recorded_walks import At, recorded_tours, streams_of
+from world2minecraft.navigation.data.scene_items import (
+    MADE_BY,
+    SceneWork,
+    Tick,
+    WorkRule,
+    work_scene,
+)
+from world2minecraft.navigation.data.splits import (
+    UNSEEN_SHARE,
+    Leaks,
+    leaks_of,
+    paper_splits,
+    scene_splits,
+    without_shared_pictures,
+)
 from world2minecraft.navigation.records import (
     ABOUT,
     EPISODES,
@@ -33,7 +50,80 @@ from world2minecraft.navigation.records import (
     write_items,
     write_trajectories,
 )
+from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.values import Item
+
+# The scenes of a set, worked by one process or by several: the same comes of it in any case.
+#
+# Each scene is worked by itself, its chances drawn from its own name, and what came of the scenes is
+# put in the order in which they were named.
+
+
+@dataclass(frozen=True)
+class SceneJob:
+    """A scene to work. ``split`` is train or val_unseen; ``streams`` were recorded there."""
+
+    path: str
+    folder: str  # of the set
+    composition: str
+    split: str
+    rule: WorkRule
+    streams: tuple[str, ...] = ()
+    at: At = "eye"  # what streams tell that do not say it
+
+
+def work_jobs(
+    jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = silent
+) -> list[SceneWork]:
+    """Return what comes of scenes, in their order. The largest ones are begun first.
+
+    Args:
+        jobs: the scenes.
+        workers: how many processes; with one it is this one.
+        progress: told of the walks.
+
+    Raises:
+        InputError: a scene cannot be read. OutputError: the folder cannot be written.
+        WorkerError: a process died again and again. UsageError: a number of workers that cannot be.
+    """
+    first = sorted(range(len(jobs)), key=lambda n: (-jobs[n].rule.trajectories, n))
+    wanted = sum(job.rule.trajectories for job in jobs)
+    walks, works = _Count(wanted, len(jobs), progress), dict[int, SceneWork]()
+    with opened_engine("pool", min(workers, len(jobs))) as engine:
+        for place, work in engine.run(_worked, [jobs[n] for n in first], walks.add):
+            works[first[place]] = work
+            own = jobs[first[place]].rule.trajectories
+            walks.scene_done(work.scene_id, len(work.trajectories), own)
+    return [works[n] for n in range(len(jobs))]
+
+
+def _worked(job: SceneJob, tick: Tick) -> SceneWork:
+    """Work a scene: what processes are sent to do."""
+    scene = open_scene(job.path)
+    recorded = recorded_tours(scene, job.streams, job.at)
+    return work_scene(scene, Path(job.folder), job.composition, job.split, job.rule, tick, recorded)
+
+
+class _Count:
+    """How many walks there are; what a scene could not give is counted when it is done."""
+
+    def __init__(self, wanted: int, scenes: int, progress: Progress):
+        self._done, self._wanted, self._left = 0, wanted, scenes
+        self._told = partial(progress, "walks")
+        self._told(0, wanted)
+
+    def add(self, count: int) -> None:
+        """Count walks; the last is told with its scene."""
+        self._done = min(self._done + count, self._wanted - 1)
+        self._told(self._done, self._wanted)
+
+    def scene_done(self, name: str, given: int, asked: int) -> None:
+        """Count what a scene did not give."""
+        self._left -= 1
+        self.add(max(0, asked - given))
+        done = self._done if self._left else self._wanted
+        self._told(done, self._wanted, f"{name}: {given} walks")
+
 
 PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
 RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.

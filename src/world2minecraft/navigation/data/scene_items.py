@@ -9,23 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.navigation.data.album import Album, Pictured
-from world2minecraft.navigation.data.next_action import action_steps
-from world2minecraft.navigation.data.next_view import (
+from world2minecraft.navigation.data.distractors import RankDeck, Scout
+from world2minecraft.navigation.data.keyframes import fault_of_pictures
+from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, shot_of, vln_camera
+from world2minecraft.navigation.data.planned_walks import Tourist
+from world2minecraft.navigation.data.splits import split_of_tour
+from world2minecraft.navigation.data.tasks import (
     GRADE_SHARES,
     GRADES,
     ViewQuestion,
+    action_steps,
     view_question,
     view_steps,
 )
-from world2minecraft.navigation.data.pictures import Shot, shot_of, vln_camera
-from world2minecraft.navigation.data.planned_walks import Tourist
-from world2minecraft.navigation.data.splits import split_of_tour
-from world2minecraft.navigation.data.taking import RankDeck
 from world2minecraft.navigation.data.trajectories import Candidate, Maker
-from world2minecraft.navigation.data.validity import fault_of_pictures
-from world2minecraft.navigation.data.wrong_views import Scout
-from world2minecraft.navigation.discretise import VERSION, Guide, Walker
 from world2minecraft.navigation.moves import moved
 from world2minecraft.navigation.oracle import ORACLE_VERSION, expert
 from world2minecraft.navigation.scene import VlnScene
@@ -40,6 +37,7 @@ from world2minecraft.navigation.values import (
     Stance,
     Trajectory,
 )
+from world2minecraft.navigation.walk_discretization import VERSION, Guide, Walker
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 Tick = Callable[[int], None]

@@ -1,17 +1,25 @@
-"""What a set holds: lengths of instructions as the paper's table has them, answers, wrong choices.
+"""How long instructions are, drawn as the paper's figure has it: two tasks, three parts."""
 
-Lengths are counted by items, in characters and in words; ``std`` is that of a sample (ddof 1), as
-pandas' ``describe`` gives it, which the paper's table looks made by.
-"""
-
+import io
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.stats import chisquare
 
-from world2minecraft.navigation.values import TASKS, Item
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.navigation.data.blind_baselines import BaselineRow
+from world2minecraft.navigation.data.splits import Leaks
+from world2minecraft.navigation.values import SPLITS, TASKS, Item
+
+# What a set holds: lengths of instructions as the paper's table has them, answers, wrong choices.
+#
+# Lengths are counted by items, in characters and in words; ``std`` is that of a sample (ddof 1), as
+# pandas' ``describe`` gives it, which the paper's table looks made by.
 
 # Of the paper's table "Statistical Summary of Instruction Lengths", in characters.
 PAPER_LENGTHS = {
@@ -106,3 +114,144 @@ def _evenness(items: Sequence[Item], task: str) -> float:
         return 1.0
     counts = Counter(item.answer for item in own)
     return float(chisquare([counts[letter] for letter in "ABCD"]).pvalue)
+
+
+# The figures of a set as a table for people, and as JSON.
+
+_TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
+
+
+def statistics_text(statistics: SetStatistics, leaks: Leaks) -> str:
+    """Return the table of lengths beside the paper's, the splits, the balance and the leaks."""
+    head = ("count", "mean", "std", "min", "25%", "50%", "75%", "max")
+    lines = [f"{'characters, by item':28}" + "".join(f"{word:>7}" for word in head)]
+    for task in TASKS[::-1]:
+        for part in PARTS:
+            own = tuple(asdict(statistics.characters[task, part]).values())
+            lines.append(_row(f"{_TITLES[task]} {part}", own))
+            lines.append(_row("    the paper's", PAPER_LENGTHS[task, part]))
+    lines += ["", *_splits(statistics), "", *_balance(statistics), "", *_leaks(leaks)]
+    return "\n".join(lines)
+
+
+def _row(title: str, values: Sequence[float]) -> str:
+    return f"{title:28}" + "".join(
+        f"{value:7.0f}" if n == 0 or value == int(value) else f"{value:7.1f}"
+        for n, value in enumerate(values)
+    )
+
+
+def _splits(statistics: SetStatistics) -> list[str]:
+    lines = [f"{'items':28}" + "".join(f"{split:>12}" for split in SPLITS)]
+    for task in TASKS[::-1]:
+        for part in PARTS[:2]:
+            counts = statistics.splits[task, part]
+            cells = "".join(f"{counts[split]:12,}" for split in SPLITS)
+            lines.append(f"{_TITLES[task] + ' ' + part:28}{cells}")
+    scenes = ", ".join(f"{statistics.scenes[part]} {part}" for part in PARTS[:2])
+    return [*lines, f"{'scenes':28}{scenes}"]
+
+
+def _balance(statistics: SetStatistics) -> list[str]:
+    lines = []
+    for task in TASKS[::-1]:
+        told = _counted(statistics.letters[task])
+        p = statistics.letter_p[task]
+        lines.append(f"{_TITLES[task] + ' answers':28}{told}  (even by chance: p = {p:.2f})")
+    lines.append(f"{'right actions':28}{_counted(statistics.actions)}")
+    lines.append(f"{'wrong pictures':28}{_counted(statistics.kinds)}")
+    lines.append(f"{'grades':28}{_counted(statistics.grades)}")
+    lines.append(f"{'nearer than the right one':28}{_counted(statistics.ranks)}")
+    lines.append(f"{'levels of instructions':28}{_counted(statistics.levels)}")
+    return lines
+
+
+def _counted(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{name or '-'} {counts[name]:,}" for name in sorted(counts)) or "none"
+
+
+def _leaks(leaks: Leaks) -> list[str]:
+    told = (
+        f"{len(leaks.images)} pictures, {len(leaks.scenes)} scenes, "
+        f"{len(leaks.trajectories)} walks, {len(leaks.instructions)} instructions"
+    )
+    word = "train shares with the rest" if leaks.is_clean else "LEAK: train shares"
+    return [f"{word:28}{told}"]
+
+
+def figures(statistics: SetStatistics, leaks: Leaks, rows: Sequence[BaselineRow]) -> dict[str, Any]:
+    """Return every figure as JSON has it."""
+    named = {
+        name: {f"{task} {part}": asdict(own) for (task, part), own in table.items()}
+        for name, table in (("characters", statistics.characters), ("words", statistics.words))
+    }
+    splits = {f"{task} {part}": dict(own) for (task, part), own in statistics.splits.items()}
+    return {
+        **named,
+        "splits": splits,
+        "letters": {task: dict(own) for task, own in statistics.letters.items()},
+        "letter_p": statistics.letter_p,
+        "actions": dict(statistics.actions),
+        "wrong_pictures": dict(statistics.kinds),
+        "grades": dict(statistics.grades),
+        "nearer": dict(statistics.ranks),
+        "levels": dict(statistics.levels),
+        "scenes": statistics.scenes,
+        "leaks": {name: len(value) for name, value in asdict(leaks).items()},
+        "baselines": [
+            {
+                "task": row.task,
+                "name": row.name,
+                "hits": row.accuracy.hits,
+                "total": row.accuracy.total,
+                "low": row.accuracy.low,
+                "high": row.accuracy.high,
+                "chance": row.chance,
+                "flagged": row.is_flagged,
+            }
+            for row in rows
+        ],
+    }
+
+
+SIZE_IN, DPI, BIN = (10.76, 5.56), 100, 20  # A bar for so many characters.
+COLOUR = "#5684b4"
+
+
+def write_histograms(items: Sequence[Item], path: str | Path) -> None:
+    """Draw the lengths of instructions, in characters by item, as a PNG.
+
+    Settings of matplotlib on this machine are left out: the same items give the same bytes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed. OutputError: it cannot be written.
+    """
+    try:
+        import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
+        from matplotlib.figure import Figure  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingExtraError("drawing histograms", "vln") from error
+    longest = max((len(item.instruction.text) for item in items), default=1)
+    edges = np.arange(0, longest + BIN, BIN)
+    stream = io.BytesIO()
+    with matplotlib.style.context("default"):
+        figure = Figure(SIZE_IN, layout="constrained")
+        panels = figure.subplots(len(TASKS), len(PARTS), sharex=True, squeeze=False)
+        for row, task in enumerate(TASKS[::-1]):
+            for axes, part in zip(panels[row], PARTS, strict=True):
+                lengths = _lengths(items, task, part)
+                axes.hist(lengths, edges, color=COLOUR, rwidth=0.9)
+                axes.set_title(f"{task.replace('_', ' ')}, {part}: {len(lengths):,}", fontsize=10)
+                axes.set_xlim(0, edges[-1])
+        figure.supxlabel("characters", fontsize=10)
+        figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    write_bytes(path, stream.getvalue())
+
+
+def _lengths(items: Sequence[Item], task: str, part: str) -> list[int]:
+    """Return the lengths of the instructions of a task, of all items or a part of them."""
+    return [
+        len(item.instruction.text)
+        for item in items
+        if item.task == task and part in ("combined", item.composition)
+    ]

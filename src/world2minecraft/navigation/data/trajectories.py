@@ -6,16 +6,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.navigation.data.keyframes import Mark, is_about_turn, marks_of
+from world2minecraft.navigation.data.keyframes import (
+    NOWHERE,
+    Mark,
+    fault_of_way,
+    is_about_turn,
+    marks_of,
+    path_m,
+)
 from world2minecraft.navigation.data.pictures import vln_camera
 from world2minecraft.navigation.data.planned_walks import standing
 from world2minecraft.navigation.data.stream_cleaning import segments_of
-from world2minecraft.navigation.data.validity import NOWHERE, fault_of_way, path_m
-from world2minecraft.navigation.discretise import Guide, Walk, Walker, discretise
 from world2minecraft.navigation.language.generation import instructions_of
 from world2minecraft.navigation.language.route_events import Seen, Way, way_of
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Instruction, Move, MoveSet, Stance
+from world2minecraft.navigation.walk_discretization import Guide, Walk, Walker, discretise
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 LOOK_PX = (96, 54)  # A picture for counting what is in it.

@@ -5,7 +5,7 @@ from typing import Any
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.keyboard import PATIENCE_S, pressed_move
+from world2minecraft.navigation.window import PATIENCE_S, pressed_move
 
 
 def play(

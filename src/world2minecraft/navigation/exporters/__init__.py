@@ -6,6 +6,6 @@
 """
 
 from world2minecraft.navigation.exporters.exporting import FORMATS, Handoff, export_set
-from world2minecraft.navigation.exporters.rules import HandoffRule
+from world2minecraft.navigation.exporters.options import HandoffRule
 
 __all__ = ["FORMATS", "Handoff", "HandoffRule", "export_set"]

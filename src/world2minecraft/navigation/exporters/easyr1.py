@@ -20,18 +20,18 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.navigation.exporters.loader_checks import check_easyr1, parquet_modules
-from world2minecraft.navigation.exporters.parts import TRAIN, Part, held_out
+from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written, held_out
 from world2minecraft.navigation.exporters.pictures import Pictures
 from world2minecraft.navigation.exporters.recipes import rendered, verbatim
-from world2minecraft.navigation.exporters.rules import HandoffRule, Written
-from world2minecraft.navigation.exporters.steps import (
+from world2minecraft.navigation.exporters.training_costs import (
     GRPO_BATCH,
     GRPO_EPOCHS,
     GRPO_ROLLOUTS,
     GrpoPlan,
     grpo_plan,
+    longest,
+    row_tokens,
 )
-from world2minecraft.navigation.exporters.tokens import longest, row_tokens
 from world2minecraft.navigation.prompts import question_of
 from world2minecraft.navigation.values import Item
 

@@ -10,11 +10,10 @@ from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageEr
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.navigation.exporters import easyr1, llamafactory
-from world2minecraft.navigation.exporters.parts import parts_of
+from world2minecraft.navigation.exporters.options import HandoffRule, Written, parts_of
 from world2minecraft.navigation.exporters.pictures import Pictures
 from world2minecraft.navigation.exporters.r2r import write_r2r
 from world2minecraft.navigation.exporters.recipes import rendered
-from world2minecraft.navigation.exporters.rules import HandoffRule, Written
 from world2minecraft.navigation.exporters.trl import write_trl
 from world2minecraft.navigation.exporters.vlnce import write_vlnce
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories

@@ -20,17 +20,17 @@ from typing import Any
 
 from world2minecraft.core.files import write_json, write_text
 from world2minecraft.navigation.exporters.loader_checks import check_llamafactory
-from world2minecraft.navigation.exporters.parts import TRAIN, Part
+from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written
 from world2minecraft.navigation.exporters.pictures import Pictures
 from world2minecraft.navigation.exporters.recipes import rendered, verbatim
-from world2minecraft.navigation.exporters.rules import HandoffRule, Written
-from world2minecraft.navigation.exporters.steps import (
+from world2minecraft.navigation.exporters.training_costs import (
     SFT_ACCUMULATED,
     SFT_BATCH,
     SFT_EPOCHS,
+    longest,
+    row_tokens,
     sft_steps,
 )
-from world2minecraft.navigation.exporters.tokens import longest, row_tokens
 from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
 from world2minecraft.navigation.values import Item
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.files import write_json
-from world2minecraft.navigation.exporters.rules import Written
+from world2minecraft.navigation.exporters.options import Written
 from world2minecraft.navigation.values import SPLITS, Keyframe, Trajectory
 
 EYE_M = 1.5  # What R2R says is the height of a camera; its evaluation does not read it.

@@ -19,11 +19,10 @@ from world2minecraft.core.files import write_text
 from world2minecraft.navigation.exporters.easyr1 import GPUS, RESPONSE_TOKENS
 from world2minecraft.navigation.exporters.llamafactory import rows_left_out
 from world2minecraft.navigation.exporters.loader_checks import check_trl
-from world2minecraft.navigation.exporters.parts import TRAIN, Part
+from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written
 from world2minecraft.navigation.exporters.pictures import Pictures
 from world2minecraft.navigation.exporters.recipes import rendered, verbatim
-from world2minecraft.navigation.exporters.rules import HandoffRule, Written
-from world2minecraft.navigation.exporters.steps import (
+from world2minecraft.navigation.exporters.training_costs import (
     GRPO_BATCH,
     GRPO_EPOCHS,
     GRPO_ROLLOUTS,

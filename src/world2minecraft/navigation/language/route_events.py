@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.simplify import corners_of
+from world2minecraft.navigation.walk_discretization import corners_of
 from world2minecraft.navigation.walk_stream import wrapped_deg
 
 CORNER_M = 0.3  # What lies nearer to a straight line is walked straight.

@@ -10,9 +10,9 @@ from typing import Any
 
 from world2minecraft.core.files import write_json
 from world2minecraft.navigation.agents import AGENTS, BESIDE, Agent
+from world2minecraft.navigation.running.episode_ground import Ground
 from world2minecraft.navigation.running.episode_runner import Observer, Walk, walk_episode
-from world2minecraft.navigation.running.evaluating import RESULT_FILE
-from world2minecraft.navigation.running.ground import Ground
+from world2minecraft.navigation.running.item_evaluation import RESULT_FILE
 from world2minecraft.navigation.running.trace import score_told
 from world2minecraft.navigation.scores import summarise
 from world2minecraft.navigation.values import Episode, check_reachable

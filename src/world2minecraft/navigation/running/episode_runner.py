@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from world2minecraft.navigation.agents.values import Agent, Decision, Sight, Task
-from world2minecraft.navigation.running.ground import Ground, GroundGuide
+from world2minecraft.navigation.running.episode_ground import Ground, GroundGuide
 from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
 from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
 

@@ -13,9 +13,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.navigation.agents.values import Decision, Sight
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
+from world2minecraft.navigation.running.episode_ground import Ground
 from world2minecraft.navigation.running.episode_runner import Walk
 from world2minecraft.navigation.running.floor_map import SIDE_PX, PlanMap
-from world2minecraft.navigation.running.ground import Ground
 from world2minecraft.navigation.values import Episode, Move, Stance
 from world2minecraft.rendering.output.animation import FrameWriter, moving_picture
 

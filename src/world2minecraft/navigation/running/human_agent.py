@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.agents.values import Decision, Sight, Task
-from world2minecraft.navigation.keyboard import PATIENCE_S, pressed_move
 from world2minecraft.navigation.values import Episode, Move, Stance
-from world2minecraft.navigation.window import Window
+from world2minecraft.navigation.window import PATIENCE_S, Window, pressed_move
 
 if TYPE_CHECKING:
     from world2minecraft.navigation.running.episode_runner import Walk

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.navigation.agents.registry import BESIDE
-from world2minecraft.navigation.running.evaluating import COMPOSITIONS, RESULT_FILE, TRAININGS
+from world2minecraft.navigation.running.item_evaluation import COMPOSITIONS, RESULT_FILE, TRAININGS
 from world2minecraft.navigation.scores import RADII_M, paired_p
 from world2minecraft.navigation.values import TASKS
 

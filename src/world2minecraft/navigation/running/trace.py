@@ -15,8 +15,8 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, OutputError
 from world2minecraft.core.files import json_rows, read_bytes, write_bytes
-from world2minecraft.navigation.agents.model import jpeg
 from world2minecraft.navigation.agents.values import Decision, Sight
+from world2minecraft.navigation.agents.vlm_agent import jpeg
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import Walk
 from world2minecraft.navigation.values import Episode, Move, Stance

@@ -6,7 +6,7 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.action_spaces import Acting
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.server.acting import KeysOnServer, MovesOnServer
+from world2minecraft.navigation.server.actions import KeysOnServer, MovesOnServer
 from world2minecraft.navigation.server.blocks import Box
 from world2minecraft.navigation.server.body import NAME, ServerBody, join
 from world2minecraft.navigation.server.scene import open_server_scene

@@ -12,15 +12,18 @@ import numpy as np
 
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.core.types import BlockVolume, Layout
+from world2minecraft.core.types import BlockVolume, Camera, Layout
 from world2minecraft.formats.build_source import Source, Start
-from world2minecraft.formats.labelled import labelled
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import trimmed
+from world2minecraft.formats.volume_formats import labelled
 from world2minecraft.minecraftocc.source import open_scene_source, source_of_blocks
+from world2minecraft.navigation.running.episode_ground import Ground, SceneGround
 from world2minecraft.navigation.scene import VlnScene, layouts_beside
+from world2minecraft.navigation.server.actions import MovesOnServer
 from world2minecraft.navigation.server.blocks import Box, checked_box
 from world2minecraft.navigation.server.body import ServerBody
+from world2minecraft.navigation.values import Move, MoveSet, Stance
 from world2minecraft.rendering.editable_scene import LiveScene
 from world2minecraft.rendering.scene import BlockScene
 
@@ -154,3 +157,30 @@ def _scene_id(server: ServerBody, labels: str | Path | None) -> str:
 
 def _is_in(cell: np.ndarray, shape: tuple[int, ...]) -> bool:
     return bool(((cell >= 0) & (cell < shape)).all())
+
+
+# A scene on a server as the ground of episodes: moves are made by its player.
+
+
+class ServerGround(SceneGround):
+    """A scene whose player stands on a server; see ``imagined`` for moves that it does not make."""
+
+    def __init__(
+        self, scene: ServerScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
+    ):
+        super().__init__(scene, move_set, camera)
+        self._acting = MovesOnServer(scene, self.move_set, scene.server)
+
+    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+        """Make a move; the player is put where it begins, if it stands elsewhere."""
+        if stance != self._acting.stance:
+            self._acting.begin(stance)
+        if move == Move.STOP:
+            return stance, False
+        self._acting.stance, collided = self._acting.made(move)
+        return self._acting.stance, collided
+
+    @property
+    def imagined(self) -> Ground:
+        """The scene alone: what the oracle thinks of moves no player."""
+        return SceneGround(self.scene, self.move_set, self.camera)

@@ -18,7 +18,7 @@ from world2minecraft.procgen.sensors.depth_camera import jittered_pose, scale_fa
 from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
 from world2minecraft.procgen.sensors.shots import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
-from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 LookKind = Literal["walk", "few", "single"]
 FOCAL_SHARE = 0.8107  # NYU's: 518.86 px at 640.

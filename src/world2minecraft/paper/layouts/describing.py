@@ -6,12 +6,16 @@ from photos a model writes them. ``for_method`` puts them into the form that eac
 
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
+from world2minecraft.capture.images import read_colour
+from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.core.errors import ServerError, UnknownNameError
+from world2minecraft.core.errors import CaptureError, ServerError, UnknownNameError
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
 from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import Picture, Turn
@@ -19,8 +23,35 @@ from world2minecraft.external_models.structured_replies import spoken
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.paper.layouts.importers.layoutgpt import SHORTER_PX
 from world2minecraft.paper.layouts.importers.reading import clean_name
-from world2minecraft.paper.layouts.judge import prompt_text
+from world2minecraft.paper.layouts.judge import QUALITY, prompt_text
 from world2minecraft.paper.layouts.values import ComparedScene
+from world2minecraft.rendering.output.images import colour_bytes
+
+# A few photos of a capture, spread evenly over it, as a model is shown them.
+
+LONGEST_PX = 1024
+
+
+def capture_photos(place: Path, count: int) -> list[Picture]:
+    """Return at most ``count`` photos of a capture, JPEG, 1,024 pixels long at most.
+
+    Raises:
+        CaptureError: it is no capture, or has no pictures in colour.
+    """
+    paths = [frame.colour_path for frame in find_capture(place).frames if frame.colour_path]
+    chosen = min(count, len(paths))
+    wanted = [paths[int((n + 0.5) * len(paths) / chosen)] for n in range(chosen)]
+    photos = [Picture(colour_bytes(_small(read_colour(path)), ".jpg", QUALITY)) for path in wanted]
+    if not photos:
+        raise CaptureError(place, "has no pictures in colour; leave out --agent")
+    return photos
+
+
+def _small(colour: np.ndarray) -> np.ndarray:
+    picture = Image.fromarray(colour)
+    picture.thumbnail((LONGEST_PX, LONGEST_PX), Image.Resampling.LANCZOS)
+    return np.asarray(picture)
+
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
 AT_WALL_M = 0.25  # What is nearer to a wall stands at it.

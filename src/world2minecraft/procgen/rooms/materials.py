@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.room import Room
 
 RUG_RUN = (
@@ -104,7 +104,7 @@ def _rugs(room: Room) -> np.ndarray:
         low = ndimage.minimum_filter1d(tone, RUG_RUN, axis=1, mode="constant")
         same = (low == ndimage.maximum_filter1d(tone, RUG_RUN, axis=1, mode="constant")) & (low > 0)
         same = ndimage.maximum_filter1d(same, RUG_RUN, axis=1, mode="constant")
-        parts, _ = connected_parts(same, corners=False)
+        parts, _ = label_components(same, corners=False)
         for box in ndimage.find_objects(parts):
             if box[0].stop - box[0].start >= RUG_RUN:
                 rugs[:, :, z][box] = floor[:, :, z][box]

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.furniture.layout_checks import overlap_depth_m
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Model
 from world2minecraft.procgen.rooms.ground import TOUCH_M, Box, Ground, Rect, grown
 
@@ -227,7 +227,7 @@ def ways_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.
     doors must lead to the same floor.
     """
     x, y, free = _free_floor(plan, body_m)
-    parts, _ = connected_parts(free, corners=False)
+    parts, _ = label_components(free, corners=False)
     if not parts.any():
         return False
     starts = set()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.procgen.rooms.ground import Ground, Rect, Wall, grown
@@ -108,7 +108,7 @@ def _outside(labels: np.ndarray) -> np.ndarray:
     """
     floor = np.zeros(labels.shape[:2], bool)
     floor[SHELL:-SHELL, SHELL:-SHELL] = labels[SHELL:-SHELL, SHELL:-SHELL, SHELL] == 0
-    parts, _ = connected_parts(~grown(floor, SHELL), corners=False)
+    parts, _ = label_components(~grown(floor, SHELL), corners=False)
     rim = np.concatenate([parts[0], parts[-1], parts[:, 0], parts[:, -1]])
     return np.isin(parts, np.unique(rim[rim > 0]))
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.geometry.rotation import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_of_vector
 
 BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.
 NATIVE_WIDTH_PX = 640  # Disparity is counted in pixels of the sensor, whatever size is handed out.

@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.rotation import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_of_vector
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import (
     PHONES,

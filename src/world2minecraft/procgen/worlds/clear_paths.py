@@ -6,7 +6,7 @@ the floor, is not put.
 
 import numpy as np
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom, person_blocks
 
 KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,
@@ -66,7 +66,7 @@ class Ways:
 
     def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:
         """Return those of the places of a room's box that hang together with all ends, or None."""
-        parts, count = connected_parts(places, corners=False)
+        parts, count = label_components(places, corners=False)
         ends = np.array(self.ends[room.number]).reshape(-1, 2) - room.low
         if not count:
             return None

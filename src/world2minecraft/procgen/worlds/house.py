@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from world2minecraft.minecraft.physics.body import HEIGHT, WIDTH
-from world2minecraft.minecraft.physics.graph import columns_per_block
+from world2minecraft.minecraft.physics.walk_graph import columns_per_block
 from world2minecraft.procgen.houses.house_gaps import Gap, house_gaps
 from world2minecraft.procgen.houses.house_plan import WALL_M, Cell, HousePlan, plan_house
 

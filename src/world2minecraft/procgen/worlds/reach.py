@@ -5,8 +5,8 @@ import numpy as np
 from world2minecraft.construction.spawn import Spawn, find_spawn
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.graph import WalkGraph, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
+from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
 
 LEVEL = 0.5  # Blocks: carpets lie on a floor, slabs stand on it.

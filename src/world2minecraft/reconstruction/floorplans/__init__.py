@@ -6,15 +6,19 @@ and windows that were not seen. ``find_roomplan`` tells whether a path holds a p
 """
 
 from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
-from world2minecraft.reconstruction.floorplans.beside import add_plan_openings, voted_by_plan
 from world2minecraft.reconstruction.floorplans.plan_run import PlanWorld, build_captured, build_plan
 from world2minecraft.reconstruction.floorplans.plan_to_scan import (
     LaidPlan,
     PlanMismatchError,
     laid_plan,
 )
+from world2minecraft.reconstruction.floorplans.plan_votes import (
+    add_plan_openings,
+    plan_votes,
+    voted_by_plan,
+    with_plan_openings,
+)
 from world2minecraft.reconstruction.floorplans.room_outlines import layouts_of, straightened
-from world2minecraft.reconstruction.floorplans.votes import plan_votes, with_plan_openings
 
 __all__ = [
     "LaidPlan",

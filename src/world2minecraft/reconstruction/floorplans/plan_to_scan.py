@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.formats.roomplan import CapturedPlan
 from world2minecraft.furniture.layout_checks import inside_polygon
-from world2minecraft.geometry.morphology import grown
+from world2minecraft.geometry.morphology import dilate
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     moved_plan,
     placed_rooms,
@@ -65,7 +65,7 @@ def upright_columns(evidence: FusedEvidence) -> np.ndarray:
         int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None)) for z in BAND_M
     )
     band = np.asarray(evidence.log_odds[:, :, low:high] > 0)
-    return grown(band.sum(axis=2) >= max(UPRIGHT_SHARE * band.shape[2], 1))
+    return dilate(band.sum(axis=2) >= max(UPRIGHT_SHARE * band.shape[2], 1))
 
 
 def fit_of(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> float:
@@ -78,7 +78,7 @@ def fit_of(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> 
         return 0.0
     held = ((cells >= 0) & (cells < upright.shape)).all(axis=1)
     x, y = cells[held].T
-    seen = grown((evidence.log_odds != 0).any(axis=2))[x, y]
+    seen = dilate((evidence.log_odds != 0).any(axis=2))[x, y]
     if seen.sum() < len(cells) / 3:
         return 0.0
     return float(upright[x, y][seen].mean())

@@ -16,12 +16,13 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
-from world2minecraft.reconstruction.fusion.kernels import (
+from world2minecraft.reconstruction.fusion.integration import (
     add_colours,
     add_hits,
     add_labels,
     add_votes,
     face_normals,
+    free_rays,
     number_cells,
     places_of,
     sum_cells,
@@ -29,7 +30,6 @@ from world2minecraft.reconstruction.fusion.kernels import (
 )
 from world2minecraft.reconstruction.fusion.network_grids import grid_gains
 from world2minecraft.reconstruction.fusion.parameters import FuseParameters
-from world2minecraft.reconstruction.fusion.rays import free_rays
 from world2minecraft.reconstruction.fusion.surface_decision import inherit, settle
 from world2minecraft.reconstruction.fusion.voxel_blocks import BLOCK_CELLS, MAX_DENSE, SIDE, Blocks
 

@@ -12,7 +12,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import COMPLETED, OccupancyGrid
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
 
@@ -40,7 +40,7 @@ class CleanParameters:
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
     """Return the grid with small parts that touch nothing, not even by a corner, made free."""
-    parts, _ = connected_parts(grid.occupied)
+    parts, _ = label_components(grid.occupied)
     sizes = np.bincount(parts.reshape(-1))
     small = sizes < parameters.floater_cells
     small[0] = False

@@ -6,7 +6,7 @@
 from world2minecraft.reconstruction.homes.join_runs import join, read_runs
 from world2minecraft.reconstruction.homes.merged_run import Home, merged
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
-from world2minecraft.reconstruction.homes.placing import Placed, parse_place, place_runs
+from world2minecraft.reconstruction.homes.room_placement import Placed, parse_place, place_runs
 
 __all__ = [
     "Home",

@@ -10,7 +10,7 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
-from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.layout import read_rooms, write_layouts
 from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
@@ -18,12 +18,16 @@ from world2minecraft.formats.objects import (
     write_placements,
 )
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
-from world2minecraft.formats.room import read_room, write_room
-from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.formats.scan import write_scan
 from world2minecraft.reconstruction.homes.merged_run import Home, merged
 from world2minecraft.reconstruction.homes.moved_run import Run
-from world2minecraft.reconstruction.homes.placing import Placed, parse_place, place_runs, stated
+from world2minecraft.reconstruction.homes.room_placement import (
+    Placed,
+    parse_place,
+    place_runs,
+    stated,
+)
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_finished, check_writable
 from world2minecraft.reconstruction.stages import LATER_STEPS

@@ -15,7 +15,7 @@ from world2minecraft.core.types import OBSERVED, Layout, ObjectInstance, Occupan
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.homes.doors import Doorway, head_of, shifted_door
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
-from world2minecraft.reconstruction.homes.placing import Placed
+from world2minecraft.reconstruction.homes.room_placement import Placed
 
 MOST_CELLS = 600_000_000
 MOST_OBJECTS = 65535

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import OBJECT_CLASSES
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 SPECK_CELLS = 6  # At 0.08 m less than a sheet of paper, and less than any object has.
 NEARLY_ALL = 0.8  # The share of the occupied cells around it that are of the class around it.
@@ -25,7 +25,7 @@ def without_specks(labels: np.ndarray) -> np.ndarray:
         mask = labels == class_id
         if not mask.any():
             continue
-        parts, _ = connected_parts(mask)
+        parts, _ = label_components(mask)
         sizes = np.bincount(parts[mask])
         boxes = ndimage.find_objects(parts)
         for number in np.flatnonzero((sizes > 0) & (sizes <= SPECK_CELLS)):

@@ -9,23 +9,20 @@ from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.reconstruction.instances.askew import askew_rectangle
-from world2minecraft.reconstruction.instances.clusters import cluster_candidates
+from world2minecraft.reconstruction.instances.cabinet_runs import part_rows
 from world2minecraft.reconstruction.instances.denoise import without_specks
-from world2minecraft.reconstruction.instances.density import (
+from world2minecraft.reconstruction.instances.density_clustering import (
+    assign_voxels,
     candidate_cells,
+    cluster_candidates,
     density_map,
     object_cells,
 )
-from world2minecraft.reconstruction.instances.growth import grow
-from world2minecraft.reconstruction.instances.hosts import part_by_hosts
+from world2minecraft.reconstruction.instances.merge_pieces import join_posts, join_stacked, rejoin
+from world2minecraft.reconstruction.instances.object_extent import askew_rectangle, layers_reached
 from world2minecraft.reconstruction.instances.parameters import FindParameters
-from world2minecraft.reconstruction.instances.posts import join_posts
-from world2minecraft.reconstruction.instances.reach import layers_reached
-from world2minecraft.reconstruction.instances.rejoin import rejoin
-from world2minecraft.reconstruction.instances.rows import part_rows
 from world2minecraft.reconstruction.instances.split_by_colour import part_by_paint
-from world2minecraft.reconstruction.instances.stacks import join_stacked
+from world2minecraft.reconstruction.instances.split_by_support import part_by_hosts
 from world2minecraft.reconstruction.instances.touching_chairs import join_backs, part_chairs
 
 MAX_OBJECTS = 65535
@@ -71,7 +68,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     candidates = candidate_cells(binary, density, chosen.density_threshold)
     classes = grid.labels[tuple(candidates.T)]
     cluster = cluster_candidates(candidates, classes, chosen.cluster_radius, chosen.min_samples)
-    owners = grow(grid.labels, binary, candidates, cluster)
+    owners = assign_voxels(grid.labels, binary, candidates, cluster)
     if not chosen.paper_compat:
         owners = rejoin(
             grid.labels,

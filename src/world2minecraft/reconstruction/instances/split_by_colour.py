@@ -9,8 +9,8 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.reconstruction.instances.growth import grow
-from world2minecraft.reconstruction.instances.owned import cells_by_owner
+from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner
 
 ALIKE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
 LEAST_CELLS = 5  # Of a patch that is a thing of its own.
@@ -48,7 +48,7 @@ def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
         return np.ones(len(cells), np.int32)
     seeds = np.argwhere(joined).astype(np.int32)
     labels = own.astype(np.uint8)
-    grown = grow(labels, own, seeds, joined[tuple(seeds.T)] - 1)[at]
+    grown = assign_voxels(labels, own, seeds, joined[tuple(seeds.T)] - 1)[at]
     return np.maximum(grown, 1).astype(np.int32)
 
 

@@ -7,9 +7,8 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import template
 from world2minecraft.furniture.chair_fitting import AGAINST, OWN, SeatFit, fit_seat, look_at
-from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.reconstruction.instances.heap import floor_below
-from world2minecraft.reconstruction.instances.owned import cells_by_owner
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
 
 WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
 EASY_WIDE_M = 1.2
@@ -84,7 +83,7 @@ def _without_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
             continue
         own = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
         own[tuple((cells - cells.min(axis=0)).T)] = True
-        parts, count = connected_parts(own)
+        parts, count = label_components(own)
         number = parts[tuple((cells - cells.min(axis=0)).T)]
         sizes = np.bincount(number)
         main = _box(cells[number == sizes.argmax()])

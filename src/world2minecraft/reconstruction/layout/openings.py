@@ -13,8 +13,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.geometry.morphology import grown, opened
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.geometry.morphology import binary_opening, dilate
 from world2minecraft.reconstruction.layout.parameters import StructureParameters, within
 from world2minecraft.reconstruction.layout.plane_residuals import Relief
 from world2minecraft.reconstruction.layout.surface_cells import Surface
@@ -86,13 +86,13 @@ class _Face:
 
     def cut(self, recessed: np.ndarray) -> None:
         """Claim the windows and the leaves of doors that lie well behind the face."""
-        for part in _parts(opened(_bridged(recessed) & self.relief.seen)):
+        for part in _parts(binary_opening(_bridged(recessed) & self.relief.seen)):
             kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
             if kind is None or _framed(part, self.plane) < self.parameters.frame_share:
                 continue
             depth = float(np.median(self.relief.gap_m[part]))
             # The rim of an opening is a mean of both depths.
-            whole = part | (grown(part) & self.relief.seen & (self.relief.gap_m >= depth / 2))
+            whole = part | (dilate(part) & self.relief.seen & (self.relief.gap_m >= depth / 2))
             self._claim(whole, CLASS_OF_KIND[kind], depth)
             self._add_gap(kind, whole)
 
@@ -102,7 +102,7 @@ class _Face:
         gap = ndimage.median_filter(relief.gap_m, 3)
         inside = relief.seen & (self.classes == SemanticClass.WALL)
         leaf = inside & (gap >= parameters.leaf_depth_m) & (gap < parameters.opening_depth_m[0])
-        for part in _parts(opened(leaf)):
+        for part in _parts(binary_opening(leaf)):
             along, height = self._metres(part)
             wide = within(along[1] - along[0], parameters.leaf_width_m)
             high = within(height[1], parameters.leaf_height_m) and height[0] <= 0.4
@@ -113,17 +113,17 @@ class _Face:
 
     def hang(self, raised: np.ndarray) -> None:
         """Claim what hangs flat on the wall: pictures, boards, mirrors."""
-        for part in _parts(opened(raised & (self.classes == SemanticClass.WALL))):
+        for part in _parts(binary_opening(raised & (self.classes == SemanticClass.WALL))):
             large = part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2
             flat = part.sum() >= 0.6 * _box_cells(part)
             if large and flat and self._has_edge(part):
                 depth = float(np.median(self.relief.gap_m[part]))
-                rim = grown(part) & self.relief.seen & (self.relief.gap_m <= depth / 2)
+                rim = dilate(part) & self.relief.seen & (self.relief.gap_m <= depth / 2)
                 self._claim(part | rim, SemanticClass.OBJS, depth)
 
     def pass_through(self, passed: np.ndarray) -> None:
         """Note the openings that rays went through."""
-        for part in _parts(opened(passed)):
+        for part in _parts(binary_opening(passed)):
             kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
             if kind is not None and _framed(part, self.plane) >= self.parameters.frame_share:
                 self._add_gap("doorway" if kind == "door" else kind, part)
@@ -131,7 +131,7 @@ class _Face:
     def _has_edge(self, part: np.ndarray) -> bool:
         """Return whether the depth steps around most of a part, where it was seen."""
         gap_m = self.relief.gap_m
-        ring = grown(part, 2) & ~grown(part) & self.relief.seen
+        ring = dilate(part, 2) & ~dilate(part) & self.relief.seen
         depth = np.median(gap_m[part])
         step = np.sign(depth) * (depth - gap_m[ring]) >= STEP_M
         return bool(ring.sum() >= 0.4 * part.sum() ** 0.5 and step.mean() >= 0.6)
@@ -160,7 +160,7 @@ class _Face:
 
 
 def _parts(mask: np.ndarray) -> list[np.ndarray]:
-    parts, count = connected_parts(mask)
+    parts, count = label_components(mask)
     return [parts == number for number in range(1, count + 1)]
 
 
@@ -217,5 +217,5 @@ def _kind(
 
 def _framed(part: np.ndarray, plane: np.ndarray) -> float:
     """Return the share of the ring around a part that lies on the wall's plane."""
-    ring = grown(part, 3) & ~grown(part)
+    ring = dilate(part, 3) & ~dilate(part)
     return float(plane[ring].mean()) if ring.any() else 0.0

@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.geometry.histogram_peaks import highest_peak
-from world2minecraft.reconstruction.layout.horizontal import find_ceiling
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
+from world2minecraft.reconstruction.layout.structure import find_ceiling
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 
 

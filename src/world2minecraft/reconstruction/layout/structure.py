@@ -4,13 +4,76 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.reconstruction.layout.horizontal import Floor, find_ceiling, find_floor
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.openings import WallFace, read_wall
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
 from world2minecraft.reconstruction.layout.plane_residuals import Relief
 from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
+
+# Floor and ceiling: the two large level planes of a room.
+#
+# The floor's top is z = 0 by the room frame, so its cells are the layer under it. Noise lifts some
+# floor points into the layer above: that **spill** is carried down, the one case in which a
+# labeller empties an observed cell.
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """Cells that are floor, and spill: cells just above the floor that are noise of it."""
+
+    cells: np.ndarray  # bool [X, Y, Z]
+    spill: np.ndarray  # bool [X, Y, Z]
+
+
+def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
+    """Return the floor's cells, those that spill is carried down to included.
+
+    Spill is a cell of the first layer over the floor whose surface point lies within ``spill_m``
+    of z = 0, with nothing occupied on it: the foot of a wall or leg goes on upward.
+    """
+    cells, spill = np.zeros((2, *surface.occupied.shape), bool)
+    layer = surface.floor_layer
+    if not 0 <= layer < surface.occupied.shape[2]:
+        return Floor(cells, spill)
+    cells[:, :, : layer + 1] = surface.occupied[:, :, : layer + 1]
+    if layer + 1 < surface.occupied.shape[2]:
+        low = surface.points_m[:, :, layer + 1, 2] < parameters.spill_m
+        spill[:, :, layer + 1] = surface.occupied[:, :, layer + 1] & low
+    if layer + 2 < surface.occupied.shape[2]:
+        spill[:, :, layer + 1] &= ~surface.occupied[:, :, layer + 2]
+    return Floor(cells, spill)
+
+
+def find_ceiling(
+    surface: Surface, parameters: StructureParameters
+) -> tuple[np.ndarray, float | None]:
+    """Return the ceiling's cells, bool [X, Y, Z], and its height in metres, None if not seen.
+
+    It is the highest level plane, seen from below, of at least ``ceiling_area_m2``; what lies
+    above it belongs to it.
+    """
+    cells = np.zeros(surface.occupied.shape, bool)
+    below_free = np.zeros_like(cells)
+    below_free[:, :, 1:] = surface.free[:, :, :-1]
+    below_free[:, :, 2:] |= surface.free[:, :, :-2] & surface.occupied[:, :, 1:-1]
+    high = surface.points_m[..., 2] > parameters.ceiling_min_m
+    heights = surface.points_m[surface.occupied & below_free & high][:, 2]
+    needed = parameters.ceiling_area_m2 / surface.voxel_m**2
+    while len(heights):
+        peak, count = highest_peak(heights, parameters.plane_gate_m)
+        above = int((heights > peak + parameters.plane_gate_m).sum())
+        if count < needed:
+            return cells, None
+        if above < needed:
+            height = surface.points_m[..., 2]
+            near = (height > peak - parameters.plane_gate_m) & below_free
+            # The top cells of walls end just under the ceiling, and are no part of it.
+            near |= height > peak - 0.4 * parameters.plane_gate_m
+            return surface.occupied & near, peak
+        heights = heights[heights > peak + parameters.plane_gate_m]
+    return cells, None
 
 
 @dataclass(frozen=True, eq=False)

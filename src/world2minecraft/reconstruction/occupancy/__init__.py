@@ -18,7 +18,7 @@ __all__ = ["PREDICTORS", "OccupyParameters", "Predictor", "notes_of", "predictor
 PREDICTORS = Registry(
     "predictor",
     {
-        "depth": "world2minecraft.reconstruction.occupancy.depth:DepthPredictor",
+        "depth": "world2minecraft.reconstruction.occupancy.depth_evidence:DepthPredictor",
         "mono": "world2minecraft.reconstruction.occupancy.monocular:MonoPredictor",
     },
 )
@@ -59,7 +59,7 @@ def predictor(name: str, parameters: OccupyParameters | None = None) -> Predicto
             f"--semantics and occupy.mono_votes vote on what depth sees, not on {family!r}; "
             "leave out --predictor"
         )
-    from world2minecraft.reconstruction.occupancy.voters import voters_of  # noqa: PLC0415  # Few runs have any.
+    from world2minecraft.reconstruction.occupancy.semantic_fusion import voters_of  # noqa: PLC0415  # Few runs have any.
 
     return make(voters=voters_of(chosen))
 

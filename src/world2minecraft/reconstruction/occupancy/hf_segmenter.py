@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, first_line
-from world2minecraft.external_models import hub
-from world2minecraft.external_models.pictures import prepared
-from world2minecraft.external_models.single_thread import single_thread
+from world2minecraft.external_models import transformers_hub as hub
+from world2minecraft.external_models.transformers_hub import prepared, single_thread
 
 TASK = "the task is semantic"  # OneFormer is told in words.
 TOKENIZER_FILES = ("tokenizer.json", "vocab.json")

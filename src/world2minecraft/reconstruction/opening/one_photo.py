@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.judged import JudgedCapture
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.photos import judged_photos
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
 from world2minecraft.capture.stereo import DepthModel, depth_model
+from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View

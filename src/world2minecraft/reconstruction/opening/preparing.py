@@ -7,13 +7,13 @@ from typing import Any
 
 from world2minecraft.capture.frames import Capture
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.judged import JudgedCapture, judge
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.photos import CapturePhotos, judged_photos
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.stereo import depth_maps, depth_model, network_maps
+from world2minecraft.capture.validation import JudgedCapture, judge
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.alignment.align import ImplausibleRoomError
-from world2minecraft.capture.judged import JudgedCapture, judge_capture, spread_over
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.scale import KnownPoints, collect_unscaled, estimate_scale, parse_known
+from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over
 from world2minecraft.capture.view_stream import CaptureViews, read_view, without_colour
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, InputError, UnknownNameError, UsageError

@@ -6,6 +6,6 @@
 
 from world2minecraft.reconstruction.registration.corrected_scan import corrected, told
 from world2minecraft.reconstruction.registration.parameters import RegisterParameters
-from world2minecraft.reconstruction.registration.refine import Registered, refine, register
+from world2minecraft.reconstruction.registration.pose_refinement import Registered, refine, register
 
 __all__ = ["RegisterParameters", "Registered", "corrected", "refine", "register", "told"]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.retrieval.object_evidence import AGAINST, OWN, Evidence
 
 THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
@@ -49,7 +49,7 @@ def _pieces(cells: np.ndarray) -> list[np.ndarray]:
     low = cells.min(axis=0)
     mask = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
     mask[tuple((cells - low).T)] = True
-    numbers, count = connected_parts(mask)
+    numbers, count = label_components(mask)
     return [np.argwhere(numbers == number) + low for number in range(1, count + 1)]
 
 

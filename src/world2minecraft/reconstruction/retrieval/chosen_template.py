@@ -7,11 +7,15 @@ import numpy as np
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Template, template, templates_of
 from world2minecraft.reconstruction.retrieval.bounds import floor_under_m, within_rooms
-from world2minecraft.reconstruction.retrieval.match import best_matches
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
-from world2minecraft.reconstruction.retrieval.seeds import limits, reach_of
-from world2minecraft.reconstruction.retrieval.trial import Bias, Scored
+from world2minecraft.reconstruction.retrieval.template_matching import (
+    Bias,
+    Scored,
+    best_matches,
+    limits,
+    reach_of,
+)
 
 OWN_CELLS = "cells"
 

@@ -15,7 +15,7 @@ from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Span, Template, template, variants_of
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence
-from world2minecraft.reconstruction.retrieval.trial import Bias, Scored, score_shifts
+from world2minecraft.reconstruction.retrieval.template_matching import Bias, Scored, score_shifts
 
 LOST_IOU = 0.02  # What another design may explain less: about the noise of a scan.
 SLACK_M = 0.04  # Half a cell: sizes are whole cells.

@@ -11,8 +11,8 @@ from typing import Protocol
 
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.layout.layouts import find_structure
 from world2minecraft.reconstruction.layout.photo_walls import with_whole_walls, without_wall_guesses
+from world2minecraft.reconstruction.layout.room_layouts import find_structure
 
 __all__ = [
     "LABELLERS",

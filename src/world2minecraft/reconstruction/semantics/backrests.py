@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.structure import Wall
 from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
 
@@ -33,7 +33,7 @@ def classes_with_backs(surface: Surface, wall: Wall, labels: np.ndarray) -> np.n
     if not cases:
         return face.classes
     classes, oklab = face.classes.copy(), relief.of(surface.oklab)
-    patches, count = connected_parts(hung)
+    patches, count = label_components(hung)
     for patch in (patches == number for number in range(1, count + 1)):
         cells = face.cells & patch
         if not cells.any():
@@ -54,7 +54,7 @@ def _cases_before(
     first = max(deep.start - surface.cells_of(REACH_M), 0)
     box = (slice(first, deep.stop), *across)
     axis, sign = wall.relief.axis, wall.relief.sign
-    parts, count = connected_parts(turned(labels, axis, sign)[box] == SemanticClass.FURN)
+    parts, count = label_components(turned(labels, axis, sign)[box] == SemanticClass.FURN)
     oklab = turned(surface.oklab, axis, sign)[box]
     for number, place in enumerate(ndimage.find_objects(parts, count), 1):
         own = parts[place] == number

@@ -4,8 +4,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.geometry.morphology import grown, plan_of
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.geometry.morphology import dilate, project_to_plan
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters, PlateParameters
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.semantics.horizontal_surfaces import Plate, find_plates
@@ -57,8 +57,8 @@ def label_furniture(
 
     Things that stand apart are looked at apart, so that a house takes as long as its rooms.
     """
-    plan, inside = plan_of(rest), wall.sum(axis=2) < WALL_CELLS
-    groups, count = connected_parts(plan | (grown(plan, surface.cells_of(APART_M / 2)) & inside))
+    plan, inside = project_to_plan(rest), wall.sum(axis=2) < WALL_CELLS
+    groups, count = label_components(plan | (dilate(plan, surface.cells_of(APART_M / 2)) & inside))
     margin = surface.cells_of(MARGIN_M)
     for number, box in enumerate(ndimage.find_objects(groups, count), 1):
         x, y = (slice(max(side.start - margin, 0), side.stop + margin) for side in box)
@@ -79,7 +79,7 @@ def _label_group(
     """
     left = rest.copy()
     tables, seats = _label_plates(surface, left, labels, parameters)
-    contact = {kind: grown((labels == kind) & rest & ~left) for kind in JOINING_CLASSES}
+    contact = {kind: dilate((labels == kind) & rest & ~left) for kind in JOINING_CLASSES}
     for piece in find_pieces(surface, left, wall, parameters.pieces):
         joined = _joined_class(piece, contact, parameters)
         labels[piece.at] = joined or class_of_piece(piece, tables, seats, parameters.pieces)
@@ -124,14 +124,14 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     reach_m, top_m = REACH_M[kind]
     is_bed = kind == SemanticClass.BED
     outline = _with_head(surface, plate, left) if is_bed else plate.footprint
-    around = grown(outline, surface.cells_of(reach_m))[:, :, None]
+    around = dilate(outline, surface.cells_of(reach_m))[:, :, None]
     reach = around & left & (height <= max(top_m, plate.height_m + TOP_M))
     if kind == SemanticClass.TABLE:
         # Beside its rim, what rises higher is the back of a chair.
         rises = np.zeros_like(left)
         rises[:, :, :-1] = left[:, :, 1:] & ~plate.footprint[:, :, None]
         return reach & (height >= plate.height_m - TOP_M) & ~rises
-    parts, _ = connected_parts(reach)
+    parts, _ = label_components(reach)
     own = np.unique(parts[plate.mask & left])
     return reach & np.isin(parts, own[own > 0])
 
@@ -139,7 +139,7 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
 def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
     """Return a bed's outline with its head: pillows and a headboard rise along a whole side."""
     first = surface.layers_below(plate.height_m + TOP_M)
-    risen = plan_of(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
+    risen = project_to_plan(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
     rows, columns = np.nonzero(plate.footprint)
     x, y = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
     more = surface.cells_of(HEAD_M)
@@ -166,7 +166,7 @@ def _stands_free(
 
     What touches an easy chair, which is closed all around, in another colour is another thing.
     """
-    beyond = grown(claimed, 2) & left & ~claimed
+    beyond = dilate(claimed, 2) & left & ~claimed
     count = int(beyond.sum())
     if plate.rim_share >= parameters.box_share:
         apart = surface.oklab[beyond] - np.median(surface.oklab[claimed], axis=0)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.histogram_peaks import highest_peak
-from world2minecraft.geometry.morphology import filled, grown, plan_of, shrunk
+from world2minecraft.geometry.morphology import dilate, erode, fill_gaps_and_holes, project_to_plan
 from world2minecraft.reconstruction.layout.parameters import PlateParameters
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 
@@ -75,7 +75,7 @@ def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarr
 
 def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) -> list[Plate]:
     """Return the plates among cells of one height, by decreasing number of columns."""
-    parts, count = connected_parts(plan_of(near))
+    parts, count = label_components(project_to_plan(near))
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)[1:]
     found = []
     for part in np.argsort(-sizes, kind="stable") + 1:
@@ -86,7 +86,7 @@ def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) 
 
 
 def _plate(surface: Surface, mask: np.ndarray) -> Plate:
-    footprint = filled(plan_of(mask))
+    footprint = fill_gaps_and_holes(project_to_plan(mask))
     heights = surface.points_m[..., 2][mask]
     layer = int(np.bincount(np.nonzero(mask)[2]).argmax())
     rows, columns = np.nonzero(footprint)
@@ -112,8 +112,8 @@ def _rim_share(surface: Surface, footprint: np.ndarray, layer: int) -> float:
     bottom = max(surface.floor_layer + 2, 0)
     if layer - 1 <= bottom:
         return 0.0
-    inner = shrunk(footprint, 2)
-    outer = grown(footprint)
+    inner = erode(footprint, 2)
+    outer = dilate(footprint)
     rim = outer & ~inner
     band = slice(bottom, layer)
     front = rim[:, :, None] & surface.occupied[:, :, band]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.morphology import grown, shrunk
+from world2minecraft.geometry.morphology import dilate, erode
 from world2minecraft.reconstruction.layout.parameters import (
     PieceParameters,
     PlateParameters,
@@ -32,7 +32,7 @@ class Table:
         """Return the table of a plate."""
         reach = surface.cells_of(parameters.back_gap_m)
         outline = plate.footprint
-        return cls(plate.height_m, grown(outline), shrunk(outline), grown(outline, reach))
+        return cls(plate.height_m, dilate(outline), erode(outline), dilate(outline, reach))
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Seat:
         points = surface.points_m[plate.mask][:, :2].astype(np.float64)
         reach = surface.cells_of(parameters.foot_reach_m)
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
-        return cls(plate.height_m, middle, grown(plate.footprint, reach))
+        return cls(plate.height_m, middle, dilate(plate.footprint, reach))
 
 
 def class_of_plate(

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.parameters import PieceParameters, within
 from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
@@ -79,7 +79,7 @@ def _box_before(
 
 def _plates(near: np.ndarray) -> list[np.ndarray]:
     """Return the parts of cells at one depth that hang together, seen face on."""
-    parts, count = connected_parts(cast(np.ndarray, near.any(axis=0)))
+    parts, count = label_components(cast(np.ndarray, near.any(axis=0)))
     return [near & (parts == part)[None] for part in range(1, count + 1)]
 
 

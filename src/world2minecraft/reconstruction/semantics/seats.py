@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.morphology import plan_of
+from world2minecraft.geometry.morphology import project_to_plan
 from world2minecraft.reconstruction.layout.parameters import PlateParameters, within
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.semantics.horizontal_surfaces import Plate
@@ -52,7 +52,7 @@ def back_of(
     risen = left[x, y, first:last]
     if not risen.any():
         return 0.0, 1.0
-    around, depth = plan_of(risen), 2 * AROUND_CELLS
+    around, depth = project_to_plan(risen), 2 * AROUND_CELLS
     strips = (around[:depth], around[-depth:], around[:, :depth].T, around[:, -depth:].T)
     sides = [np.atleast_1d(strip.any(axis=0)) for strip in strips]
     longest = max(len(side) for side in sides)
@@ -67,5 +67,5 @@ def back_of(
 def _is_board(surface: Surface, plate: Plate, parameters: PlateParameters) -> bool:
     """Return whether much stands over a plate higher than any chair: then it is a shelf's board."""
     first, last = (surface.layers_below(height) for height in parameters.shelf_m)
-    over = plan_of(surface.occupied[:, :, first:last])
+    over = project_to_plan(surface.occupied[:, :, first:last])
     return bool(over[plate.footprint].mean() >= parameters.shelf_share)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 
 NEIGHBOURHOOD = np.argwhere(np.ones((3, 3, 3), bool))
 
@@ -19,7 +19,7 @@ def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
     result = labels.copy()
     padded = np.pad(labels, 1)
     for class_id in range(1, CLASS_COUNT):
-        parts, count = connected_parts(labels == class_id)
+        parts, count = label_components(labels == class_id)
         sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
         small = np.flatnonzero(sizes < small_cells)
         cells = np.argwhere(np.isin(parts, small[small > 0]))

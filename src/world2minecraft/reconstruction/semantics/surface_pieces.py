@@ -6,7 +6,7 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.parameters import PieceParameters
 from world2minecraft.reconstruction.layout.surface_cells import Surface
@@ -54,7 +54,7 @@ def find_pieces(
 
     A piece is near a wall where one of its cells is within ``near_wall_m`` of a wall's column.
     """
-    parts, count = connected_parts(rest)
+    parts, count = label_components(rest)
     columns = wall.sum(axis=2) >= 2
     apart_m = np.full(columns.shape, np.inf)
     if columns.any():

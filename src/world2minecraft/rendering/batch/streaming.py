@@ -19,7 +19,7 @@ from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY, Paper, exposure_of
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
-from world2minecraft.rendering.views.poses import Shot
+from world2minecraft.rendering.views.cameras import Shot
 
 # Work that overlaps: things are made while those before them are used or written.
 #

@@ -9,9 +9,8 @@ import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.rules.light import BRIGHTEST, light_of
-from world2minecraft.minecraft.visual import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
 from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     BlockModel,

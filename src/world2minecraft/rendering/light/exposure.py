@@ -8,7 +8,7 @@ them were grey.
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
+from world2minecraft.minecraft.rules.light import SHUT, SOLID, steps_of
 from world2minecraft.rendering.light.light_field import LightField
 from world2minecraft.rendering.light.propagation import BRIGHTEST, units
 from world2minecraft.rendering.light.settings import LookLight

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.flood import SOLID, with_margin
+from world2minecraft.minecraft.rules.light import SOLID, with_margin
 from world2minecraft.rendering.light.propagation import (
     flood_block,
     flood_sky,

@@ -15,8 +15,15 @@ import numpy as np
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.collision_shapes import boxes_of, is_full_cube
-from world2minecraft.minecraft.rules.flood import DIMS, SHUT, SOLID, spread, steps_of
-from world2minecraft.minecraft.rules.light import lets_light_through, light_of
+from world2minecraft.minecraft.rules.light import (
+    DIMS,
+    SHUT,
+    SOLID,
+    lets_light_through,
+    light_of,
+    spread,
+    steps_of,
+)
 
 # What block states are to light: what each gives, and which way it lets light through.
 
@@ -34,7 +41,7 @@ HIDDEN_LAMP = "minecraft:light"
 
 @lru_cache(maxsize=1 << 16)
 def word_of(state: str) -> int:
-    """Return what ``minecraft.rules.flood`` knows of a block state.
+    """Return what ``minecraft.rules.light`` knows of a block state.
 
     Raises:
         UsageError: the text is no block state.
@@ -62,7 +69,7 @@ def light_rows(
         hidden_lamps: whether the game's invisible light blocks shine.
 
     Returns:
-        uint32 [P + 1], the words of ``minecraft.rules.flood``, and uint8 [P + 1], the light that
+        uint32 [P + 1], the words of ``minecraft.rules.light``, and uint8 [P + 1], the light that
         each gives, 0 to 15.
     """
     words = [SHUT, *map(word_of, palette)]
@@ -100,7 +107,7 @@ def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.nd
 
     Args:
         kinds: uint16 [X + 2, Y + 2, Z + 2], rows of ``words``; the margin has row 0.
-        words: uint32 [K], see ``minecraft.rules.flood``.
+        words: uint32 [K], see ``minecraft.rules.light``.
         reach: blocks a level, from ``whole_reach``; 1 is the game's.
     """
     top = units(BRIGHTEST, reach)

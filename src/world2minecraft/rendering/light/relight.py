@@ -7,7 +7,7 @@ shines around it then spreads back in. The result is that of a whole new flood.
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.flood import spread, steps_of
+from world2minecraft.minecraft.rules.light import spread, steps_of
 from world2minecraft.rendering.light.light_field import (
     MOST_STATES,
     LightField,

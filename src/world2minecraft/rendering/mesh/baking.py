@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.rendering.atlas import Atlas, to_srgb
 from world2minecraft.rendering.block_elements import BlockModel, LookSource
 from world2minecraft.rendering.block_models import OwnLooks

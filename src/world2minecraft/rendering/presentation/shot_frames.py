@@ -22,7 +22,7 @@ from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY, Paper, exposure_of
 from world2minecraft.rendering.picture import Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
-from world2minecraft.rendering.views.poses import Shot
+from world2minecraft.rendering.views.cameras import Shot
 
 GPU = "world2minecraft.rendering.gpu"  # Loaded late: most machines have no use for it.
 LEAST_A_JOB = 16  # Pictures: a process takes some seconds to begin.

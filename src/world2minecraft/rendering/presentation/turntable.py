@@ -1,20 +1,101 @@
 """A build on a neutral ground that turns once around: the picture that shows a build as a thing."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
+from scipy.ndimage import gaussian_filter
 
+from world2minecraft.core.coordinates import invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.block_elements import LookSource
 from world2minecraft.rendering.light_parameters import NEUTRAL
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions, exposed, frames
-from world2minecraft.rendering.presentation.studio import Studio, studio_of
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.views.cameras import Shot
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
-from world2minecraft.rendering.views.poses import Shot
+
+# A neutral ground under a build that is shown alone, with a soft shadow where it stands.
+
+GROUND = (233.0, 231.0, 227.0)  # A warm light grey, darker towards the picture's corners.
+CORNER_SHADE = 0.10
+# Shadows by their softness in shares of the build's size, and how dark they are.
+SHADOWS = ((0.014, 0.46), (0.07, 0.36))
+LOW_SHARE = 0.35  # What hangs higher than this share of the build casts a fainter shadow.
+EDGE_SHARE = 0.25  # Of the build's size: so far around it the shadow is kept.
+
+
+@dataclass(frozen=True, eq=False)
+class Studio:
+    """The ground of a build: how dark it is at each place, in blocks around the build."""
+
+    level: float  # The ground's height, world blocks.
+    corner: np.ndarray  # float64 [2], x and z of the map's first sample
+    darkness: np.ndarray  # float32 [A, B], 0 lit, four samples a block at most
+    per_block: float
+    block_to_room: np.ndarray
+
+    def seen_by(self, camera: Camera, camera_to_room: np.ndarray, where: np.ndarray) -> np.ndarray:
+        """Return the ground's colours, float32 [N, 3] sRGB, at the N pixels that a mask names.
+
+        Args:
+            camera: intrinsics.
+            camera_to_room: 4x4, from above.
+            where: bool [H, W].
+        """
+        rows, columns = np.argwhere(where).T
+        across = (columns + 0.5 - camera.cx_px) / camera.fx_px
+        down = (rows + 0.5 - camera.cy_px) / camera.fy_px
+        camera_to_block = invert(self.block_to_room) @ camera_to_room
+        ahead = np.column_stack([across, down, np.ones(len(rows))]) @ camera_to_block[:3, :3].T
+        eye = camera_to_block[:3, 3]
+        drop = np.minimum(ahead[:, 1], -1e-9)
+        place = eye + ahead * ((self.level - eye[1]) / drop)[:, None]
+        off = np.hypot(2 * columns / camera.width_px - 1, 2 * rows / camera.height_px - 1)
+        light = (1 - self._dark(place[:, [0, 2]])) * (1 - CORNER_SHADE * np.minimum(off, 1.5) ** 2)
+        return (light[:, None] * np.array(GROUND)).astype(np.float32)
+
+    def _dark(self, places: np.ndarray) -> np.ndarray:
+        """Return the darkness at places, float64 [N, 2] of x and z, bilinear."""
+        at = (places - self.corner) * self.per_block - 0.5
+        shape = np.array(self.darkness.shape)
+        inside = np.asarray(((at >= 0) & (at < shape - 1.001)).all(axis=1))
+        at = np.where(inside[:, None], at, 0.0)
+        i, j = np.floor(at).astype(np.int64).T
+        p, q = (at - np.floor(at)).T
+        dark = self.darkness
+        low = (1 - q) * dark[i, j] + q * dark[i, j + 1]
+        high = (1 - q) * dark[i + 1, j] + q * dark[i + 1, j + 1]
+        return np.where(inside, (1 - p) * low + p * high, 0.0)
+
+
+def studio_of(volume: BlockVolume) -> Studio:
+    """Return the ground on which a volume's blocks stand."""
+    filled = volume.states != 0
+    layers = np.flatnonzero(filled.any(axis=(0, 2)))
+    first = int(layers[0]) if len(layers) else 0
+    height = max(1, round(LOW_SHARE * volume.states.shape[1]))
+    weight = np.exp(-np.arange(volume.states.shape[1] - first) / height)
+    plan = (filled[:, first:] * weight[None, :, None]).max(axis=1).astype(np.float32)
+    size = float(max(plan.shape))
+    edge = int(np.ceil(EDGE_SHARE * size)) + 2
+    per_block = max(1, int(min(4, 1024 // (size + 2 * edge) or 1)))
+    fine = np.pad(plan, edge).repeat(per_block, axis=0).repeat(per_block, axis=1)
+    lit = np.ones_like(fine)
+    for softness, depth in SHADOWS:
+        soft = gaussian_filter(fine, max(softness * size, 0.3) * per_block, mode="constant")
+        lit *= 1 - depth * soft
+    x, y, z = volume.corner
+    return Studio(
+        level=float(y + first),
+        corner=np.array([x - edge, z - edge], np.float64),
+        darkness=1 - lit,
+        per_block=float(per_block),
+        block_to_room=volume.block_to_room,
+    )
+
 
 FOV_DEG = 24.0  # Narrow: nearly parallel edges read as a model.
 OPEN_ELEVATION_DEG = 44.0  # Into a room, over its furniture.

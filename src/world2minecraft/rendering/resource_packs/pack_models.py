@@ -11,15 +11,28 @@ from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
-from world2minecraft.minecraft.glow import is_luminous
+from world2minecraft.minecraft.visual_shapes import is_luminous
 from world2minecraft.rendering.block_elements import BlockModel, Element
-from world2minecraft.rendering.resource_packs.blockstates import Part, parts_of
-from world2minecraft.rendering.resource_packs.fluids import FLUIDS, fluid_model
-from world2minecraft.rendering.resource_packs.implied import implied_model, other_names
-from world2minecraft.rendering.resource_packs.layering import merged
-from world2minecraft.rendering.resource_packs.model_files import MOST_ELEMENTS, flatten, texture_of
-from world2minecraft.rendering.resource_packs.resources import Resources
-from world2minecraft.rendering.resource_packs.shapes import element_of
+from world2minecraft.rendering.resource_packs.elements import (
+    carry,
+    element_of,
+    merged,
+    quarter_turn,
+)
+from world2minecraft.rendering.resource_packs.implicit_models import (
+    FLUIDS,
+    fluid_model,
+    implied_model,
+    other_names,
+)
+from world2minecraft.rendering.resource_packs.model_json import (
+    MOST_ELEMENTS,
+    Part,
+    flatten,
+    parts_of,
+    texture_of,
+)
+from world2minecraft.rendering.resource_packs.pack_files import Resources
 from world2minecraft.rendering.resource_packs.textures import (
     CLEAR,
     LARGEST_PX,
@@ -27,7 +40,6 @@ from world2minecraft.rendering.resource_packs.textures import (
     is_clear,
 )
 from world2minecraft.rendering.resource_packs.tints import Colour, checked_tints, tint_rule
-from world2minecraft.rendering.resource_packs.turning import carry, quarter_turn
 from world2minecraft.rendering.texture import Texture
 
 FULL_LIGHT = 15

@@ -1,25 +1,238 @@
 """Names of textures become ``Texture`` values: read, cut, squared, joined, with labPBR maps."""
 
+import io
 import re
+import struct
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
-from world2minecraft.rendering.resource_packs.joining import joined
-from world2minecraft.rendering.resource_packs.json_checks import mapping, resource
-from world2minecraft.rendering.resource_packs.lab_pbr import material_maps, normal_map
-from world2minecraft.rendering.resource_packs.layering import OVER, TIMES
-from world2minecraft.rendering.resource_packs.pixels import (
-    decode_png,
-    first_frame,
-    png_size,
-    resampled,
-    side_for,
-)
-from world2minecraft.rendering.resource_packs.resources import Resources
-from world2minecraft.rendering.texture import Texture
+from world2minecraft.rendering.resource_packs.elements import OVER, TIMES
+from world2minecraft.rendering.resource_packs.json_checks import listing, mapping, number, resource
+from world2minecraft.rendering.resource_packs.pack_files import Resources
+from world2minecraft.rendering.texture import MOST_PX, Texture
+
+# Textures laid one over another, each times a colour: what joined elements are drawn with.
+
+# The maps of a texture, and what stands for one that a layer lacks where another has it.
+FLAT = {"normal": (128, 128, 255), "roughness": 204, "metal": 0, "emission": 0}
+
+
+def joined(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
+    """Return one texture of several, the first at the bottom.
+
+    Args:
+        layers: at least one texture, each with the sRGB colour that it is times.
+    """
+    side = max(texture.colour.shape[0] for texture, _ in layers)
+    done: Texture | None = None
+    for texture, tint in layers:
+        above = _tinted(_scaled(texture, side), np.array(tint))
+        done = above if done is None else _over(done, above)
+    if done is None:
+        raise ValueError("there is no layer")
+    return done
+
+
+def _scaled(texture: Texture, side: int) -> Texture:
+    """Return a texture with each pixel repeated; sides are powers of two."""
+    times = side // texture.colour.shape[0]
+    maps = {
+        name: None if (held := getattr(texture, name)) is None else _grown(held, times)
+        for name in FLAT
+    }
+    return replace(texture, colour=_grown(texture.colour, times), **maps)
+
+
+def _grown(pixels: np.ndarray, times: int) -> np.ndarray:
+    return pixels.repeat(times, axis=0).repeat(times, axis=1)
+
+
+def _tinted(texture: Texture, tint: np.ndarray) -> Texture:
+    """Return a texture times a colour, multiplied in linear light."""
+    if (tint == 255).all():
+        return texture
+    colour = texture.colour.copy()
+    product = _linear(colour[..., :3]) * _linear(tint)
+    colour[..., :3] = np.round(_srgb(product) * 255)
+    return replace(texture, colour=colour)
+
+
+def _linear(values: np.ndarray) -> np.ndarray:
+    share = values / 255
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+
+
+def _srgb(light: np.ndarray) -> np.ndarray:
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def _over(below: Texture, above: Texture) -> Texture:
+    """Return one texture over another; each map is that of the one that is seen."""
+    cover = above.colour[..., 3:] / 255
+    if not above.translucent:
+        cover = (cover >= 0.5).astype(np.float64)
+    colour = below.colour.copy()
+    mixed = below.colour[..., :3] * (1 - cover) + above.colour[..., :3] * cover
+    colour[..., :3] = np.round(mixed)
+    colour[..., 3] = np.maximum(below.colour[..., 3], above.colour[..., 3])
+    seen = cover[..., 0] >= 0.5
+    maps: dict[str, np.ndarray | None] = {}
+    for name, value in FLAT.items():
+        lower, upper = getattr(below, name), getattr(above, name)
+        if lower is None and upper is None:
+            continue
+        flat = np.zeros((*seen.shape, 3) if name == "normal" else seen.shape, np.uint8)
+        flat[...] = value
+        lower, upper = (flat if one is None else one for one in (lower, upper))
+        maps[name] = np.where(seen[..., None] if name == "normal" else seen, upper, lower)
+    is_clear = (below.translucent or above.translucent) and bool((colour[..., 3] < 255).any())
+    return replace(below, colour=colour, translucent=is_clear, **maps)
+
+
+# The maps of labPBR beside a texture: ``NAME_n.png`` its relief, ``NAME_s.png`` its material.
+#
+# In: their pixels. Out: the maps that a ``Texture`` holds. Older layouts of ``_s`` look the same on
+# disk and are read as labPBR 1.3 all the same.
+
+FIRST_METAL = 230  # Of the green channel: below it is the reflectance of what is no metal.
+NO_EMISSION = 255  # Of alpha; 254 is full.
+
+
+def normal_map(pixels: np.ndarray) -> np.ndarray:
+    """Return uint8 [N, N, 3] tangent-space normals of ``_n`` pixels, uint8 [N, N, 4].
+
+    Red is x along u, green y along v: DirectX's way, down. The third is rebuilt; blue (corner
+    darkening) and alpha (height) are left out.
+    """
+    plane = pixels[..., :2] / 255 * 2 - 1
+    length = np.maximum(np.sqrt((plane**2).sum(axis=-1, keepdims=True)), 1.0)
+    plane = plane / length
+    outward = np.sqrt(np.clip(1 - (plane**2).sum(axis=-1, keepdims=True), 0, 1))
+    normal = np.concatenate([plane, outward], axis=-1)
+    return np.clip(np.round(128 + 127 * normal), 0, 255).astype(np.uint8)
+
+
+def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (roughness, metal, emission), uint8 [N, N] each, of ``_s`` pixels, uint8 [N, N, 4].
+
+    Red is perceptual smoothness, green 230 and more a metal, alpha the light that it gives.
+    """
+    roughness = 255 - pixels[..., 0]
+    metal = np.where(pixels[..., 1] >= FIRST_METAL, 255, 0).astype(np.uint8)
+    alpha = pixels[..., 3].astype(np.uint16)
+    emission = np.where(alpha == NO_EMISSION, 0, (alpha * 255 + 127) // 254).astype(np.uint8)
+    return roughness, metal, emission
+
+
+# PNG bytes become pixels: the first frame of an animation, as a square of a power of two.
+
+MOST_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
+_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
+
+
+def png_size(data: bytes) -> tuple[int, int]:
+    """Return the width and height that a PNG says it has; ValueError where it is none."""
+    if not data.startswith(_HEAD) or len(data) < 24:
+        raise ValueError("is no PNG")
+    width, height = struct.unpack(">II", data[16:24])
+    return width, height
+
+
+def decode_png(data: bytes) -> np.ndarray:
+    """Return uint8 [H, W, 4] of a PNG, its size checked before it is unpacked.
+
+    Raises:
+        ValueError: it is no PNG, is damaged or too large.
+    """
+    width, height = png_size(data)
+    if not 0 < width * height <= MOST_PIXELS:
+        raise ValueError(f"has {width} x {height} pixels; at most {MOST_PIXELS:,} are read")
+    try:
+        with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
+            if image.mode.startswith("I"):  # 16 bits of grey.
+                grey = Image.fromarray((np.asarray(image) >> 8).astype(np.uint8))
+                return np.array(grey.convert("RGBA"))
+            return np.array(image.convert("RGBA"))
+    except Exception as error:  # Pillow raises dozens of kinds over damaged files.
+        raise ValueError(f"is a damaged PNG ({error})") from error
+
+
+def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.ndarray:
+    """Return the frame that an animation begins with, the whole picture where there is none.
+
+    Args:
+        pixels: uint8 [H, W, 4].
+        animation: the ``animation`` object of the ``.mcmeta`` file beside the picture.
+
+    Raises:
+        ValueError: the animation is not as the format says.
+    """
+    if animation is None:
+        return pixels
+    height, width = pixels.shape[:2]
+    wide, tall = animation.get("width"), animation.get("height")
+    if wide is None and tall is None:
+        wide = tall = min(width, height)
+    wide = int(number(width if wide is None else wide, "width of a frame", 1, width))
+    tall = int(number(height if tall is None else tall, "height of a frame", 1, height))
+    index = _first_index(animation.get("frames"))
+    columns, rows = width // wide, height // tall
+    if index >= columns * rows:
+        raise ValueError(f"its first frame is {index}, but it has {columns * rows}")
+    row, column = divmod(index, columns)
+    return pixels[row * tall : (row + 1) * tall, column * wide : (column + 1) * wide]
+
+
+def _first_index(frames: Any) -> int:
+    if frames is None or frames == []:
+        return 0
+    first = listing(frames, "frames", 100_000)[0]
+    if isinstance(first, dict):
+        first = mapping(first, "a frame").get("index")
+    return int(number(first, "index of a frame", 0, 100_000))
+
+
+def side_for(pixels: np.ndarray, most_px: int) -> int:
+    """Return the side of the square texture for a frame: a power of two that holds it."""
+    longest = max(pixels.shape[:2])
+    return min(1 << (longest - 1).bit_length(), most_px, MOST_PX)
+
+
+def resampled(pixels: np.ndarray, side_px: int) -> np.ndarray:
+    """Return uint8 [N, N, C]: each pixel the mean of the area that it covers.
+
+    Colours of four channels count by their alpha, so that no dark rim creeps in from holes.
+    """
+    if pixels.shape[:2] == (side_px, side_px):
+        return pixels
+    down, across = (_area_weights(count, side_px) for count in pixels.shape[:2])
+    values = pixels.astype(np.float64)
+    if pixels.shape[2] != 4:
+        return _bytes(np.einsum("ij,kl,jlc->ikc", down, across, values, optimize=True))
+    alpha = np.where(values[..., 3:] == 0, 1e-6, values[..., 3:])
+    values[..., :3] *= alpha
+    values[..., 3:] = alpha
+    mean = np.einsum("ij,kl,jlc->ikc", down, across, values, optimize=True)
+    mean[..., :3] /= mean[..., 3:]
+    return _bytes(mean)
+
+
+def _bytes(values: np.ndarray) -> np.ndarray:
+    return np.clip(values + 0.5, 0, 255).astype(np.uint8)
+
+
+def _area_weights(count: int, side_px: int) -> np.ndarray:
+    """Return float64 [side_px, count]: the share that each old pixel has of each new one."""
+    edges = np.arange(side_px + 1) * (count / side_px)
+    low, high = edges[:-1, None], edges[1:, None]
+    old = np.arange(count)[None, :]
+    return np.clip(np.minimum(high, old + 1) - np.maximum(low, old), 0, None) / (high - low)
+
 
 MOST_PNG_BYTES = 32 << 20
 MOST_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.

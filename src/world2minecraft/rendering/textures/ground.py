@@ -14,8 +14,8 @@ from world2minecraft.rendering.textures.canvas import (
     smooth,
 )
 from world2minecraft.rendering.textures.layout import stones
+from world2minecraft.rendering.textures.plants import scatter
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.stamps import scatter
 from world2minecraft.rendering.textures.surface import Surface
 
 # Flames: foot, height and half width, in sixteenths.

@@ -1,10 +1,15 @@
 """Where pictures are taken from: cameras, the game's poses, circles around a build, walks in it."""
 
-from world2minecraft.rendering.views.cameras import camera_of, vertical_fov_deg_of
+from world2minecraft.rendering.views.cameras import (
+    GamePose,
+    Shot,
+    camera_of,
+    game_pose_of,
+    vertical_fov_deg_of,
+)
 from world2minecraft.rendering.views.orbit import orbit_shots
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour, tour_line, write_lines
-from world2minecraft.rendering.views.poses import GamePose, Shot, game_pose_of
-from world2minecraft.rendering.views.tour import Tour, plan_tour, with_open_doors
+from world2minecraft.rendering.views.walk_through import Tour, plan_tour, with_open_doors
 
 __all__ = [
     "GamePose",

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.rendering.views.poses import Shot
+from world2minecraft.rendering.views.cameras import Shot
 
 ELEVATION_DEG = 28.0  # One sees the roof and the walls of a house.
 TURN_DEG = 34.0  # Where the circle begins: off the diagonal, so that two sides differ.

@@ -19,8 +19,13 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import json_rows, read_bytes, write_text
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.views.cameras import camera_of, vertical_fov_deg_of
-from world2minecraft.rendering.views.poses import GamePose, Shot, game_pose_of
+from world2minecraft.rendering.views.cameras import (
+    GamePose,
+    Shot,
+    camera_of,
+    game_pose_of,
+    vertical_fov_deg_of,
+)
 
 MAX_BYTES = 256 << 20  # About a million poses.
 NEEDED = ("x", "y", "z", "yaw", "pitch")

@@ -8,10 +8,9 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.graph import WalkGraph, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m
-from world2minecraft.rendering.views.hiding import Hiding
-from world2minecraft.rendering.views.sight import FAR_M, look_around
+from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
+from world2minecraft.rendering.views.visibility import FAR_M, Hiding, look_around
 
 MOST_PLACES = 400_000  # Of a larger floor only the nearest part is walked.
 MOST_RATED = 1500  # Places that are rated as stops.

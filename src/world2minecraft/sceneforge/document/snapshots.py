@@ -18,7 +18,7 @@ from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import Line, SceneDraft
 from world2minecraft.editing.scene.packing import pack_objects, unpack_objects
-from world2minecraft.formats.room import GRID_ARRAYS
+from world2minecraft.formats.run_arrays import GRID_ARRAYS
 
 NOTHING_DONE = Line()
 

@@ -17,14 +17,11 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.editing.relocation import placed
 from world2minecraft.editing.world_build import build_into, built_mask
-from world2minecraft.formats.forms import form_named, templates_of_run, write_form
+from world2minecraft.formats.volume_formats import form_named, templates_of_run, write_form
 from world2minecraft.minecraft.commands.player_scale import size_pack
-from world2minecraft.minecraft.file_format import WriteOptions
-from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.server.address import note_of, parse_address
-from world2minecraft.minecraft.server.building import LiveBuilder
-from world2minecraft.minecraft.server.plan import plan_build
-from world2minecraft.minecraft.server.rcon import RconClient
+from world2minecraft.minecraft.file_format import Losses, WriteOptions
+from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
+from world2minecraft.minecraft.server.rcon import RconClient, note_of, parse_address
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
@@ -43,7 +40,7 @@ def export(
 
     Args:
         folder: the scene.
-        form: a name of ``formats.forms``, ``world`` or ``png``.
+        form: a name of ``formats.volume_formats``, ``world`` or ``png``.
         target: where the file goes.
         choice: as ``tasks.parameters_of``.
         progress: told of building and writing.

@@ -19,6 +19,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.sceneforge.array_messages import labels_bytes
 from world2minecraft.sceneforge.comparison import (
     beside_reached,
     checked_name,
@@ -26,7 +27,6 @@ from world2minecraft.sceneforge.comparison import (
     labels_of_truth,
 )
 from world2minecraft.sceneforge.server.requests import workshop_of
-from world2minecraft.sceneforge.volumes import labels_bytes
 from world2minecraft.sceneforge.workshop import Compared, Workshop
 
 

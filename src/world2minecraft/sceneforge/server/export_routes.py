@@ -22,7 +22,7 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.editing.world_build import check_air
-from world2minecraft.minecraft.server.address import parse_address
+from world2minecraft.minecraft.server.rcon import parse_address
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_versions
 from world2minecraft.sceneforge import exports
 from world2minecraft.sceneforge.jobs.jobs import Report, Work

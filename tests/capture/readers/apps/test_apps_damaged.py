@@ -11,10 +11,10 @@ import pytest
 from app_writers import ROOM_TO_ARKIT, WRITERS, shots_of, stored_lzfse, zipped
 from PIL import Image
 
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.exr import ExrImage
-from world2minecraft.capture.readers.apps.lzfse_image import LzfseImage
+from world2minecraft.capture.readers.apps.record3d import LzfseImage
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.errors import InputError, MissingExtraError
 
 NAN = float("nan")

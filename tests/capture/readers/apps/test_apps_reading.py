@@ -22,10 +22,10 @@ from PIL import Image
 
 from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.capture.images import read_colour, read_header
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.video_frames import Movie
 from world2minecraft.capture.sources import SOURCES, find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.capture.view_stream import read_view
 
 ROOM_TO_Z_UP = np.eye(4)

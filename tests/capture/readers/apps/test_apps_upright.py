@@ -7,9 +7,9 @@ from PIL import Image
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.capture.view_stream import read_view
 
 APPS = [app for app in WRITERS if app != "arkitscenes"]  # The same code turns its images.

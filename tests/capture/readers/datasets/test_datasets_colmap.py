@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from writing import save, save_text, zipped
 
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.errors import CaptureError
 
 pycolmap = pytest.importorskip("pycolmap")

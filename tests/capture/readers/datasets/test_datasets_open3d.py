@@ -7,9 +7,9 @@ import pytest
 from writing import millimetres, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 
 
 def camera_json(camera):

@@ -8,10 +8,10 @@ import pytest
 from writing import quaternion, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.datasets.bag_reading import opened_bag
+from world2minecraft.capture.readers.datasets.realsense import opened_bag
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError
 
@@ -239,7 +239,7 @@ def test_a_chunk_that_swells_is_not_unpacked_whole(tmp_path, views, monkeypatch)
     kind = rosbag1.Writer.CompressionFormat.BZ2
     path = write_bag(tmp_path / "a.bag", views[:3], compression=kind)
     monkeypatch.setattr(
-        "world2minecraft.capture.readers.datasets.bag_reading.MAX_CHUNK_BYTES", 60_000
+        "world2minecraft.capture.readers.datasets.realsense.MAX_CHUNK_BYTES", 60_000
     )
     bag = opened_bag.__globals__["Bag"](path)
     positions = list(bag._reader.chunks)

@@ -6,12 +6,12 @@ from scipy.spatial.transform import Rotation, Slerp
 from writing import quaternion, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.judged import judge_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.time_sync import pair_times, pose_between
 from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.quaternions import rotation_of
+from world2minecraft.geometry.rotations import rotation_of
 
 
 def write_tum(folder, views, *, calibration=True, poses=True, late_s=0.004):

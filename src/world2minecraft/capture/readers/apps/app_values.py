@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.numbers import as_floats
+from world2minecraft.capture.frames import as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import opengl_to_opencv_pose
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.quaternions import pose_of
+from world2minecraft.geometry.rotations import pose_of
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
 MOST_M = 1e9

@@ -17,7 +17,7 @@ from world2minecraft.capture.readers.apps.app_values import camera, files_by_ste
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotation import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_of_vector
 
 TRAJECTORY = "lowres_wide.traj"
 SAME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.image_names import NamedByFile
-from world2minecraft.capture.images import MAX_PIXELS, ImageHeader
+from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFile
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.core.files import read_bytes

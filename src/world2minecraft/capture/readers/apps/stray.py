@@ -23,7 +23,7 @@ from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.quaternions import pose_of
+from world2minecraft.geometry.rotations import pose_of
 
 ODOMETRY = "odometry.csv"
 MATRIX = "camera_matrix.csv"

@@ -3,14 +3,201 @@
 The model lies in ``sparse/0`` (or ``sparse``, or here), the photos in ``images/`` beside it.
 """
 
+import struct
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
+import numpy as np
+
 from world2minecraft.capture.frames import Capture, FrameFiles
-from world2minecraft.capture.readers.datasets.colmap_model import ModelImage, read_model
-from world2minecraft.capture.readers.datasets.text_tables import checked_inside
+from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
+from world2minecraft.capture.readers.datasets.text_tables import (
+    checked_inside,
+    read_rows,
+    to_floats,
+)
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import CaptureError, DamagedFileError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import Camera
+from world2minecraft.geometry.rotations import pose_of
+
+# COLMAP's ``cameras`` and ``images``, as text or binary: lenses and where each photo was taken.
+#
+# Binary files are little-endian: a uint64 count, then records; those of images end with the points
+# that were seen, which are skipped here. Text files have a line a camera and two lines an image,
+# the second of which may be empty. Poses are world to camera: a quaternion w x y z and a shift.
+
+MAX_MODEL_BYTES = 1 << 30  # Ten thousand photos with ten thousand points each have 2.4 GB: split.
+MAX_NAME_BYTES = 1024
+# The name of each model by its number, and how many parameters it has.
+MODELS = (
+    ("SIMPLE_PINHOLE", 3),
+    ("PINHOLE", 4),
+    ("SIMPLE_RADIAL", 4),
+    ("RADIAL", 5),
+    ("OPENCV", 8),
+    ("OPENCV_FISHEYE", 8),
+    ("FULL_OPENCV", 12),
+    ("FOV", 5),
+    ("SIMPLE_RADIAL_FISHEYE", 4),
+    ("RADIAL_FISHEYE", 5),
+    ("THIN_PRISM_FISHEYE", 12),
+)
+ADVICE = "run colmap image_undistorter and give its folder"
+_CAMERA = struct.Struct("<IiQQ")
+_IMAGE = struct.Struct("<I7dI")
+
+
+@dataclass(frozen=True, eq=False)
+class ModelImage:
+    """One photo of a model: its name below the images' folder, its camera and camera to world."""
+
+    name: str
+    camera: Camera
+    camera_to_world: np.ndarray
+
+
+def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
+    """Return the photos of a model, by their numbers.
+
+    Args:
+        folder: holds ``cameras.bin`` and ``images.bin``, or both as ``.txt``.
+
+    Raises:
+        CaptureError: a lens is of a kind that is not read, or a camera is missing.
+        DamagedFileError: a file is cut short or is not what it says.
+    """
+    suffix = ".bin" if (folder / "images.bin").is_file() else ".txt"
+    cameras_path, images_path = folder / f"cameras{suffix}", folder / f"images{suffix}"
+    if suffix == ".bin":
+        cameras, images = _binary_cameras(cameras_path), _binary_images(images_path)
+    else:
+        cameras, images = _text_cameras(cameras_path), _text_images(images_path)
+    found = []
+    for number, values, camera, name in sorted(images, key=lambda image: image[0]):
+        if camera not in cameras:
+            raise CaptureError(
+                images_path,
+                f"image {number} is of camera {camera}, which is not there: copy both files again",
+            )
+        world_to_camera = pose_of(values[4:7], values[[1, 2, 3, 0]])
+        lost = not np.isfinite(world_to_camera).all()
+        pose = np.full((4, 4), np.nan) if lost else invert_rigid(world_to_camera)
+        found.append(ModelImage(name, cameras[camera], pose))
+    return tuple(found)
+
+
+_Image = tuple[int, np.ndarray, int, str]
+
+
+def _camera(path: AnyPath, model: str, size: tuple[int, int], values: np.ndarray) -> Camera:
+    """Return the camera of a model's parameters; COLMAP's pixel centres lie at +0.5 as ours do."""
+    if model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"):
+        lens, bent = (values[0], values[0], *values[1:3]), values[3:]
+    elif model in ("PINHOLE", "OPENCV", "FULL_OPENCV"):
+        lens, bent = values[:4], values[4:]
+    else:
+        raise CaptureError(path, f"has a camera of the model {model}, which is not read; {ADVICE}")
+    if len(bent) > 5 and np.any(bent[5:]):
+        raise CaptureError(path, f"has a lens with terms over k3, which are not read; {ADVICE}")
+    return stated_camera(path, size, lens, bent[:5], centre=0.0)
+
+
+class _Reader:
+    """Takes values from the bytes of a file, never more than there are."""
+
+    def __init__(self, path: AnyPath):
+        self.path, self.data, self.position = path, read_bytes(path, MAX_MODEL_BYTES), 0
+
+    def take(self, layout: struct.Struct) -> tuple:
+        """Return the next values."""
+        start = self.skip(layout.size)
+        return layout.unpack_from(self.data, start)
+
+    def skip(self, size: int) -> int:
+        """Go on by some bytes and return where they began."""
+        start = self.position
+        if size > len(self.data) - start:
+            raise DamagedFileError(self.path, "is cut short; copy it again")
+        self.position += size
+        return start
+
+    def take_name(self) -> str:
+        """Return the next text, which ends with a zero byte."""
+        end = self.data.find(b"\0", self.position, self.position + MAX_NAME_BYTES)
+        if end < 0:
+            raise DamagedFileError(self.path, "has an image without a name; copy it again")
+        name = self.data[self.position : end]
+        self.position = end + 1
+        return name.decode("utf-8", "replace")
+
+
+_COUNT = struct.Struct("<Q")
+
+
+def _binary_cameras(path: AnyPath) -> dict[int, Camera]:
+    reader = _Reader(path)
+    cameras = {}
+    (count,) = reader.take(_COUNT)
+    for _ in range(count):
+        number, model, width, height = reader.take(_CAMERA)
+        if not 0 <= model < len(MODELS):
+            raise CaptureError(path, f"has a camera of model {model}, which is not read; {ADVICE}")
+        name, parameters = MODELS[model]
+        values = np.array(reader.take(struct.Struct(f"<{parameters}d")))
+        cameras[number] = _camera(path, name, (width, height), values)
+    return cameras
+
+
+def _binary_images(path: AnyPath) -> list[_Image]:
+    reader = _Reader(path)
+    images: list[_Image] = []
+    (count,) = reader.take(_COUNT)
+    for _ in range(count):
+        number, *values, camera = reader.take(_IMAGE)
+        name = reader.take_name()
+        (points,) = reader.take(_COUNT)
+        reader.skip(24 * points)
+        images.append((number, np.array(values), camera, name))
+    return images
+
+
+def _text_cameras(path: AnyPath) -> dict[int, Camera]:
+    counts = dict(MODELS)
+    cameras = {}
+    for row in read_rows(path):
+        if len(row) < 5 or not all(
+            word.isdecimal() and len(word) < 10 for word in (row[0], *row[2:4])
+        ):
+            raise CaptureError(path, "must hold lines of number, model, width, height, parameters")
+        if row[1] in counts and len(row) != 4 + counts[row[1]]:
+            raise CaptureError(
+                path, f"{row[1]} has {counts[row[1]]} parameters, not {len(row) - 4}"
+            )
+        values = to_floats(path, row[4:])
+        cameras[int(row[0])] = _camera(path, row[1], (int(row[2]), int(row[3])), values)
+    return cameras
+
+
+def _text_images(path: AnyPath) -> list[_Image]:
+    lines = iter(read_bytes(path, MAX_MODEL_BYTES).decode("utf-8", "replace").splitlines())
+    images: list[_Image] = []
+    for line in lines:
+        if not line.strip() or line.startswith("#"):
+            continue
+        row = line.split(maxsplit=9)
+        if len(row) != 10 or not row[0].isdecimal() or not row[8].isdecimal():
+            raise CaptureError(
+                path,
+                "must hold number, QW QX QY QZ, TX TY TZ, camera and name, then a line of points",
+            )
+        images.append((int(row[0]), to_floats(path, row[1:8]), int(row[8]), row[9].strip()))
+        next(lines, None)  # The points that this image saw; the line may be empty.
+    return images
+
 
 IMAGE_FOLDERS = ("images", "rgb", "image", ".")
 _SAMPLED = 20  # Names that are looked for to tell which folder the photos lie in.

@@ -13,8 +13,7 @@ from typing import IO
 
 import numpy as np
 
-from world2minecraft.capture.image_names import NamedByFrame
-from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, opened_image
+from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame, opened_image
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes

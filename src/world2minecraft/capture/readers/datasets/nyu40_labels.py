@@ -10,8 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.image_names import NamedByFile
-from world2minecraft.capture.images import ImageHeader, check_whole, read_header, read_raw
+from world2minecraft.capture.images import (
+    ImageHeader,
+    NamedByFile,
+    check_whole,
+    read_header,
+    read_raw,
+)
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.classes import UNKNOWN, class_id
 from world2minecraft.core.errors import CaptureError

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES
-from world2minecraft.capture.numbers import as_floats
 from world2minecraft.capture.readers.datasets.intrinsics import (
     PRIMESENSE,
     VGA,

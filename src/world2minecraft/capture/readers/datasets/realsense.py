@@ -5,21 +5,265 @@ its ROS driver where depth was aligned (``/camera/aligned_depth_to_color/image_r
 stream stand its intrinsics, how it stands to the others and how much a unit of depth is.
 """
 
+import bz2
+import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, cast
 
 import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
-from world2minecraft.capture.readers.datasets.bag_reading import BagImage, Stream, opened_bag
+from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame
+from world2minecraft.capture.readers.datasets.embedded_images import check_zipped
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
-from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.errors import (
+    CaptureError,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.quaternions import pose_of
+from world2minecraft.geometry.rotations import pose_of
+
+# ROS 1 bags read message by message, never as a whole; hostile until checked.
+#
+# The index of the bag says where each message lies. One chunk of a few pictures is unpacked at a
+# time, within limits. Everything that the reading library may raise over a damaged bag becomes one
+# of our errors.
+
+MAX_CHUNK_BYTES = 256 << 20  # Recorders close a chunk at 0.75 MB or after one large picture.
+IMAGE = "sensor_msgs/msg/Image"
+# How each encoding is kept: dtype, channels, and the order that makes it RGB.
+ENCODINGS: dict[str, tuple[str, int, tuple[int, ...]]] = {
+    "rgb8": ("u1", 3, (0, 1, 2)),
+    "bgr8": ("u1", 3, (2, 1, 0)),
+    "rgba8": ("u1", 4, (0, 1, 2)),
+    "bgra8": ("u1", 4, (2, 1, 0)),
+    "mono16": ("u2", 1, ()),
+    "16uc1": ("u2", 1, ()),
+    "32fc1": ("f4", 1, ()),
+    "yuyv": ("u1", 2, ()),
+}
+
+
+@dataclass(frozen=True)
+class Stream:
+    """One topic of pictures: its name and the time of each message in nanoseconds."""
+
+    topic: str
+    times_ns: tuple[int, ...]
+
+
+class Bag:
+    """An opened bag."""
+
+    def __init__(self, path: AnyPath):
+        """Read the index.
+
+        Raises:
+            DamagedFileError: it is no bag that is whole. LimitError: a chunk is too large.
+            MissingExtraError: the reading library is not installed.
+        """
+        try:
+            from rosbags.rosbag1 import Reader  # noqa: PLC0415
+            from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
+        except ImportError as error:
+            raise MissingExtraError("reading bags", "capture") from error
+        self.path = path
+        self._latest: tuple[str, int, Any] | None = None
+        self._types = get_typestore(Stores.ROS1_NOETIC)
+        check_zipped(path)
+        with _refusing(path):
+            self._reader: Any = Reader(cast(Any, path))  # A zip's member opens like a file.
+            self._reader.open()
+            self._bound_chunks()
+
+    def _bound_chunks(self) -> None:
+        for position, chunk in self._reader.chunks.items():
+            if chunk.datasize > MAX_CHUNK_BYTES:
+                raise LimitError(
+                    self.path,
+                    f"has a chunk of {chunk.datasize:,} bytes; {MAX_CHUNK_BYTES:,} are the most",
+                )
+            unpack = _bounded(chunk.decompressor)
+            self._reader.chunks[position] = chunk._replace(decompressor=unpack)
+
+    def topics(self) -> tuple[str, ...]:
+        """Return the names of all topics."""
+        return tuple(sorted({connection.topic for connection in self._reader.connections}))
+
+    def streams(self) -> dict[str, Stream]:
+        """Return the topics of pictures."""
+        found: dict[str, list[int]] = {}
+        for connection in self._reader.connections:
+            if connection.msgtype == IMAGE:
+                entries = self._reader.indexes[connection.id]
+                found.setdefault(connection.topic, []).extend(entry.time for entry in entries)
+        return {topic: Stream(topic, tuple(sorted(times))) for topic, times in found.items()}
+
+    def first(self, topic: str) -> Any:
+        """Return the first message of a topic, or None."""
+        return next(self._messages(topic, None), None)
+
+    def message(self, topic: str, time_ns: int) -> Any:
+        """Return the message of a topic at a time of its stream.
+
+        Raises:
+            DamagedFileError: it is not there or cannot be unpacked.
+        """
+        if self._latest is None or self._latest[:2] != (topic, time_ns):
+            found = next(self._messages(topic, time_ns), None)
+            if found is None:
+                raise DamagedFileError(self.path, f"lacks a message of {topic}; copy it again")
+            self._latest = (topic, time_ns, found)  # Its header and its pixels are asked in turn.
+        return self._latest[2]
+
+    def _messages(self, topic: str, time_ns: int | None) -> Iterator[Any]:
+        with _refusing(self.path):
+            chosen = [one for one in self._reader.connections if one.topic == topic]
+            stop = None if time_ns is None else time_ns + 1
+            if chosen:
+                for connection, _, raw in self._reader.messages(chosen, time_ns, stop):
+                    yield self._types.deserialize_ros1(raw, connection.msgtype)
+
+
+@contextmanager
+def _refusing(path: AnyPath) -> Iterator[None]:
+    """Turn whatever goes wrong within the reading library into one line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        reason = reason_of(error)
+        raise DamagedFileError(path, f"is no whole bag ({reason}); copy it again") from error
+
+
+def _bounded(unpack: Any) -> Any:
+    """Return the same way to unpack a chunk, which stops at ``MAX_CHUNK_BYTES``."""
+    name = f"{getattr(unpack, '__module__', '')}.{getattr(unpack, '__name__', '')}"
+    if "bz2" in name:
+        return lambda data: bz2.BZ2Decompressor().decompress(data, MAX_CHUNK_BYTES)
+    if "lz4" in name:
+        return _unpack_lz4
+    return unpack
+
+
+def _unpack_lz4(data: bytes) -> bytes:
+    from lz4.frame import LZ4FrameDecompressor  # noqa: PLC0415
+
+    return LZ4FrameDecompressor().decompress(data, MAX_CHUNK_BYTES)
+
+
+def opened_bag(path: AnyPath) -> Bag:
+    """Return an opened bag; it stays open, each process having its own.
+
+    Raises:
+        InputError: it is missing. Others as ``Bag`` raises them.
+    """
+    try:
+        file = path.path if isinstance(path, ArchivePath) else path
+        found = file.stat()
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+    return _opened(path, (found.st_size, found.st_mtime_ns), os.getpid())
+
+
+@lru_cache(maxsize=2)
+def _opened(path: AnyPath, stamp: tuple[int, int], process: int) -> Bag:
+    return Bag(path)
+
+
+@lru_cache(maxsize=8)
+def _times(path: AnyPath, topic: str, stamp: Bag) -> tuple[int, ...]:
+    return stamp.streams()[topic].times_ns
+
+
+@dataclass(frozen=True)
+class BagImage(NamedByFrame):
+    """One picture of a bag: the ``index``-th of its topic by time."""
+
+    path: AnyPath
+    topic: str
+    index: int
+    frame: str
+
+    def header(self) -> ImageHeader:
+        """Return size and mode; the message is unpacked for it."""
+        message = self._message()
+        kind, _, order = self._encoding(message)
+        mode = "RGB" if order or kind == "u1" else "float32" if kind == "f4" else "uint16"
+        return ImageHeader(int(message.width), int(message.height), mode)
+
+    def check_whole(self) -> None:
+        """Check that the pixels are as many as the size says."""
+        self._rows()
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3] sRGB."""
+        rows, message = self._rows()
+        kind, channels, order = self._encoding(message)
+        if kind != "u1":
+            raise DamagedFileError(self, f"holds {message.encoding}, no colours")
+        pixels = rows.reshape(rows.shape[0], -1, channels)
+        if not order:
+            return _from_yuyv(pixels)
+        return np.ascontiguousarray(pixels[..., list(order)])
+
+    def raw(self) -> np.ndarray:
+        """Return [H, W] values as stored."""
+        rows, message = self._rows()
+        kind, _, _ = self._encoding(message)
+        if kind == "u1":
+            raise DamagedFileError(self, f"holds {message.encoding}, no depth")
+        order = ">" if message.is_bigendian else "<"
+        values = rows.view(np.dtype(order + kind))
+        return values.astype(values.dtype.newbyteorder("="))
+
+    def _message(self) -> Any:
+        bag = opened_bag(self.path)
+        return bag.message(self.topic, _times(self.path, self.topic, bag)[self.index])
+
+    def _encoding(self, message: Any) -> tuple[str, int, tuple[int, ...]]:
+        name = str(message.encoding).lower()
+        if name not in ENCODINGS:
+            raise DamagedFileError(
+                self, f"is encoded as {name[:20]!r}; read are {', '.join(ENCODINGS)}"
+            )
+        return ENCODINGS[name]
+
+    def _rows(self) -> tuple[np.ndarray, Any]:
+        """Return the bytes of the pixels, uint8 [H, bytes a row without padding]."""
+        message = self._message()
+        kind, channels, _ = self._encoding(message)
+        width, height, step = int(message.width), int(message.height), int(message.step)
+        used = width * channels * np.dtype(kind).itemsize
+        data = np.frombuffer(memoryview(message.data), np.uint8)
+        if not 0 < width * height <= MAX_PIXELS or step < used or len(data) < step * height:
+            raise DamagedFileError(self, f"holds {len(data):,} bytes, too few for {width}x{height}")
+        rows = data[: step * height].reshape(height, step)[:, :used]
+        return np.ascontiguousarray(rows), message
+
+
+def _from_yuyv(pixels: np.ndarray) -> np.ndarray:
+    """Return RGB of pictures that keep brightness for each pixel and hue for each second one."""
+    if pixels.shape[1] % 2:
+        raise ValueError("a YUYV picture must be of even width")
+    bright = pixels[..., 0].astype(np.float32)
+    blue = np.repeat(pixels[:, 0::2, 1], 2, axis=1).astype(np.float32) - 128
+    red = np.repeat(pixels[:, 1::2, 1], 2, axis=1).astype(np.float32) - 128
+    rgb = [bright + 1.402 * red, bright - 0.344136 * blue - 0.714136 * red, bright + 1.772 * blue]
+    return np.clip(np.round(np.stack(rgb, axis=-1)), 0, 255).astype(np.uint8)
+
 
 WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
 DEFAULT_UNIT_M = 0.001

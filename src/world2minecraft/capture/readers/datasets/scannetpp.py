@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES, ImageHeader, ImagePlace
-from world2minecraft.capture.numbers import as_floats
 from world2minecraft.capture.readers.apps.video_frames import MoviePicture
 from world2minecraft.capture.readers.datasets.embedded_images import FileSlice, opened_file
 from world2minecraft.capture.readers.datasets.intrinsics import first_size, matrix_camera

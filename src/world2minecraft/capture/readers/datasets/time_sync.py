@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.geometry.quaternions import pose_of
+from world2minecraft.geometry.rotations import pose_of
 
 
 def pair_times(first_s: np.ndarray, second_s: np.ndarray, within_s: float) -> list[tuple[int, int]]:

@@ -1,27 +1,139 @@
-"""PLY files: a mesh where they have faces, else a cloud. ASCII and binary, of either byte order.
+"""A PLY file as a solid: its colours, its pictures and its labels."""
 
-All is held against the header before memory is taken. Properties beside place and colour are kept
-by name, so that labels can be told from them.
-"""
-
+import io
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 import numpy as np
+from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.capture.readers.meshes.lists import (
-    MOST_CORNERS,
-    fans,
-    gathered,
-    walk_lists,
-    walk_numbers,
+from world2minecraft.capture.readers.meshes.attributes import classes_of_numbers, colour_of
+from world2minecraft.capture.readers.meshes.mesh_assembly import Part, joined
+from world2minecraft.capture.readers.meshes.surface_model import (
+    MAX_FACES,
+    MAX_POINTS,
+    MAX_VERTICES,
+    Loaded,
 )
-from world2minecraft.capture.readers.meshes.numbers import parse_numbers
-from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_POINTS, MAX_VERTICES
+from world2minecraft.capture.readers.meshes.text_clouds import parse_numbers
+from world2minecraft.capture.readers.meshes.thinning import Thinner
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
+from world2minecraft.core.jit import njit
+
+# Rows with lists of their own lengths, as the faces of PLY files are.
+
+MOST_CORNERS = 1 << 16  # Of one polygon.
+
+
+@njit
+def walk_lists(raw, rows, steps, big):
+    """Find where the values of each property of each row lie among bytes.
+
+    Args:
+        raw: uint8 [B].
+        rows: how many.
+        steps: int64 [P, 2]: bytes of a list's count (0 where it is a single value) and of a value.
+        big: whether counts have their high byte first.
+
+    Returns:
+        Starts and counts int64 [rows, P], and how many bytes were used, -1 where they end early.
+    """
+    starts = np.zeros((rows, len(steps)), np.int64)
+    counts = np.ones((rows, len(steps)), np.int64)
+    place = 0
+    for row in range(rows):
+        for p in range(len(steps)):
+            head = steps[p, 0]
+            if place + head > len(raw):
+                return starts, counts, -1
+            if head > 0:
+                count = 0
+                for b in range(head):
+                    byte = raw[place + b] if big else raw[place + head - 1 - b]
+                    count = count * 256 + byte
+                if count > MOST_CORNERS:
+                    return starts, counts, -1
+                counts[row, p] = count
+                place += head
+            starts[row, p] = place
+            place += counts[row, p] * steps[p, 1]
+            if place > len(raw):
+                return starts, counts, -1
+    return starts, counts, place
+
+
+@njit
+def walk_numbers(numbers, rows, listed):
+    """Do what ``walk_lists`` does among numbers, float64 [N]; ``listed`` bool [P]."""
+    starts = np.zeros((rows, len(listed)), np.int64)
+    counts = np.ones((rows, len(listed)), np.int64)
+    place = 0
+    for row in range(rows):
+        for p in range(len(listed)):
+            if place >= len(numbers):
+                return starts, counts, -1
+            if listed[p]:
+                if not 0 <= numbers[place] <= MOST_CORNERS:
+                    return starts, counts, -1
+                counts[row, p] = int(numbers[place])
+                place += 1
+            starts[row, p] = place
+            place += counts[row, p]
+            if place > len(numbers):
+                return starts, counts, -1
+    return starts, counts, place
+
+
+@njit
+def gathered(raw, starts, counts, width):
+    """Return the bytes of values that lie in runs: ``counts[i]`` of them from ``starts[i]``."""
+    result = np.empty(counts.sum() * width, np.uint8)
+    place = 0
+    for row in range(len(starts)):
+        for b in range(counts[row] * width):
+            result[place] = raw[starts[row] + b]
+            place += 1
+    return result
+
+
+def fans(counts: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cut polygons into triangles around their first corners.
+
+    Args:
+        counts: int64 [N], corners of each.
+        values: int64 [sum of counts], their vertices.
+
+    Returns:
+        int64 [T, 3], and the polygon of each triangle, int64 [T].
+    """
+    if len(counts) and (counts == 3).all():
+        return values.reshape(-1, 3), np.arange(len(counts))
+    return _fans(counts, values, int(np.maximum(counts - 2, 0).sum()))
+
+
+@njit
+def _fans(counts, values, total):
+    triangles, owner = np.empty((total, 3), np.int64), np.empty(total, np.int64)
+    place, made = 0, 0
+    for n in range(len(counts)):
+        for k in range(counts[n] - 2):
+            triangles[made, 0] = values[place]
+            triangles[made, 1] = values[place + k + 1]
+            triangles[made, 2] = values[place + k + 2]
+            owner[made] = n
+            made += 1
+        place += counts[n]
+    return triangles, owner
+
+
+# PLY files: a mesh where they have faces, else a cloud. ASCII and binary, of either byte order.
+#
+# All is held against the header before memory is taken. Properties beside place and colour are kept
+# by name, so that labels can be told from them.
 
 MAX_BYTES = 4 << 30
 MAX_HEADER = 1 << 16
@@ -317,3 +429,134 @@ class _Ascii:
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
             f"{len(self.data):,} numbers are there: copy it again",
         )
+
+
+LABEL_NAMES = (
+    "label",
+    "class",
+    "class_id",
+    "semantic",
+    "semantic_label",
+    "segment",
+    "category",
+    "scalar_label",
+    "scalar_class",
+    "scalar_classification",
+    "scalar_scalar_label",
+)
+PICTURE_AXES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+CHUNK = 1 << 20
+
+
+def load_ply(place: AnyPath) -> Loaded:
+    """Read a mesh or a cloud. Raises what ``read_ply`` raises."""
+    file = read_ply(place)
+    twin = _twin(place, file)
+    if len(file.triangles):
+        return _mesh(place, file, twin)
+    return _cloud(place, file, twin)
+
+
+def _twin(place: AnyPath, file: PlyFile) -> PlyFile | None:
+    """Return ScanNet's other file of the same mesh: the labels of colours, or the other way."""
+    stem = place.stem
+    name = stem.removesuffix(".labels") if stem.endswith(".labels") else f"{stem}.labels"
+    other = place.parent / f"{name}.ply"
+    if not other.is_file():
+        return None
+    found = read_ply(other)
+    return found if len(found.vertex["x"]) == len(file.vertex["x"]) else None
+
+
+def _labels(place: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray | None, str]:
+    """Return uint8 classes of the column that holds labels, and what to tell; None for none."""
+    by_name = {name.lower(): values for name, values in columns.items()}
+    for name in LABEL_NAMES:
+        if name in by_name:
+            return classes_of_numbers(place, name, by_name[name])
+    return None, ""
+
+
+def _places(file: PlyFile) -> np.ndarray:
+    return np.stack([file.vertex[axis] for axis in "xyz"], axis=1).astype(np.float64)
+
+
+def _looks(
+    place: AnyPath, file: PlyFile, twin: PlyFile | None
+) -> tuple[np.ndarray | None, np.ndarray | None, str]:
+    """Return colours and labels of the vertices, and what to tell."""
+    labels, told = _labels(place, file.vertex)
+    colour = colour_of(file.vertex)
+    if twin is not None:
+        own_colours = place.stem.endswith(".labels")
+        colour = colour_of(twin.vertex) if own_colours else colour
+        if labels is None:
+            labels, told = _labels(place, twin.vertex)
+    elif place.stem.endswith(".labels"):
+        colour = None  # Those of the classes, which are nothing's own.
+    return colour, labels, told
+
+
+def _mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
+    colour, labels, told = _looks(place, file, twin)
+    face_labels = None
+    if labels is not None:
+        face_labels = _voted(labels[file.triangles])
+    else:
+        own, more = _labels(place, file.face)
+        told = told or more
+        face_labels = None if own is None else own[file.triangle_face]
+    vertices, triangles = _places(file), file.triangles
+    if colour is None and (face_colour := colour_of(file.face)) is not None:
+        vertices = vertices[triangles.reshape(-1)]
+        colour = np.repeat(face_colour[file.triangle_face], 3, axis=0)
+        triangles = np.arange(3 * len(triangles)).reshape(-1, 3)
+    picture, uv = _picture(place, file)
+    label = 255 if face_labels is None else face_labels
+    mesh, offset = joined(place, [Part(vertices, triangles, colour, picture, uv, label=label)])
+    return Loaded(mesh, "PLY", offset, notes=(told,) if told else ())
+
+
+def _voted(corners: np.ndarray) -> np.ndarray:
+    """Return the label that two corners of a triangle share, else the first one's."""
+    first, second, third = corners.T
+    return np.where(second == third, second, first).astype(np.uint8)
+
+
+def _picture(place: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndarray | None]:
+    """Return the picture that a comment names, and where on it each vertex lies."""
+    names = [c.split(None, 1)[1] for c in file.comments if c.lower().startswith("texturefile ")]
+    axes = next((pair for pair in PICTURE_AXES if set(pair) <= set(file.vertex)), None)
+    if not names or axes is None:
+        return None, None
+    found = place.parent / names[0].strip().replace("\\", "/").rpartition("/")[2]
+    try:
+        picture = Image.open(io.BytesIO(read_bytes(found, 1 << 30)))
+    except (InputError, UnidentifiedImageError, OSError):
+        return None, None
+    u, v = (file.vertex[axis].astype(np.float64) for axis in axes)
+    return picture, np.stack([u, 1 - v], axis=1)
+
+
+def _cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
+    colour, labels, told = _looks(place, file, twin)
+    thinner = Thinner()
+    count = len(file.vertex["x"])
+    solid = np.ones(count, bool)
+    if "opacity" in file.vertex and "f_dc_0" in file.vertex:  # Gaussian splats: the firm ones.
+        solid = np.asarray(file.vertex["opacity"]) > 0
+    for start in range(0, count, CHUNK):
+        rows = np.flatnonzero(solid[start : start + CHUNK]) + start
+        points = np.stack([file.vertex[axis][rows] for axis in "xyz"], axis=1).astype(np.float64)
+        thinner.add(
+            points,
+            None if colour is None else colour[rows],
+            None if labels is None else labels[rows],
+        )
+    if count and thinner.offset is None:
+        raise DamagedFileError(
+            place, "has places that are no numbers (NaN, infinity): export it again"
+        )
+    offset = np.zeros(3) if thinner.offset is None else thinner.offset
+    notes = (told,) if told else ()
+    return Loaded(thinner.cloud(), "PLY", offset, notes=notes, read=thinner.read)

@@ -1,25 +1,198 @@
 """A mesh or a cloud becomes a capture: set upright, entered, looked at from within."""
 
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.images import ImageHeader
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.meshes.facing import outward_share
-from world2minecraft.capture.readers.meshes.formats import find_solid, load_solid, stamp_of
-from world2minecraft.capture.readers.meshes.grid import grid_of
-from world2minecraft.capture.readers.meshes.interior import find_interior
-from world2minecraft.capture.readers.meshes.looks import Look, Looker, view_name
-from world2minecraft.capture.readers.meshes.samples import samples_of
-from world2minecraft.capture.readers.meshes.spatial_blocks import mesh_in_blocks, surfels_in_blocks
+from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels, see_points
+from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, outward_share
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, see_triangles
+from world2minecraft.capture.readers.meshes.spatial_blocks import (
+    Blocks,
+    mesh_in_blocks,
+    surfels_in_blocks,
+)
 from world2minecraft.capture.readers.meshes.surface_model import Loaded, Mesh, Solid
 from world2minecraft.capture.readers.meshes.surfels import surfels_of
+from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
 from world2minecraft.capture.readers.meshes.upright import stance_of, unit_of
-from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
-from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.coordinates import apply
+from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views, samples_of
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.classes import CLASS_COLOURS
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import Camera
+
+# Which file of a place is the solid, and who reads it.
+
+# Where one solid is exported in several ways side by side, the first is taken.
+READERS = {
+    ".glb": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
+    ".gltf": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
+    ".obj": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
+    ".usdz": "world2minecraft.capture.readers.meshes.usd:load_usd",
+    ".usdc": "world2minecraft.capture.readers.meshes.usd:load_usd",
+    ".usda": "world2minecraft.capture.readers.meshes.usd:load_usd",
+    ".usd": "world2minecraft.capture.readers.meshes.usd:load_usd",
+    ".ply": "world2minecraft.capture.readers.meshes.ply:load_ply",
+    ".stl": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
+    ".off": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
+    ".e57": "world2minecraft.capture.readers.meshes.survey_clouds:load_e57",
+    ".laz": "world2minecraft.capture.readers.meshes.survey_clouds:load_las",
+    ".las": "world2minecraft.capture.readers.meshes.survey_clouds:load_las",
+    ".pts": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+    ".xyz": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+    ".xyzrgb": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+    ".asc": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+    ".txt": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+    ".csv": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
+}
+VAGUE = (".txt", ".csv", ".asc")  # Anything may be in them: taken only where they are named.
+SOLID_READERS = Registry("solid format", READERS)
+ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder beside the room's own.
+LABELLED = ".labels"  # ScanNet: the same mesh again, coloured by class.
+
+
+def find_solid(place: AnyPath) -> AnyPath | None:
+    """Return the file of a place that is a mesh or a cloud, the folder of an S3DIS room, or None.
+
+    Raises:
+        CaptureError: a folder holds several different ones.
+    """
+    if place.is_file():
+        return place if place.suffix.lower() in READERS else None
+    if not place.is_dir():
+        return None
+    if any((place / ANNOTATIONS).glob("*.txt")) if (place / ANNOTATIONS).is_dir() else False:
+        return place
+    order = [suffix for suffix in READERS if suffix not in VAGUE]
+    found = [entry for entry in place.iterdir() if entry.suffix.lower() in order]
+    found = [entry for entry in found if entry.is_file() and not entry.name.startswith(".")]
+    plain = [entry for entry in found if not entry.stem.endswith(LABELLED)] or found
+    stems = {entry.stem for entry in plain}
+    if len(stems) > 1:
+        raise CaptureError(
+            place, f"holds {len(stems)} meshes or clouds ({', '.join(sorted(stems)[:4])}); name one"
+        )
+    return min(plain, key=lambda e: (order.index(e.suffix.lower()), e.name), default=None)
+
+
+def load_solid(place: AnyPath) -> Loaded:
+    """Read a file that ``find_solid`` found. Raises what its reader raises."""
+    if place.is_dir():
+        return load_s3dis(place)
+    return SOLID_READERS.load(place.suffix.lower())(place)
+
+
+def stamp_of(place: AnyPath) -> tuple[int, ...]:
+    """Return what changes when a file does: its size and time."""
+    file = Path(place.path) if isinstance(place, ArchivePath) else place
+    found = file.stat()
+    return found.st_size, found.st_mtime_ns
+
+
+# Frames of a solid: rendered when they are first asked for, and kept for the next stage.
+
+KEPT_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
+MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
+Seen = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+@dataclass(eq=False)
+class Looker:
+    """Renders views of one solid and keeps the last ones; ``name`` is that of its file."""
+
+    name: str
+    solid: Mesh | Surfels
+    camera: Camera
+    camera_to_world: np.ndarray
+    blocks: Blocks
+    by_class: bool = False  # Colours of the classes, for what has classes but no colours.
+    _kept: "OrderedDict[int, Seen]" = field(default_factory=OrderedDict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def seen(self, view: int) -> Seen:
+        """Return depth, colour and labels of a view, all [H, W]."""
+        with self._lock:
+            if view in self._kept:
+                self._kept.move_to_end(view)
+                return self._kept[view]
+            found = self._rendered(view)
+            if self.by_class:
+                colours = np.full((256, 3), GREY, np.uint8)
+                colours[: len(CLASS_COLOURS)] = CLASS_COLOURS
+                found = found[0], colours[found[2]], found[2]
+            self._kept[view] = found
+            most = max(2, KEPT_BYTES // sum(image.nbytes for image in found))
+            while len(self._kept) > most:
+                self._kept.popitem(last=False)
+            return found
+
+    def _rendered(self, view: int) -> Seen:
+        world_to_camera = invert_rigid(self.camera_to_world[view])
+        runs = self.blocks.runs(self.camera, world_to_camera)
+        if isinstance(self.solid, Mesh):
+            return see_triangles(self.solid, self.camera, world_to_camera, runs)
+        return see_points(self.solid, self.camera, world_to_camera, runs)
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One image of one view: ``kind`` is colour, depth or labels. An ``ImageSource``."""
+
+    looker: Looker
+    view: int
+    kind: str
+
+    def __str__(self) -> str:
+        """The file's name and the view, for messages."""
+        return f"{self.looker.name}/view {self.view} ({self.kind})"
+
+    @property
+    def stem(self) -> str:
+        """The frame's name."""
+        return view_name(self.view)
+
+    @property
+    def name(self) -> str:
+        """The frame's name."""
+        return view_name(self.view)
+
+    def header(self) -> ImageHeader:
+        """Return size and mode; nothing is rendered."""
+        camera = self.looker.camera
+        return ImageHeader(camera.width_px, camera.height_px, MODES[self.kind])
+
+    def check_whole(self) -> None:
+        """Do nothing: the file was read whole before."""
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3]."""
+        return self.looker.seen(self.view)[1]
+
+    def raw(self) -> np.ndarray:
+        """Return float32 metres, or uint8 class ids."""
+        depth, _, labels = self.looker.seen(self.view)
+        return depth if self.kind == "depth" else labels
+
+
+def view_name(view: int) -> str:
+    """Return the name of a frame.
+
+    Example:
+        >>> view_name(7)
+        'view-007'
+    """
+    return f"view-{view:03d}"
+
 
 MARGIN_M = 0.3
 LEAST_SIDES_M = (1.0, 1.0, 1.2)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.capture.options import SOLID_UNITS_M
-from world2minecraft.capture.readers.meshes.samples import Samples
+from world2minecraft.capture.readers.meshes.viewpoints import Samples
 
 AXES = {
     "x": (1.0, 0.0, 0.0),

@@ -5,11 +5,10 @@ pictures: NIQE and PIQE are models of photographs, and the Laplacian counts the 
 sharpness.
 """
 
-from world2minecraft.evaluation.metrics.image_quality.grey import to_grey
 from world2minecraft.evaluation.metrics.image_quality.laplacian import laplacian, laplacian_variance
-from world2minecraft.evaluation.metrics.image_quality.niqe import NiqeModel, niqe
-from world2minecraft.evaluation.metrics.image_quality.niqe_models import niqe_model
+from world2minecraft.evaluation.metrics.image_quality.niqe import NiqeModel, niqe, niqe_model
 from world2minecraft.evaluation.metrics.image_quality.piqe import piqe
+from world2minecraft.evaluation.metrics.image_quality.scene_statistics import to_grey
 
 __all__ = [
     "NiqeModel",

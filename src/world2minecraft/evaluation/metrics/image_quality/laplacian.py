@@ -9,7 +9,7 @@ would be white noise).
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.evaluation.metrics.image_quality.grey import to_grey
+from world2minecraft.evaluation.metrics.image_quality.scene_statistics import to_grey
 
 KERNEL_SIZES = (1, 3, 5, 7)
 PAPER_KERNEL_SIZE = 5  # Inferred: see above.

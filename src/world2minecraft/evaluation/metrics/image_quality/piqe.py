@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from world2minecraft.evaluation.metrics.image_quality.grey import to_grey
-from world2minecraft.evaluation.metrics.image_quality.normalised import normalise
+from world2minecraft.evaluation.metrics.image_quality.scene_statistics import normalise, to_grey
 
 BLOCK_PX = 16
 LIVELY = 0.1  # Least variance of a block that is looked at.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.naming import class_of_name
+from world2minecraft.capture.readers.meshes.attributes import class_of_name
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.core.types import Layout, LayoutObject
 

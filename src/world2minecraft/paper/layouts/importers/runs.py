@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout
-from world2minecraft.evaluation.scoring.layout import in_room
+from world2minecraft.evaluation.scoring.object_scores import in_room
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run
+from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_placements
-from world2minecraft.formats.room import read_room
-from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture.layout_checks import collisions
 from world2minecraft.paper.layouts.importers.reading import MOST_OBJECTS
 from world2minecraft.paper.layouts.values import ComparedScene

@@ -1,0 +1,182 @@
+"""Some of a capture's pictures, small, each with how sharp, bright and bare it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from PIL import Image, ImageFilter
+
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.images import ImagePlace, read_header, read_small
+from world2minecraft.capture.validation import spread_over
+from world2minecraft.core.errors import InputError
+
+WORK_PX = 640  # Blur that hurts at the 1024 px of posing shows at this size too.
+THUMB_PX = 360
+MOST_PICTURES = 120
+BUDGET_MPX = 200.0  # About 5 s of decoding.
+DRAFT_COST = 0.15  # A JPEG at a quarter of its size, against one decoded whole.
+STRONG_SHARE = 0.1  # Blur is judged at the strongest edges alone: bare walls have none.
+PATCH_PX = 16
+BARE_CONTRAST = 3.0  # Of 255: the noise of a good sensor; features need more.
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """One picture that was looked at.
+
+    ``index`` is its place among the usable frames; ``thumb`` uint8 [h, w, 3]. ``sharpness`` is 0
+    for full blur, about 0.4 for a video's good frame, over 1 for a still's. ``brightness`` is the
+    median grey, 0 to 255; ``bare`` the share of patches without texture.
+    """
+
+    name: str
+    index: int
+    thumb: np.ndarray
+    sharpness: float
+    brightness: float
+    bare: float
+
+
+def look_at_pictures(frames: Sequence[FrameFiles], most: int = MOST_PICTURES) -> list[Picture]:
+    """Decode some of the frames' colour images, evenly spread; damaged ones are passed over.
+
+    Args:
+        frames: the usable frames of a capture.
+        most: at most that many; fewer where the pictures are large.
+    """
+    shown = [(index, frame) for index, frame in enumerate(frames) if frame.colour_path]
+    pictures = []
+    for index, frame in spread_over(shown, _affordable([frame for _, frame in shown], most)):
+        try:
+            colour = read_small(frame.colour_path, WORK_PX) if frame.colour_path else None
+        except InputError:
+            continue
+        if colour is not None:
+            pictures.append(picture_of(frame.name, index, colour))
+    return pictures
+
+
+def _affordable(frames: Sequence[FrameFiles], most: int) -> int:
+    """Return how many pictures may be decoded; at least 12, so that there is something to see."""
+    if not frames or frames[0].colour_path is None:
+        return most
+    width, height = read_header(frames[0].colour_path).size
+    each = width * height / 1e6 * (DRAFT_COST if _is_jpeg(frames[0].colour_path) else 1.0)
+    return int(np.clip(BUDGET_MPX / each, min(12, most), most))
+
+
+def _is_jpeg(place: ImagePlace) -> bool:
+    return place.name.lower().endswith((".jpg", ".jpeg"))
+
+
+def picture_of(name: str, index: int, colour: np.ndarray) -> Picture:
+    """Return what is kept of a picture, uint8 [H, W, 3] of about ``WORK_PX``."""
+    grey = np.asarray(Image.fromarray(colour).convert("L"), np.float32)
+    image = Image.fromarray(colour)
+    image.thumbnail((THUMB_PX, THUMB_PX), Image.Resampling.BOX)
+    return Picture(
+        name,
+        index,
+        np.array(image, np.uint8),
+        round(sharpness(grey), 4),
+        round(float(np.median(grey)), 1),
+        round(bare_share(grey), 4),
+    )
+
+
+def sharpness(grey: np.ndarray) -> float:
+    """Return how much the strongest edges lose when the picture is blurred a little.
+
+    Args:
+        grey: float32 [H, W].
+
+    Returns:
+        The mean step at strong edges over the same of the blurred picture, less 1, in that of the
+        two directions in which it is less: a shaken camera blurs along one alone. It compares a
+        picture with itself, so that what is shown matters little (after Crete et al. 2007).
+    """
+    lost = [share for share in (_lost(grey), _lost(grey.T)) if share is not None]
+    return max(0.0, min(lost, default=0.0))
+
+
+def _lost(grey: np.ndarray) -> float | None:
+    """Return what a mean of three along the rows takes from the strongest steps; None of none."""
+    if grey.shape[1] < 8:
+        return None
+    step = np.abs(np.diff(grey, axis=1))[:, 1:-1]
+    blurred = (grey[:, :-2] + grey[:, 1:-1] + grey[:, 2:]) / 3
+    soft = np.abs(np.diff(blurred, axis=1))
+    usual, largest = np.quantile(step, [1 - STRONG_SHARE, 0.999])
+    limit = max(float(usual), 0.25 * float(largest))  # Drawn pictures have few steps, all sharp.
+    if limit <= 0:
+        return None
+    strong = step >= limit
+    return float(step[strong].mean()) / max(float(soft[strong].mean()), 1e-3) - 1
+
+
+def bare_share(grey: np.ndarray) -> float:
+    """Return the share of patches of float32 [H, W] whose contrast no feature stands on."""
+    rows, columns = grey.shape[0] // PATCH_PX, grey.shape[1] // PATCH_PX
+    if not rows or not columns:
+        return 0.0
+    patches = grey[: rows * PATCH_PX, : columns * PATCH_PX]
+    patches = patches.reshape(rows, PATCH_PX, columns, PATCH_PX)
+    return float((patches.std(axis=(1, 3)) < BARE_CONTRAST).mean())
+
+
+# How much two pictures share, told from how one has to be shifted over the other.
+#
+# This is a look, not a match: at the kitchen's and a generated room's neighbours it is within about
+# a tenth of what their depth says, as a median over many pairs; a single pair may be far off.
+
+WIDTH_PX = 64
+LEAST_SHARE = 0.2  # Smaller overlaps agree by chance.
+AGREES = 0.4  # Pictures of different places reach this correlation one time in three.
+SOFT = 8.0  # Grey levels: noise of bare walls is not blown up to texture.
+
+
+def neighbour_shares(pictures: Sequence[Picture]) -> np.ndarray:
+    """Return the share of each picture that the next one shows too, float64 [len - 1].
+
+    NaN where the two are no neighbours in the capture; 0 where no shift agrees.
+    """
+    small = [_flattened(picture.thumb) for picture in pictures]
+    shares = np.full(max(0, len(pictures) - 1), np.nan)
+    for place, (one, other) in enumerate(pairwise(pictures)):
+        if other.index - one.index == 1:
+            shares[place] = shared_share(small[place], small[place + 1])
+    return shares
+
+
+def shared_share(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the share of the area that two flattened pictures show both, by the best shift."""
+    if one.shape != other.shape:  # One is upright, the other lies: a look cannot tell.
+        return float("nan")
+    padded = (2 * one.shape[0], 2 * one.shape[1])
+    full = np.ones_like(one)
+    first = [np.fft.rfft2(values, padded) for values in (full, one, one * one)]
+    second = [np.conj(np.fft.rfft2(values, padded)) for values in (full, other, other * other)]
+
+    def summed(a: int, b: int) -> np.ndarray:
+        return np.fft.irfft2(first[a] * second[b], padded)
+
+    count = np.maximum(summed(0, 0), 1.0)
+    sum_one, sum_other = summed(1, 0), summed(0, 1)
+    covariance = summed(1, 1) - sum_one * sum_other / count
+    variance = (summed(2, 0) - sum_one**2 / count) * (summed(0, 2) - sum_other**2 / count)
+    likeness = covariance / np.sqrt(np.maximum(variance, (1e-3 * one.size) ** 2))
+    area = count / one.size
+    likeness[area < LEAST_SHARE] = -1.0
+    best = int(np.argmax(likeness * area**0.25))  # Of two that agree alike, the larger overlap.
+    return round(float(area.flat[best]), 2) if likeness.flat[best] >= AGREES else 0.0
+
+
+def _flattened(thumb: np.ndarray) -> np.ndarray:
+    """Return a picture 64 px wide without its slow changes of light, float64 [h, 64]."""
+    height = max(8, round(WIDTH_PX * thumb.shape[0] / thumb.shape[1]))
+    grey = Image.fromarray(thumb).convert("L").resize((WIDTH_PX, height), Image.Resampling.BOX)
+    detail = np.asarray(grey, np.float64)
+    detail = detail - np.asarray(grey.filter(ImageFilter.BoxBlur(8)), np.float64)
+    return detail / (np.abs(detail).mean() + SOFT)

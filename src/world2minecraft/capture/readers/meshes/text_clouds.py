@@ -1,0 +1,209 @@
+"""Rooms of S3DIS: ``Annotations/chair_1.txt`` and its like, a cloud for each thing."""
+
+import re
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.attributes import (
+    as_colour,
+    class_of_name,
+    classes_of_numbers,
+    colour_of,
+)
+from world2minecraft.capture.readers.meshes.surface_model import MAX_POINTS, Loaded
+from world2minecraft.capture.readers.meshes.thinning import Thinner
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
+
+# Numbers in text: whole files of them, parsed in one go.
+
+
+def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
+    """Return all numbers of a text, float64 [N], that white space parts.
+
+    Raises:
+        DamagedFileError: something in it is no number.
+    """
+    if not text.strip():
+        return np.zeros(0)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # How numpy says that it stopped early.
+            return np.fromstring(text.decode("ascii"), np.float64, sep=" ")
+    except (DeprecationWarning, UnicodeDecodeError, ValueError) as error:
+        raise DamagedFileError(
+            place, "holds what is no number where numbers are due; export it again"
+        ) from error
+
+
+# Clouds as text: a point a line, XYZ first. ``.xyz .pts .txt .csv .asc``.
+#
+# Columns may be parted by white space, commas or semicolons. A first line with letters names them;
+# a first line with one number is PTS's count. Without names, three columns of whole numbers up to
+# 255 are the colour, else three of shares from 0 to 1 that are no normal.
+
+BLOCK = 32 << 20
+MAX_BYTES = 8 << 30
+MAX_COLUMNS = 64
+NAMES = {"x": "x", "y": "y", "z": "z", "r": "red", "g": "green", "b": "blue"}
+LABEL_NAMES = ("label", "class", "classification", "semantic")
+
+
+def load_text(place: AnyPath) -> Loaded:
+    """Read a cloud of lines.
+
+    Raises:
+        DamagedFileError: it holds no rows of numbers. LimitError: it is too large.
+    """
+    thinner = Thinner()
+    told = add_text(place, thinner)
+    if thinner.offset is None:
+        raise DamagedFileError(place, "holds no points: a line must begin with x, y and z")
+    notes = (told,) if told else ()
+    return Loaded(thinner.cloud(), "text", thinner.offset, notes=notes, read=thinner.read)
+
+
+def add_text(place: AnyPath, thinner: Thinner, label: int | None = None) -> str:
+    """Add a file's points to others, all of one class where ``label`` says it.
+
+    Returns what is to be told of its labels. Raises as ``load_text``.
+    """
+    names: list[str] | None = None
+    colour_at: int | None = None
+    width, told = 0, ""
+    for lines in _blocks(place):
+        names, block = (names, lines) if width else _named(place, lines)
+        rows = _rows(place, block, width or _width(place, block))
+        if not len(rows):
+            continue
+        if not width:
+            width = rows.shape[1]
+            colour_at = None if names else _colour_column(rows)
+        columns = dict(zip(names or (), rows.T, strict=False))
+        labels = None if label is None else np.full(len(rows), label, np.uint8)
+        if names:
+            points = np.stack([columns[axis] for axis in "xyz"], axis=1)
+            colour = colour_of(columns)
+            column = next((name for name in LABEL_NAMES if name in columns), None)
+            if column and label is None:
+                labels, told = classes_of_numbers(place, column, columns[column])
+        else:
+            points = rows[:, :3]
+            colour = None if colour_at is None else _bytes(rows[:, colour_at : colour_at + 3])
+        thinner.add(points, colour, labels)
+        if thinner.read > MAX_POINTS:
+            raise LimitError(place, f"has over {MAX_POINTS:,} points; thin it")
+    return told
+
+
+def label_of_file(name: str) -> int:
+    """Return the class that a file's name says, 255 for none."""
+    return class_of_name(name)
+
+
+def _blocks(place: AnyPath) -> Iterator[bytes]:
+    """Yield the file in blocks of whole lines."""
+    if place.stat().st_size > MAX_BYTES:
+        raise LimitError(
+            place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: thin it"
+        )
+    with place.open("rb") as stream:
+        rest = b""
+        while piece := stream.read(BLOCK):
+            piece = rest + piece
+            end = piece.rfind(b"\n") + 1
+            if not end and len(piece) > BLOCK:
+                raise DamagedFileError(place, "is no text of lines, a point each")
+            yield piece[:end]
+            rest = piece[end:]
+        yield rest
+
+
+def _named(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes]:
+    """Return the names of the columns, if the first lines say them, and the lines after those."""
+    names = None
+    while block:
+        line, _, rest = block.partition(b"\n")
+        words = re.findall(r"[^\s,;]+", line.decode("latin-1").lstrip("#/ \ufeff").lower())
+        if words and _numeric(words) and len(words) >= 3 and not line.lstrip().startswith(b"#"):
+            break
+        if len(words) >= 3 and not _numeric(words):
+            cleaned = [word.strip("\"'").removeprefix("//") for word in words]
+            found: list[str] = [NAMES.get(word) or word for word in cleaned]
+            if {"x", "y", "z"} <= set(found):
+                names = found
+            elif not line.lstrip().startswith((b"#", b"//")):
+                raise DamagedFileError(place, f"begins with no x, y and z: {line[:40]!r}")
+        block = rest
+    return names, block
+
+
+def _numeric(words: list[str]) -> bool:
+    try:
+        [float(word) for word in words]
+    except ValueError:
+        return False
+    return True
+
+
+def _width(place: AnyPath, block: bytes) -> int:
+    line = block.partition(b"\n")[0]
+    width = len(re.findall(rb"[^\s,;]+", line))
+    if block.strip() and not 3 <= width <= MAX_COLUMNS:
+        raise DamagedFileError(place, f"has {width} columns; a point needs x, y and z")
+    return max(width, 3)
+
+
+def _rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
+    numbers = parse_numbers(place, block.replace(b",", b" ").replace(b";", b" "))
+    if len(numbers) % width:
+        raise DamagedFileError(
+            place,
+            f"has lines of other lengths than {width} columns, or is cut short: export it again",
+        )
+    return numbers.reshape(-1, width)
+
+
+def _colour_column(rows: np.ndarray) -> int | None:
+    """Return where three columns of colour begin, told from their values."""
+    some = rows[:: max(1, len(rows) // 5000)]
+    starts = range(3, rows.shape[1] - 2)
+    for start in starts:
+        values = some[:, start : start + 3]
+        whole = (values == np.round(values)).all() and values.min() >= 0 and values.max() <= 255
+        if whole and values.max() > 1:
+            return start
+    for start in starts:
+        values = some[:, start : start + 3]
+        unit = np.abs(np.linalg.norm(values, axis=1) - 1).max() < 0.01
+        if values.min() >= 0 and values.max() <= 1 and not unit and values.max() > 0:
+            return start
+    return None
+
+
+def _bytes(values: np.ndarray) -> np.ndarray:
+    found = as_colour(values)
+    return np.zeros(values.shape, np.uint8) if found is None else found
+
+
+FOLDER = "Annotations"
+MAX_FILES = 5000
+
+
+def load_s3dis(place: AnyPath) -> Loaded:
+    """Read a room's folder.
+
+    Raises:
+        CaptureError: it has no points. DamagedFileError: a file is no cloud.
+    """
+    thinner = Thinner(unit_m=1.0)
+    files = sorted((place / FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
+    for path in files:
+        add_text(path, thinner, label_of_file(path.stem))
+    if thinner.offset is None:
+        raise CaptureError(place, f"has no points in {FOLDER}/*.txt")
+    note = f"classes are told by the names of {len(files)} files in {FOLDER}"
+    cloud = thinner.cloud()
+    return Loaded(cloud, "S3DIS", thinner.offset, 1.0, "z", True, (note,), thinner.read)

@@ -1,0 +1,332 @@
+"""Photos of which nothing is known but their pixels get places, lenses and points."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.sfm import results as reasons
+from world2minecraft.capture.sfm.bundle_adjustment import LEAST_POINTS, Solved, solved
+from world2minecraft.capture.sfm.camera_groups import (
+    LONGEST,
+    MOST_BENT,
+    SHORTEST,
+    Lens,
+    each_camera,
+    from_colmap,
+    is_sane,
+    shared_lenses,
+    to_colmap,
+    usual_camera,
+)
+from world2minecraft.capture.sfm.colmap import colmap
+from world2minecraft.capture.sfm.features import Features, gather
+from world2minecraft.capture.sfm.matching import Links, link_photos
+from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.results import middle_depth, scene
+from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera, SparseScene
+from world2minecraft.core.types.photos import PhotoStream
+
+# Places from nothing: COLMAP's incremental mapping, on one thread so that it repeats itself.
+
+Model = dict[int, tuple[np.ndarray, Camera]]
+
+
+def mapped(
+    photos: list[Features],
+    links: Links,
+    lenses: list[Lens],
+    parameters: PosingParameters,
+    steps: Steps,
+) -> list[Model]:
+    """Return the models that the links give, the one of most photos first.
+
+    A model maps photo numbers to camera-to-world float64 [4, 4], in a frame of its own, and to the
+    camera found. Photos may be in several.
+    """
+    with colmap() as pycolmap:
+        pycolmap.set_random_seed(parameters.seed)
+        cache = _cache(pycolmap, photos, links, lenses)
+        manager = pycolmap.ReconstructionManager()
+        pipeline = pycolmap.IncrementalPipeline(
+            _options(pycolmap, lenses, parameters), cache, manager
+        )
+        placed = [0]
+
+        def told() -> None:  # Python's own turn too: Ctrl-C is seen here.
+            placed[0] += 1
+            steps.done("places", min(placed[0], len(photos)), len(photos))
+
+        kinds = pycolmap.IncrementalPipelineCallback
+        pipeline.add_callback(int(kinds.NEXT_IMAGE_REG_CALLBACK), told)
+        pipeline.run()
+        models = [_model(manager.get(n)) for n in range(manager.size())]
+    return sorted(models, key=lambda model: (-len(model), sorted(model)))
+
+
+def _cache(pycolmap: Any, photos: list[Features], links: Links, lenses: list[Lens]) -> Any:
+    """Return what mapping reads, made in memory: no file and no database."""
+    cache = pycolmap.DatabaseCache()
+    for number, lens in enumerate(lenses):
+        camera = to_colmap(pycolmap, lens.camera, number + 1, simple=lens.known != "stated")
+        camera.has_prior_focal_length = lens.known != "unknown"
+        cache.add_camera(camera)
+        rig = pycolmap.Rig(rig_id=number + 1)
+        rig.add_ref_sensor(camera.sensor_id)
+        cache.add_rig(rig)
+        for i in lens.photos:
+            image = pycolmap.Image(
+                name=str(i), keypoints=photos[i].pixels, camera_id=number + 1, image_id=i + 1
+            )
+            frame = pycolmap.Frame(frame_id=i + 1, rig_id=number + 1)
+            frame.add_data_id(image.data_id)
+            cache.add_frame(frame)
+            image.frame_id = i + 1
+            cache.add_image(image)
+    for (i, j), geometry in links.geometry.items():
+        cache.correspondence_graph.add_two_view_geometry(i + 1, j + 1, geometry)
+    cache.correspondence_graph.finalize()
+    return cache
+
+
+def _options(pycolmap: Any, lenses: list[Lens], parameters: PosingParameters) -> Any:
+    options = pycolmap.IncrementalPipelineOptions()
+    for part in (options, options.mapper, options.triangulation):
+        part.random_seed = parameters.seed
+    options.num_threads = options.mapper.num_threads = 1
+    options.extract_colors = False
+    options.min_model_size = 3
+    options.max_num_models = 10
+    options.min_focal_length_ratio, options.max_focal_length_ratio = SHORTEST, LONGEST
+    options.max_extra_param = MOST_BENT
+    fixed = {number + 1 for number, lens in enumerate(lenses) if lens.is_fixed}
+    options.constant_cameras = options.mapper.constant_cameras = fixed
+    if fixed:
+        options.mapper.abs_pose_refine_focal_length = False
+        options.mapper.abs_pose_refine_extra_params = False
+    options.ba_global_frames_ratio = options.ba_global_points_ratio = 1.2
+    return options
+
+
+def _model(found: Any) -> Model:
+    model: Model = {}
+    for image in sorted(found.reg_image_ids()):
+        there = np.eye(4)
+        there[:3] = found.image(image).cam_from_world().matrix()
+        camera = from_colmap(found.camera(found.image(image).camera_id))
+        model[image - 1] = np.linalg.inv(there), camera
+    return model
+
+
+# Several models become one, where they share photos and agree on how these stand.
+
+LEAST_SHARED = 3  # Two photos fit any two models.
+MOST_DEG = 3.0  # How far shared photos may be turned after the best similarity,
+MOST_SHARE = 0.05  # and moved, by the way between the farthest of them.
+
+
+def joined(models: list[Model]) -> tuple[Model, int]:
+    """Return the largest model with those joined to it that fit, and how many these were.
+
+    Args:
+        models: as mapping gives them, the largest first.
+    """
+    whole = dict(models[0])
+    waiting, count = list(models[1:]), 0
+    while True:
+        fitting = next((one for one in waiting if _carried(one, whole) is not None), None)
+        if fitting is None:
+            return whole, count
+        carried = _carried(fitting, whole) or {}
+        whole = {**carried, **whole}
+        waiting.remove(fitting)
+        count += 1
+
+
+def _carried(model: Model, whole: Model) -> Model | None:
+    """Return the photos of a model in the frame of the whole, or None where it does not fit."""
+    shared = sorted(set(model) & set(whole))
+    if len(shared) < LEAST_SHARED or len(shared) == len(model):
+        return None
+    given = np.array([model[i][0] for i in shared])
+    wanted = np.array([whole[i][0] for i in shared])
+    try:
+        found = align_similarity(given, wanted)
+    except ValueError:
+        return None
+    way = float(np.linalg.norm(np.ptp(wanted[:, :3, 3], axis=0)))
+    if np.median(found.off_deg) > MOST_DEG or np.median(found.off_m) > MOST_SHARE * way:
+        return None
+    names = sorted(model)
+    poses = found.poses(np.array([model[i][0] for i in names]))
+    return {i: (pose, model[i][1]) for i, pose in zip(names, poses, strict=True)}
+
+
+MIDDLE_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
+OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
+ENOUGH = 0.6  # A model of this share of the linked photos needs no second trial.
+LEAST_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
+LEAST_PHOTOS = 3
+
+
+def find_poses(
+    photos: PhotoStream,
+    parameters: PosingParameters | None = None,
+    progress: Progress = silent,
+) -> SparseScene:
+    """Return where photos were taken, from their pixels alone.
+
+    The frame is its own, turned at will; its scale is set so that the median depth of what the
+    photos see is 2.5. Cameras that the photos state are where the search for lenses begins.
+
+    Raises:
+        CaptureError: too few photos, or they cannot be placed; the message tells what to do.
+        MissingExtraError: pycolmap is not installed.
+    """
+    chosen = parameters or PosingParameters()
+    count = len(photos)
+    steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
+    features = gather(photos, chosen, steps)
+    reasons.check_enough(features, LEAST_PHOTOS)
+    lenses = shared_lenses(features)
+    links = link_photos(features, lenses, chosen, steps)
+    found, notes, models = solved_from_nothing(features, lenses, links, chosen, steps)
+    if len(found.poses) < LEAST_SHARE * len(features):
+        raise reasons.too_few(len(found.poses), len(features))
+    steps.end()
+    change = Similarity(
+        MIDDLE_DEPTH / middle_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
+    )
+    out = reasons.left_out(features, found.poses, links)
+    if len(found.poses) < ENOUGH * len(features):
+        notes.append(f"only {len(found.poses)} of {len(features)} photos could be placed")
+    return scene(
+        features,
+        found,
+        change,
+        left_out=tuple(out),
+        notes=tuple(notes),
+        facts={"models": models, **focal_facts(features, found, lenses)},
+    )
+
+
+def solved_from_nothing(
+    photos: list[Features],
+    lenses: list[Lens],
+    links: Links,
+    parameters: PosingParameters,
+    steps: Steps,
+) -> tuple[Solved, list[str], int]:
+    """Return the photos placed from their links alone, notes, and how many models there were.
+
+    Raises:
+        CaptureError: no model of three photos was found.
+    """
+    models, lenses = _best_models(photos, lenses, links, parameters, steps)
+    if not models or len(models[0]) < LEAST_PHOTOS:
+        raise reasons.refuse(photos, links, each_camera(lenses))
+    whole, count = joined(models)
+    notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
+    poses = {i: pose for i, (pose, _) in sorted(whole.items())}
+    cameras = {i: camera for i, (_, camera) in whole.items()}
+    gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
+    found = refined(photos, links, poses, with_cameras(lenses, cameras), gates, parameters)
+    if len(found.poses) < LEAST_PHOTOS or len(found.points) < LEAST_POINTS:
+        raise reasons.refuse(photos, links, each_camera(lenses))
+    if any(lens.is_fixed for lens in lenses):
+        notes.append("the photos cannot tell their lens: a usual one was assumed")
+    return found, notes, len(models)
+
+
+def _best_models(
+    photos: list[Features],
+    lenses: list[Lens],
+    links: Links,
+    parameters: PosingParameters,
+    steps: Steps,
+) -> tuple[list[Model], list[Lens]]:
+    """Return the models, and the lenses that they began from.
+
+    Where lenses are not known and the usual ones lead nowhere, they are held as they are, and then
+    others are tried.
+    """
+    linked = {i for pair in links.matches for i in pair}
+    best: tuple[list[Model], list[Lens]] = ([], lenses)
+    if len(linked) < LEAST_PHOTOS:
+        return best
+    for trial in _trials(lenses):
+        models = [
+            model
+            for model in mapped(photos, links, trial, parameters, steps)
+            if all(is_sane(camera) for _, camera in model.values())
+        ]
+        if models and len(models[0]) > sum(len(model) for model in best[0][:1]):
+            best = models, trial
+        if best[0] and len(best[0][0]) >= ENOUGH * len(linked):
+            break
+    return best
+
+
+def _trials(lenses: list[Lens]) -> list[list[Lens]]:
+    """Return the lenses to begin from, one trial after another."""
+    held = [replace(lens, known="assumed") for lens in lenses]
+    others = [[_with_focal(lens, focal) for lens in lenses] for focal in OTHER_FOCALS]
+    return [lenses, held, *(others if any(lens.known == "unknown" for lens in lenses) else [])]
+
+
+def _with_focal(lens: Lens, focal: float) -> Lens:
+    if lens.known != "unknown":
+        return lens
+    size = lens.camera.width_px, lens.camera.height_px
+    return replace(lens, camera=usual_camera(*size, focal))
+
+
+def refined(
+    photos: list[Features],
+    links: Links,
+    poses: dict[int, np.ndarray],
+    lenses: list[Lens],
+    gates_px: tuple[float, ...],
+    parameters: PosingParameters,
+    stated: dict[int, np.ndarray] | None = None,
+) -> Solved:
+    """Return poses and lenses after a round for each gate; photos that see too little are left."""
+    found = None
+    for gate in gates_px:
+        last = gate == gates_px[-1]
+        found = solved(
+            photos, links, poses, lenses, gate, parameters,
+            tolerance=1e-5 if last else 1e-3, stated=stated,
+        )  # fmt: skip
+        poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= LEAST_POINTS}
+        lenses = with_cameras(lenses, found.cameras)
+        if last and len(poses) < len(found.poses):
+            found = solved(
+                photos, links, poses, lenses, gate, parameters, tolerance=1e-5, stated=stated
+            )
+    if found is None:
+        raise ValueError("there must be a gate")
+    return found
+
+
+def with_cameras(lenses: list[Lens], cameras: dict) -> list[Lens]:
+    """Return the lenses with the cameras that were found for their photos."""
+    return [
+        replace(lens, camera=next((cameras[i] for i in lens.photos if i in cameras), lens.camera))
+        for lens in lenses
+    ]
+
+
+def focal_facts(photos: list[Features], found: Solved, lenses: list[Lens]) -> dict:
+    """Return the focal length found and given for the lens of most photos, in pixels."""
+    main = max(lenses, key=lambda lens: sum(i in found.poses for i in lens.photos))
+    placed = next((i for i in main.photos if i in found.poses), None)
+    return {
+        "lenses": len(lenses),
+        "focal_given": main.known,
+        "focal_given_px": None if main.known == "unknown" else round(main.camera.fx_px, 2),
+        "focal_found_px": None if placed is None else round(found.cameras[placed].fx_px, 2),
+    }

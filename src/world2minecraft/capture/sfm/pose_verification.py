@@ -1,0 +1,367 @@
+"""Photos with stated poses and lenses: these are measured, and put right where they are off."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from world2minecraft.capture.sfm import results as reasons
+from world2minecraft.capture.sfm.bundle_adjustment import Solved, solved
+from world2minecraft.capture.sfm.camera_groups import (
+    Lens,
+    each_camera,
+    normalised,
+    shared_lenses,
+    to_colmap,
+)
+from world2minecraft.capture.sfm.colmap import PLACE, colmap
+from world2minecraft.capture.sfm.features import Features, gather, unit_px
+from world2minecraft.capture.sfm.incremental_mapping import (
+    focal_facts,
+    refined,
+    solved_from_nothing,
+    with_cameras,
+)
+from world2minecraft.capture.sfm.matching import Links, link_photos
+from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.results import middle_depth, scene
+from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera, SparseScene
+from world2minecraft.core.types.photos import PhotoStream
+
+# Single photos: how far a stated pose is from what its matches say, and a new one from points.
+
+LEAST_SEEN = 30  # Points that a pose found anew must agree with; COLMAP's own least.
+
+
+def epipolar_px(
+    photos: list[Features],
+    links: Links,
+    poses: dict[int, np.ndarray],
+    cameras: dict[int, Camera],
+) -> dict[int, float]:
+    """Return the median distance of each photo's matches from what the poses allow, in pixels.
+
+    It is Sampson's, so it needs no points and no gate; photos without links are not in it.
+    """
+    rays = {i: normalised(cameras[i], photos[i].pixels) for i in poses}
+    off: dict[int, list[np.ndarray]] = {}
+    for (i, j), both in links.matches.items():
+        if i in poses and j in poses:
+            first_to_second = np.linalg.inv(poses[j]) @ poses[i]
+            focal = (cameras[i].fx_px * cameras[j].fx_px) ** 0.5
+            each = focal * sampson(rays[i][both[:, 0]], rays[j][both[:, 1]], first_to_second)
+            off.setdefault(i, []).append(each)
+            off.setdefault(j, []).append(each)
+    return {i: float(np.median(np.concatenate(each))) for i, each in sorted(off.items())}
+
+
+def sampson(first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray) -> np.ndarray:
+    """Return how far matched rays [K, 2] (on z = 1) are from meeting, to first order, [K]."""
+    x, y, z = first_to_second[:3, 3]
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    essential = cross @ first_to_second[:3, :3]
+    a = np.concatenate([first, np.ones((len(first), 1))], axis=1)
+    b = np.concatenate([second, np.ones((len(second), 1))], axis=1)
+    lines, back = a @ essential.T, b @ essential
+    steep = (lines[:, :2] ** 2).sum(axis=1) + (back[:, :2] ** 2).sum(axis=1)
+    return np.abs((b * lines).sum(axis=1)) / np.sqrt(np.maximum(steep, 1e-24))
+
+
+def outliers(off_px: dict[int, float], unit: float, parameters: PosingParameters) -> set[int]:
+    """Return the photos whose stated poses are wrong, not merely inexact."""
+    if len(off_px) < 4:
+        return set()  # Of three, nobody can say which one is wrong.
+    usual = float(np.median(list(off_px.values())))
+    limit = max(unit * parameters.outlier_px, parameters.outlier_times * usual)
+    return {i for i, off in off_px.items() if off > limit}
+
+
+def placed_anew(
+    photo: int,
+    photos: list[Features],
+    links: Links,
+    found: Solved,
+    camera: Camera,
+    parameters: PosingParameters,
+) -> np.ndarray | None:
+    """Return the pose of a photo by the points that its partners see, or None if it has too few."""
+    point_of = {
+        (int(i), int(f)): int(p)
+        for p, i, f in zip(found.track_point, found.track_photo, found.track_feature, strict=True)
+    }
+    pairs: set[tuple[int, int]] = set()
+    for (i, j), both in links.matches.items():
+        if photo in (i, j):
+            mine, other = (0, 1) if photo == i else (1, 0)
+            for row in both.tolist():
+                point = point_of.get((j if photo == i else i, row[other]))
+                if point is not None:
+                    pairs.add((row[mine], point))
+    if len(pairs) < LEAST_SEEN:
+        return None
+    rows = np.array(sorted(pairs))
+    with colmap() as pycolmap:
+        options = pycolmap.AbsolutePoseEstimationOptions()
+        options.ransac.random_seed = parameters.seed
+        options.ransac.max_error = 4.0 * unit_px(photos)
+        answer = pycolmap.estimate_and_refine_absolute_pose(
+            photos[photo].pixels[rows[:, 0]],
+            found.points[rows[:, 1]],
+            to_colmap(pycolmap, camera, 1, simple=False),
+            options,
+        )
+    if answer is None or answer["num_inliers"] < LEAST_SEEN:
+        return None
+    there = np.eye(4)
+    there[:3] = answer["cam_from_world"].matrix()
+    return np.linalg.inv(there)
+
+
+LEAST_POINTS = 50  # Fewer say nothing of poses.
+LEAST_MOUNTED = 12  # Poses for the place of another sensor on the device to be sought.
+MOUNT_GAIN = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
+MOUNT_REACH = 0.2  # and be no farther than so many times the depth that is seen.
+RICH_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
+NEARLY_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
+SETTLED_PX = 1.5  # Refined poses that are off by more have run away.
+
+
+@dataclass(frozen=True, eq=False)
+class Stated:
+    """What is known before anything is moved."""
+
+    photos: list[Features]
+    lenses: list[Lens]
+    links: Links
+    poses: dict[int, np.ndarray]
+    wrong: set[int]
+    parameters: PosingParameters
+    notes: list[str] = field(default_factory=list)
+
+
+def check_poses(
+    photos: PhotoStream,
+    parameters: PosingParameters | None = None,
+    progress: Progress = silent,
+) -> SparseScene:
+    """Return the photos with their stated poses where these are good, with better ones if not.
+
+    Poses and lenses that fit the pixels within ``good_px`` are given back bit by bit. Others are
+    refined together and carried back to the stated frame by a similarity. Single wrong poses are
+    found anew from their neighbours, or left out.
+
+    Raises:
+        CaptureError: the photos share too little to be measured.
+        MissingExtraError: pycolmap is not installed.
+    """
+    chosen = parameters or PosingParameters()
+    count = len(photos)
+    steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
+    features = gather(photos, chosen, steps)
+    reasons.check_enough(features, 2)
+    lenses = shared_lenses(features)
+    links = link_photos(features, lenses, chosen, steps)
+    poses = {i: p for i, one in enumerate(features) if (p := one.camera_to_scan) is not None}
+    shared = each_camera(lenses)
+    cameras = {i: one.camera or shared[i] for i, one in enumerate(features)}
+    unit = unit_px(features)
+    off_px = epipolar_px(features, links, poses, cameras)
+    wrong = outliers(off_px, unit, chosen)
+    stated = Stated(features, lenses, links, poses, wrong, chosen)
+    measured = _measured(stated, cameras)
+    if len(measured.points) < LEAST_POINTS and len(links.matches) < 2:
+        raise CaptureError(
+            PLACE,
+            f"share too few details to check their poses ({len(measured.points)} points); "
+            "take pictures that overlap, with the lights on",
+        )
+    before = _error_px(measured, off_px, wrong)
+    good = before <= unit * chosen.good_px and all(lens.known == "stated" for lens in lenses)
+    made = (
+        _kept(stated, measured, before, cameras)
+        if good
+        else _moved(stated, measured, before, steps)
+    )
+    steps.end()
+    return made
+
+
+def _measured(stated: Stated, cameras: dict[int, Camera]) -> Solved:
+    """Return the points that stated poses and lenses give as they are, gates wide."""
+    poses = {i: pose for i, pose in stated.poses.items() if i not in stated.wrong}
+    return solved(
+        stated.photos,
+        stated.links,
+        poses,
+        _exact(cameras, poses),
+        stated.parameters.wide_px,
+        stated.parameters,
+        free=False,
+    )
+
+
+def _error_px(measured: Solved, off_px: dict[int, float], wrong: set[int]) -> float:
+    """Return how far off the stated poses are, in pixels.
+
+    Points exist only where matches meet within a gate, so poses that are far off look better by
+    points than they are; the epipolar error has no gate.
+    """
+    usual = [off for i, off in off_px.items() if i not in wrong]
+    return max(measured.median_px, float(np.median(usual)) if usual else 0.0)
+
+
+def _exact(cameras: dict[int, Camera], poses: dict) -> list[Lens]:
+    """Return a lens for each camera as it is stated, none taken for another."""
+    groups: dict[Camera, list[int]] = {}
+    for i in sorted(poses):
+        groups.setdefault(cameras[i], []).append(i)
+    return [Lens(camera, tuple(group), "stated") for camera, group in groups.items()]
+
+
+def _rescued(stated: Stated, found: Solved, cameras: dict[int, Camera]) -> dict[int, np.ndarray]:
+    """Return poses for photos that have none, or a wrong one, by the points of the others."""
+    fresh = {}
+    for i in range(len(stated.photos)):
+        if i in stated.wrong or i not in stated.poses:
+            pose = placed_anew(i, stated.photos, stated.links, found, cameras[i], stated.parameters)
+            if pose is not None:
+                fresh[i] = pose
+    return fresh
+
+
+def _kept(
+    stated: Stated, measured: Solved, before: float, cameras: dict[int, Camera]
+) -> SparseScene:
+    """Return the scene with all good poses as they were stated."""
+    fresh = _rescued(stated, measured, cameras)
+    kept = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
+    poses = {**{i: pose for i, (_, pose) in kept.items()}, **fresh}
+    gate = stated.parameters.gates_px[-1]
+    found = solved(
+        stated.photos, stated.links, poses, _exact(cameras, poses), gate,
+        stated.parameters, free=False,
+    )  # fmt: skip
+    error = round(before, 4)
+    facts = {
+        "error_before_px": error,
+        "error_after_px": error,
+        "moved_median_mm": 0.0,
+        "turned_median_deg": 0.0,
+        "scale_correction": 1.0,
+        **_focals(stated, found),
+    }
+    return _scene(stated, found, None, kept, fresh, facts)
+
+
+def _moved(stated: Stated, measured: Solved, before: float, steps: Steps) -> SparseScene:
+    """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
+    notes = stated.notes
+    found = _refined(stated, _is_poor(stated, measured, before))
+    if found is None:
+        notes.append("the stated poses are too far off to start from: places were found anew")
+        found, more, _ = solved_from_nothing(
+            stated.photos, stated.lenses, stated.links, stated.parameters, steps
+        )
+        notes += more
+    change, shared = _back(stated, found)
+    moved = change.off_m
+    facts = {
+        "error_before_px": round(before, 4) if np.isfinite(before) else None,
+        "error_after_px": round(found.median_px, 4),
+        "moved_median_mm": round(1000 * float(np.median(moved)), 3),
+        "turned_median_deg": round(float(np.median(change.off_deg)), 4),
+        "scale_correction": _scale(measured, found, change),
+        "mount_mm": [round(1000 * float(part), 1) for part in change.mount_m],
+        **_focals(stated, found),
+    }
+    notes.append(
+        f"stated poses were off by {before:.1f} px (median); refined to {found.median_px:.2f} px, "
+        f"which moved them by {facts['moved_median_mm']:.0f} mm "
+        f"and {facts['turned_median_deg']:.1f} degrees"
+    )
+    fresh = {i: pose for i, pose in found.poses.items() if i not in shared}
+    return _scene(stated, found, change, {}, fresh, facts)
+
+
+def _scale(measured: Solved, found: Solved, change: Similarity) -> float | None:
+    """Return how much deeper everything is now than by the stated poses."""
+    if len(measured.points) < LEAST_POINTS:
+        return None
+    return round(change.scale * middle_depth(found) / middle_depth(measured), 4)
+
+
+def _is_poor(stated: Stated, measured: Solved, before: float) -> bool:
+    """Return whether the photos see too little to overrule poses that are nearly right."""
+    unit = unit_px(stated.photos)
+    seen = len(measured.track_photo) / max(1, len(measured.poses))
+    return seen < RICH_PHOTO and before < NEARLY_PX * unit
+
+
+def _refined(stated: Stated, poor: bool) -> Solved | None:
+    """Return better poses from the stated ones, or None where these lead nowhere.
+
+    In a ``poor`` capture these hold their photos, and the lens is taken for right.
+    """
+    links, chosen = stated.links, stated.parameters
+    linked = {i for pair in links.matches for i in pair}
+    poses = {i: p for i, p in stated.poses.items() if i not in stated.wrong and i in linked}
+    if len(poses) < 2:
+        return None
+    trusted = dict(poses) if poor else None
+    lenses = [replace(one, known="assumed") if poor else one for one in stated.lenses]
+    first, later = chosen.gates_px[:1], chosen.gates_px[1:]
+    found = refined(stated.photos, links, poses, lenses, first, chosen, trusted)
+    lenses = with_cameras(lenses, found.cameras)
+    fresh = _rescued(stated, found, each_camera(lenses))
+    poses = {**found.poses, **fresh}
+    if later:
+        found = refined(stated.photos, links, poses, lenses, later, chosen, trusted)
+    settled = found.median_px <= SETTLED_PX * unit_px(stated.photos)
+    if not settled or len(found.poses) < 0.5 * len(linked):
+        return None
+    return found
+
+
+def _back(stated: Stated, found: Solved) -> tuple[Similarity, set[int]]:
+    """Return the similarity to the stated frame, and the photos that it was found by."""
+    shared = sorted(i for i in found.poses if i in stated.poses and i not in stated.wrong)
+    given = np.array([found.poses[i] for i in shared]).reshape(-1, 4, 4)
+    wanted = np.array([stated.poses[i] for i in shared]).reshape(-1, 4, 4)
+    try:
+        plain = align_similarity(given, wanted)
+        if len(shared) < LEAST_MOUNTED:
+            return plain, set(shared)
+        mounted = align_similarity(given, wanted, mounted=True)
+        better = np.median(mounted.off_m) < MOUNT_GAIN * np.median(plain.off_m)
+        near = np.linalg.norm(mounted.mount_m) < MOUNT_REACH * plain.scale * middle_depth(found)
+        return mounted if better and near else plain, set(shared)
+    except ValueError as error:
+        raise CaptureError(
+            PLACE, f"cannot be carried to the stated frame ({error}); leave the poses out"
+        ) from error
+
+
+def _focals(stated: Stated, found: Solved) -> dict:
+    facts = focal_facts(stated.photos, found, stated.lenses)
+    return {**facts, "focal_stated_px": facts["focal_given_px"]}
+
+
+def _scene(stated, found, change, kept, fresh, facts) -> SparseScene:
+    photos, notes = stated.photos, stated.notes
+    placed = {*found.poses, *kept}
+    wrong = sorted(stated.wrong)
+    for i in wrong:
+        how = "found anew" if i in fresh else "left out"
+        notes.append(f"the stated pose of {photos[i].name} contradicts the pictures: {how}")
+    out = dict(reasons.left_out(photos, placed, stated.links))
+    for i in wrong:
+        if i not in placed:
+            out[photos[i].name] = "its stated pose contradicts the pictures; take it again"
+    facts = {"stated_wrong": len(wrong), **facts}
+    return scene(
+        photos, found, change, kept,
+        left_out=tuple(out.items()), notes=tuple(notes), facts=facts,
+    )  # fmt: skip

@@ -1,0 +1,202 @@
+"""What was solved, as the value that later stages take: in one order, rounded, with its figures."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.sfm.bundle_adjustment import Solved
+from world2minecraft.capture.sfm.colmap import PLACE
+from world2minecraft.capture.sfm.features import Features
+from world2minecraft.capture.sfm.matching import Links
+from world2minecraft.capture.sfm.similarity_transform import Similarity
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, SparseScene
+
+# Why photos could not be placed, in words that tell what to do.
+
+FEW_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
+CHANCE = 6  # So many features match by chance.
+BLURRED = 0.5  # Times the usual sharpness.
+HABIT = "walk sideways around the room, with most of each picture in the next"
+
+
+def left_out(photos: list[Features], placed: Iterable[int], links: Links) -> list[tuple[str, str]]:
+    """Return name and reason of each photo that is not among those placed."""
+    inside = set(placed)
+    usual = float(np.median([photo.sharpness for photo in photos]))
+    return [
+        (photo.name, _reason(i, photos, inside, links, usual))
+        for i, photo in enumerate(photos)
+        if i not in inside
+    ]
+
+
+def _reason(i: int, photos: list[Features], inside: set[int], links: Links, usual: float) -> str:
+    photo = photos[i]
+    blurred = photo.sharpness < BLURRED * usual
+    if len(photo.pixels) < FEW_FEATURES:
+        return f"shows only {len(photo.pixels)} details ({'blurred' if blurred else 'bare'})"
+    if blurred:
+        return "is blurred: hold the camera still for each picture, with more light"
+    partners = links.of(i)
+    near = _nearest(i, inside, links)
+    advice = f"take more pictures between {photo.name} and {photos[near].name}" if inside else HABIT
+    if not partners:
+        return f"shares nothing with the other photos; {advice}"
+    if not inside & set(partners):
+        return f"shares nothing with the photos that were placed; {advice}"
+    return f"shares too little with the photos that were placed; {advice}"
+
+
+def _nearest(i: int, inside: set[int], links: Links) -> int:
+    """Return the placed photo that is most like one, by what both show, then by order."""
+    if not inside:
+        return i
+    shared = np.maximum(links.alike[i] - CHANCE, 0)
+    return min(inside, key=lambda j: (-shared[j], abs(i - j), j))
+
+
+def check_enough(photos: list[Features], least: int) -> None:
+    """Raise CaptureError where there are too few photos, or too few that show anything."""
+    if len(photos) < least:
+        count = "there is no photo" if not photos else f"only {len(photos)} were given"
+        raise CaptureError(PLACE, f"{count}; take 20 to 60 of the room: {HABIT}")
+    bare = sum(len(photo.pixels) < FEW_FEATURES for photo in photos)
+    if len(photos) - bare < least:
+        raise CaptureError(
+            PLACE,
+            f"{bare} of {len(photos)} show too few details to be placed (blank, blurred or dark); "
+            "turn on the lights, step back so that furniture and corners are seen",
+        )
+
+
+def too_few(placed: int, given: int) -> CaptureError:
+    """Return the error for photos of which only a few could be placed."""
+    return CaptureError(
+        PLACE,
+        f"only {placed} of {given} could be placed, too few to trust; {HABIT}, and stand back so "
+        "that furniture and corners are seen",
+    )
+
+
+def refuse(photos: list[Features], links: Links, cameras: dict[int, Camera]) -> CaptureError:
+    """Return the error for photos that make no model at all."""
+    linked = {i for pair in links.matches for i in pair}
+    if len(linked) < 3:
+        reason = f"no three of the {len(photos)} show the same things; {HABIT}"
+    elif links.turned(cameras) > 0.5:
+        reason = (
+            "the camera turned on one spot, which shows no depth; "
+            "take steps of 20 to 40 cm sideways between pictures"
+        )
+    elif links.flat() > 0.5:
+        reason = (
+            "they show little but one flat surface (floor, wall or poster), which tells neither "
+            "lens nor places; hold the camera level, so that furniture and corners are seen"
+        )
+    else:
+        reason = (
+            f"{len(linked)} of the {len(photos)} share details, but too few to tell where they "
+            f"were taken; {HABIT}"
+        )
+    return CaptureError(PLACE, reason)
+
+
+DIGITS = 9  # What is left of rounding in sums; a nanometre.
+
+
+def scene(
+    photos: list[Features],
+    found: Solved,
+    change: Similarity | None = None,
+    kept: dict[int, tuple[Camera, np.ndarray]] | None = None,
+    **told: Any,
+) -> SparseScene:
+    """Return the solved photos as a SparseScene.
+
+    Args:
+        photos: all photos, in their order.
+        found: poses and points.
+        change: carries these to the wanted frame.
+        kept: cameras and poses by number that are given out as they are, not rounded.
+        told: ``left_out``, ``notes`` and ``facts``.
+    """
+    kept = kept or {}
+    order = sorted({*found.poses, *kept})
+    number = np.full(len(photos), -1)
+    number[order] = range(len(order))
+    poses = np.array([found.poses.get(i, np.eye(4)) for i in order])
+    points = found.points
+    if change is not None:
+        poses, points = change.poses(poses), change.points(points)
+    poses = np.round(poses, DIGITS) + 0.0  # No minus zero.
+    for row, i in enumerate(order):
+        if i in kept:
+            poses[row] = kept[i][1]
+    pixels = _pixels(photos, found)
+    facts = {
+        "photos_given": len(photos),
+        "photos_placed": len(order),
+        "error_px": round(found.median_px, 4) if len(found.error_px) else None,
+        "points": len(points),
+        "triangulation_deg": round(middle_angle_deg(found), 3),
+        **told.pop("facts", {}),
+    }
+    return SparseScene(
+        tuple(photos[i].name for i in order),
+        tuple(kept[i][0] if i in kept else found.cameras[i] for i in order),
+        poses,
+        np.round(points, DIGITS).astype(np.float32),
+        _colours(photos, found),
+        number[found.track_photo].astype(np.int32),
+        found.track_point.astype(np.int32),
+        pixels.astype(np.float32),
+        round(float(found.error_px.mean()), 6) if len(found.error_px) else 0.0,
+        facts=facts,
+        **told,
+    )
+
+
+def middle_depth(found: Solved) -> float:
+    """Return the median distance along the view from a photo to a point that it sees."""
+    depths = []
+    for i, pose in sorted(found.poses.items()):
+        seen = found.points[found.track_point[found.track_photo == i]]
+        depths.append((seen - pose[:3, 3]) @ pose[:3, 2])
+    return float(np.median(np.concatenate(depths)))
+
+
+def middle_angle_deg(found: Solved) -> float:
+    """Return the median over points of the widest angle between the first ray and another."""
+    if len(found.points) == 0:
+        return 0.0
+    centres = np.zeros((max(found.poses) + 1, 3))
+    for i, pose in found.poses.items():
+        centres[i] = pose[:3, 3]
+    rays = centres[found.track_photo] - found.points[found.track_point]
+    rays /= np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12)
+    starts = np.searchsorted(found.track_point, np.arange(len(found.points)))
+    cosines = (rays * rays[starts[found.track_point]]).sum(axis=1)
+    widest = np.minimum.reduceat(cosines, starts)
+    return float(np.degrees(np.median(np.arccos(np.clip(widest, -1, 1)))))
+
+
+def _pixels(photos: list[Features], found: Solved) -> np.ndarray:
+    pixels = np.zeros((len(found.track_photo), 2))
+    for i in found.poses:
+        mine = found.track_photo == i
+        pixels[mine] = photos[i].pixels[found.track_feature[mine]]
+    return pixels
+
+
+def _colours(photos: list[Features], found: Solved) -> np.ndarray:
+    """Return each point's mean colour, uint8 [P, 3]."""
+    count = len(found.points)
+    total = np.zeros((count, 3), np.int64)
+    for i in found.poses:
+        mine = found.track_photo == i
+        colours = photos[i].colours[found.track_feature[mine]]
+        np.add.at(total, found.track_point[mine], colours.astype(np.int64))
+    seen = np.maximum(np.bincount(found.track_point, minlength=count), 1)
+    return ((2 * total + seen[:, None]) // (2 * seen[:, None])).astype(np.uint8)

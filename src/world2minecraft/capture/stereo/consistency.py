@@ -1,0 +1,88 @@
+"""Small islands of depth: bits that hang on nothing around them are chance, not things."""
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+
+# Which depths other photos confirm, and the mean of what they all say.
+
+
+@njit
+def confirm(depth, rays, others, to_others, cameras, tolerance):
+    """Ask other depth maps about each pixel.
+
+    Args:
+        depth: float32 [h, w] z-depth, 0 where there is none.
+        rays: float32 [h, w, 2], x/z and y/z of the pixels.
+        others: float32 [N, h, w], the others' depth.
+        to_others: float64 [N, 4, 4], from this camera's frame to theirs.
+        cameras: float64 [N, 4], their fx, fy, cx, cy.
+        tolerance: two depths are the same within this share.
+
+    Returns:
+        ``votes`` uint8 [h, w], how many agree, and ``mean`` float32 [h, w], the mean of the
+        pixel's own depth and of those that agree, carried to its ray.
+    """
+    high, wide = depth.shape
+    votes, mean = np.zeros((high, wide), np.uint8), np.zeros((high, wide), np.float32)
+    for y in range(high):
+        for x in range(wide):
+            z = np.float64(depth[y, x])
+            if z <= 0:
+                continue
+            px, py = rays[y, x, 0] * z, rays[y, x, 1] * z
+            total, count = z, 1
+            for n in range(len(others)):
+                pose = to_others[n]
+                qz = pose[2, 0] * px + pose[2, 1] * py + pose[2, 2] * z + pose[2, 3]
+                if qz <= 0.05 * z:
+                    continue
+                qx = pose[0, 0] * px + pose[0, 1] * py + pose[0, 2] * z + pose[0, 3]
+                qy = pose[1, 0] * px + pose[1, 1] * py + pose[1, 2] * z + pose[1, 3]
+                u = np.floor(qx / qz * cameras[n, 0] + cameras[n, 2])
+                v = np.floor(qy / qz * cameras[n, 1] + cameras[n, 3])
+                if not (0 <= u < others[n].shape[1] and 0 <= v < others[n].shape[0]):
+                    continue
+                theirs = np.float64(others[n, int(v), int(u)])
+                if theirs > 0 and abs(theirs - qz) <= tolerance * qz:
+                    votes[y, x] += 1
+                    total += z * theirs / qz
+                    count += 1
+            mean[y, x] = total / count
+    return votes, mean
+
+
+@njit
+def without_islands(depth, least_px, step):
+    """Return the depth map without islands of under ``least_px`` pixels, 0 in their place.
+
+    Args:
+        depth: float32 [h, w] z-depth, 0 where there is none.
+        least_px: pixels of the smallest island that stays.
+        step: neighbours hang together where their depths differ by less than this share.
+    """
+    high, wide = depth.shape
+    result = depth.copy()
+    visited = np.zeros(high * wide, np.bool_)
+    island = np.empty(high * wide, np.int64)
+    for start in range(high * wide):
+        if visited[start] or depth[start // wide, start % wide] <= 0:
+            continue
+        visited[start] = True
+        island[0] = start
+        done, count = 0, 1
+        while done < count:
+            y, x = island[done] // wide, island[done] % wide
+            done += 1
+            for way in range(4):
+                v, u = y + (way == 0) - (way == 1), x + (way == 2) - (way == 3)
+                if v < 0 or u < 0 or v >= high or u >= wide or visited[v * wide + u]:
+                    continue
+                if depth[v, u] > 0 and abs(depth[v, u] - depth[y, x]) < step * depth[y, x]:
+                    visited[v * wide + u] = True
+                    island[count] = v * wide + u
+                    count += 1
+        if count < least_px:
+            for k in range(count):
+                result[island[k] // wide, island[k] % wide] = 0
+    return result

@@ -1,0 +1,243 @@
+"""Depth of every photo: swept alone, confirmed by others, filled where planes say how."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from world2minecraft.capture.stereo.consistency import confirm, without_islands
+from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto, small_photos
+from world2minecraft.capture.stereo.monocular_depth import DepthModel, filled
+from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.planar_regions import flattened
+from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
+from world2minecraft.geometry.unprojection import pixel_rays, project
+from world2minecraft.rendering.thread_pool import side_by_side
+
+# Which photos each is compared with: those that see the same things at a good angle.
+
+ASKED = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.
+DEPTH_PERCENTILES = (20, 50, 80)
+MANY_SHARED = 20  # So many points in common prove that nothing stands between.
+
+
+def chosen_neighbours(
+    photos: list[SmallPhoto], depths_m: np.ndarray, count: int, angle_deg: float
+) -> list[np.ndarray]:
+    """Return for each photo the numbers of up to ``count`` others, the best first.
+
+    Args:
+        photos: all of them.
+        depths_m: float64 [F, 3], three depths that stand for what each sees.
+        count: of neighbours.
+        angle_deg: the angle wanted between the two rays to a point.
+    """
+    result = []
+    poses = np.array([photo.camera_to_scan for photo in photos])
+    to_cameras = np.array([invert_rigid(pose) for pose in poses])
+    for number, photo in enumerate(photos):
+        points_m, depth_m = _asked_points(photo, depths_m[number])
+        scores = np.array(
+            [
+                _score(photo, photos[other], to_cameras[other], points_m, depth_m, angle_deg)
+                if other != number
+                else 0.0
+                for other in range(len(photos))
+            ]
+        )
+        order = np.argsort(-scores, kind="stable")
+        result.append(order[scores[order] > 0.02][:count])
+    return result
+
+
+def _asked_points(photo: SmallPhoto, depths_m: np.ndarray):
+    """Return points [P, 3] of the scan frame that the photo may see, and their depth."""
+    camera = photo.camera
+    u, v = np.meshgrid(
+        (np.arange(ASKED) + 0.5) / ASKED * camera.width_px,
+        (np.arange(ASKED) + 0.5) / ASKED * camera.height_px,
+    )
+    x, y = (u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px
+    rays = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
+    points_m = (rays[None] * depths_m[:, None, None]).reshape(-1, 3)
+    return apply(photo.camera_to_scan, points_m), np.repeat(depths_m, len(rays))
+
+
+def _score(photo, other, to_other, points_m, depth_m, angle_deg) -> float:
+    """Return how much of the points the other sees, each counted by its angle and distance."""
+    seen_m = apply(to_other, points_m)
+    z = seen_m[:, 2]
+    ahead = z > 0.3 * depth_m
+    at_px = project(np.where(ahead[:, None], seen_m, 1.0), other.camera)
+    size = (other.camera.width_px, other.camera.height_px)
+    inside = ahead & ((at_px >= 0) & (at_px < size)).all(axis=1)
+    if not inside.any():
+        return 0.0
+    here = points_m[inside] - photo.camera_to_scan[:3, 3]
+    there = points_m[inside] - other.camera_to_scan[:3, 3]
+    lengths = np.linalg.norm(here, axis=1) * np.linalg.norm(there, axis=1)
+    cosine = (here * there).sum(axis=1) / np.maximum(lengths, 1e-12)
+    angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+    octaves = np.log2(np.maximum(angle, 1e-3) / angle_deg)
+    distance = np.log2(z[inside] / depth_m[inside])
+    worth = np.exp(-0.5 * octaves**2 - 0.5 * (distance / 0.5) ** 2)
+    shared = len(np.intersect1d(photo.guide_point, other.guide_point, assume_unique=True))
+    return float(worth.sum() / len(points_m) * (0.2 + 0.8 * min(1.0, shared / MANY_SHARED)))
+
+
+AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
+TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+DECIDING = 160  # Trust of depth that may decide where a flat patch lies.
+GUESSED = np.uint8(96)
+GUESSES_AGREEING = 2  # Two photos may guess alike by chance; three hardly.
+LEAST_GUIDES = 20
+STAGE = "stereo"
+
+
+def depth_maps(
+    photos: PhotoStream,
+    scene: SparseScene,
+    parameters: StereoParameters | None = None,
+    progress: Progress = silent,
+    guide: DepthModel | None = None,
+) -> Iterator[DepthMap]:
+    """Yield the depth of each photo of a scene, in its order.
+
+    Args:
+        photos: read once; those that the scene does not name are left out.
+        scene: where they were taken, in any unit; the depths are in the same.
+        parameters: how.
+        progress: told of the stage ``stereo``.
+        guide: a network that fills what stays open, with low trust; see guide.py.
+
+    Raises:
+        CaptureError: no photo has another that sees the same, or one is missing.
+    """
+    values = parameters or StereoParameters()
+    small = small_photos(photos, scene, values.width_px, silent)
+    swept, neighbours = swept_depths(small, values, progress)
+    found = [confirmed(n, small, swept, neighbours, values) for n in range(len(small))]
+    every_m = np.concatenate([photo.guide_m for photo in small])
+    guesses = [_flattened(one, p, every_m) for one, p in zip(found, small, strict=True)]
+    guesses_m = [guess_m for guess_m, _ in guesses]
+    for number, photo in enumerate(small):
+        votes, _ = votes_of(number, small, guesses_m, neighbours[number], values.agreement)
+        agreed = votes >= max(values.agreeing, GUESSES_AGREEING)
+        result = _with_guess(found[number], *guesses[number], agreed)
+        yield result if guide is None else _guided(result, photo, guide)
+        progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
+
+
+def _flattened(
+    found: DepthMap, photo: SmallPhoto, every_m: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a guess at flat patches; see flats.py."""
+    sure = found.trust >= DECIDING
+    return flattened(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
+
+
+def _with_guess(
+    found: DepthMap, guess_m: np.ndarray, guessed: np.ndarray, agreed: np.ndarray
+) -> DepthMap:
+    """Take the guess where others agree; where they do not, what it contradicts goes too."""
+    depth_m = np.where(guessed, np.where(agreed, guess_m, np.float32(0)), found.depth_m)
+    trust = np.where(guessed, np.where(agreed, GUESSED, np.uint8(0)), found.trust)
+    return DepthMap(found.name, found.camera, depth_m, trust)
+
+
+def _guided(found: DepthMap, photo: SmallPhoto, guide: DepthModel) -> DepthMap:
+    """Fill what is open by a network's guess."""
+    guess = guide.predict(photo.colour, photo.camera)
+    depth_m, trust = filled(
+        found.depth_m, found.trust, guess, guide.kind, photo.guide_px, photo.guide_m
+    )
+    return DepthMap(found.name, found.camera, depth_m, trust)
+
+
+def swept_depths(
+    small: list[SmallPhoto], values: StereoParameters, progress: Progress = silent
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return each photo's depth float32 [h, w] by itself, and the numbers of its neighbours."""
+    every_m = np.concatenate([photo.guide_m for photo in small])
+    if not len(every_m):
+        raise CaptureError("photos", "share no points; depth cannot be found: take more, nearer")
+    known = [p.guide_m if len(p.guide_m) > LEAST_GUIDES else every_m for p in small]
+    usual = np.array([np.percentile(found, DEPTH_PERCENTILES) for found in known])
+    neighbours = chosen_neighbours(small, usual, values.neighbours, values.angle_deg)
+    if not any(len(found) for found in neighbours):
+        raise CaptureError(
+            "photos", "no two see the same from places far enough apart: take steps aside"
+        )
+    swept: list[np.ndarray] = [np.zeros(0, np.float32)] * len(small)
+
+    def one(number: int) -> None:
+        others = [small[other] for other in neighbours[number]]
+        swept[number] = _swept(small[number], others, every_m, values)
+
+    for first in range(0, len(small), AT_ONCE):
+        side_by_side(one, range(first, min(first + AT_ONCE, len(small))))
+        done = min(first + AT_ONCE, len(small))
+        progress(STAGE, done, 2 * len(small), small[done - 1].name)
+    return swept, neighbours
+
+
+def _swept(
+    photo: SmallPhoto, others: list[SmallPhoto], every_m: np.ndarray, values: StereoParameters
+) -> np.ndarray:
+    if not others:
+        return np.zeros((photo.camera.height_px, photo.camera.width_px), np.float32)
+    return sweep(photo, others, depth_range(photo, every_m), values)
+
+
+def confirmed(
+    number: int,
+    small: list[SmallPhoto],
+    swept: list[np.ndarray],
+    neighbours: list[np.ndarray],
+    values: StereoParameters,
+) -> DepthMap:
+    """Return the depth of a photo that its neighbours' depths confirm."""
+    photo = small[number]
+    votes, mean = votes_of(number, small, swept, neighbours[number], values.agreement)
+    asked = max(1, len(neighbours[number]))
+    depth_m = np.where(votes >= min(values.agreeing, asked), mean, np.float32(0))
+    least_px = round(values.island_share * depth_m.size)
+    depth_m = without_islands(depth_m, least_px, values.island_step)
+    trust = TRUST[np.clip(4 - min(asked, 4) + votes, 0, 4)]
+    return DepthMap(photo.name, photo.camera, depth_m, np.where(depth_m > 0, trust, np.uint8(0)))
+
+
+def votes_of(
+    number: int,
+    small: list[SmallPhoto],
+    swept: list[np.ndarray],
+    others: np.ndarray,
+    agreement: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many others confirm each pixel's depth, uint8 [h, w], and the mean depth."""
+    photo = small[number]
+    votes = np.zeros(swept[number].shape, np.uint8)
+    mean = swept[number].copy()
+    if not len(others):
+        return votes, mean
+    # Photos upright and lying have other shapes; each shape is asked at once.
+    total = np.zeros(votes.shape, np.float64)
+    for shape in sorted({swept[other].shape for other in others}):
+        same = [other for other in others if swept[other].shape == shape]
+        found, middle = confirm(
+            swept[number], pixel_rays(photo.camera),
+            np.stack([swept[other] for other in same]),
+            np.array([invert_rigid(small[o].camera_to_scan) @ photo.camera_to_scan for o in same]),
+            np.array([_lens(small[other]) for other in same]), agreement,
+        )  # fmt: skip
+        total += middle.astype(np.float64) * (found + 1.0) - swept[number]
+        votes += found
+    return votes, ((total + swept[number]) / (votes + 1.0)).astype(np.float32)
+
+
+def _lens(photo: SmallPhoto) -> list[float]:
+    camera = photo.camera
+    return [camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px]

@@ -1,0 +1,348 @@
+"""The depth of one photo by a plane sweep over its neighbours, before anything is checked."""
+
+import numpy as np
+
+from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto
+from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.jit import njit
+
+# How badly each pixel fits its neighbours at each depth: a plane sweep with correlation.
+#
+# A plane at depth z before the camera carries the pixel u of the photo to
+# ``turn @ (u, v, 1) + shift / z`` of a neighbour, up to scale. There the windows around both are
+# compared by their zero-mean normalised correlation, to which brightness and contrast mean nothing.
+
+
+@njit
+def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, noise):
+    """Return the cost of each pixel at each plane, 0 (fits) to 254 (is the opposite).
+
+    Args:
+        grey: float32 [h, w], whole halves from -128 to 127.5, of the photo.
+        sources: float32 [N, H, W], likewise, of its neighbours.
+        sizes: int64 [N, 2], height and width of each, which fills the corner of its array.
+        turns: float32 [N, 3, 3], ``K_n R K^-1``.
+        shifts: float32 [N, 3], ``K_n t``.
+        inverse: float32 [D], the planes' 1 / z.
+        best_of: the mean of so many best neighbours counts.
+        radius: of the window in pixels, up to 7: then all sums are exact.
+        noise: variance that is added to that of both windows.
+
+    Returns:
+        uint8 [h, w, D]; 127, which says nothing, where fewer than two neighbours see the place.
+    """
+    high, wide = grey.shape
+    count = len(sources)
+    side = 2 * radius + 1
+    costs = np.empty((high, wide, len(inverse)), np.uint8)
+    mean, spread = _own_windows(grey, radius, noise)
+    ring = np.zeros((count, side, wide + 2 * radius), np.float32)
+    seen = np.zeros((count, side, wide), np.float32)
+    padded = _padded(grey, radius)
+    sums = np.zeros((count, 3, wide + 2 * radius), np.float32)
+    scores = np.empty((count, wide), np.float32)
+    best = np.empty((best_of, wide), np.float32)
+    box = np.empty((3, wide), np.float32)
+    at_x, at_y = np.empty(wide, np.float32), np.empty(wide, np.float32)
+    for d in range(len(inverse)):
+        sums[:] = 0
+        for row in range(-radius, high + radius):
+            at = (row + radius) % side
+            inside = min(max(row, 0), high - 1)
+            y = row - radius
+            for n in range(count):
+                if row >= radius + 1:
+                    _take(sums[n], ring[n, at], padded[row + radius - side], -1.0)
+                _warp_row(
+                    sources[n], sizes[n], turns[n], shifts[n], inverse[d], inside, radius,
+                    at_x, at_y, ring[n, at], seen[n, at],
+                )  # fmt: skip
+                _take(sums[n], ring[n, at], padded[row + radius], 1.0)
+                if y >= 0:
+                    _score_row(
+                        sums[n], mean[y], spread[y], seen[n, (y + radius) % side], side, noise,
+                        box, scores[n],
+                    )  # fmt: skip
+            if y >= 0:
+                _best_mean(scores, best, costs[y], d)
+    return costs
+
+
+@njit
+def _padded(grey, radius):
+    """The picture with its edge repeated ``radius`` pixels outwards."""
+    high, wide = grey.shape
+    result = np.empty((high + 2 * radius, wide + 2 * radius), np.float32)
+    for y in range(high + 2 * radius):
+        for x in range(wide + 2 * radius):
+            v, u = min(max(y - radius, 0), high - 1), min(max(x - radius, 0), wide - 1)
+            result[y, x] = grey[v, u]
+    return result
+
+
+@njit
+def _own_windows(grey, radius, noise):
+    """The sum of each window of the photo, and one by the root of its variance."""
+    high, wide = grey.shape
+    padded = _padded(grey, radius)
+    side = 2 * radius + 1
+    area = np.float32(side * side)
+    mean, spread = np.empty((high, wide), np.float32), np.empty((high, wide), np.float32)
+    for y in range(high):
+        for x in range(wide):
+            total, square = np.float32(0), np.float32(0)
+            for j in range(side):
+                for i in range(side):
+                    value = padded[y + j, x + i]
+                    total += value
+                    square += value * value
+            mean[y, x] = total / area
+            variance = square - total * total / area + area * np.float32(noise)
+            spread[y, x] = np.float32(1) / np.sqrt(variance)
+    return mean, spread
+
+
+@njit
+def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values, seen):
+    """Read a row of the photo out of a neighbour, by way of a plane, and repeat its ends."""
+    high, wide = size
+    y0, half = np.float32(v) + np.float32(0.5), np.float32(0.5)
+    ax = turn[0, 1] * y0 + turn[0, 2] + shift[0] * inverse
+    ay = turn[1, 1] * y0 + turn[1, 2] + shift[1] * inverse
+    az = turn[2, 1] * y0 + turn[2, 2] + shift[2] * inverse
+    last_x, last_y = np.float32(wide - 1.001), np.float32(high - 1.001)
+    none, one = np.float32(0), np.float32(1)
+    wide_here = len(seen)
+    for u in range(wide_here):
+        x0 = np.float32(u) + half
+        z = az + turn[2, 0] * x0
+        by = one / max(z, np.float32(1e-6))
+        x = (ax + turn[0, 0] * x0) * by - half
+        y = (ay + turn[1, 0] * x0) * by - half
+        inside = (z > none) & (x >= none) & (y >= none) & (x <= last_x) & (y <= last_y)
+        seen[u] = one if inside else none
+        at_x[u], at_y[u] = min(max(x, none), last_x), min(max(y, none), last_y)
+    for u in range(wide_here):
+        x, y = at_x[u], at_y[u]
+        i, j = np.uint32(x), np.uint32(y)
+        a, b = x - np.float32(i), y - np.float32(j)
+        top = source[j, i] + a * (source[j, i + 1] - source[j, i])
+        low = source[j + 1, i] + a * (source[j + 1, i + 1] - source[j + 1, i])
+        value = top + b * (low - top)
+        values[u + radius] = np.floor(value * np.float32(2) + half) * half
+    for k in range(radius):
+        values[k] = values[radius]
+        values[wide_here + radius + k] = values[wide_here + radius - 1]
+
+
+@njit
+def _take(sums, values, own, sign):
+    """Add a row to the sums of columns, or take it away."""
+    for x in range(len(values)):
+        value = values[x]
+        signed = value * np.float32(sign)
+        sums[0, x] += signed
+        sums[1, x] += signed * value
+        sums[2, x] += signed * own[x]
+
+
+@njit
+def _score_row(sums, mean, spread, seen, side, noise, box, scores):
+    """Return the correlation of each window of a row; -2 where the neighbour does not reach."""
+    area = np.float32(side * side)
+    extra = area * np.float32(noise)
+    wide = len(scores)
+    for c in range(3):
+        for x in range(wide):
+            box[c, x] = sums[c, x]
+        for k in range(1, side):
+            for x in range(wide):
+                box[c, x] += sums[c, x + k]
+    for x in range(wide):
+        total = box[0, x]
+        variance = box[1, x] - total * total / area + extra
+        score = (box[2, x] - mean[x] * total) * spread[x]
+        score /= np.sqrt(max(variance, np.float32(1e-6)))
+        scores[x] = score if seen[x] > 0 else np.float32(-2)
+
+
+@njit
+def _best_mean(scores, best, costs, d):
+    """Write the mean of the best scores of each pixel of a row as a cost."""
+    count, wide = scores.shape
+    most = len(best)
+    best[:] = -2
+    for n in range(count):
+        for x in range(wide):
+            value = scores[n, x]
+            for k in range(most):
+                kept = best[k, x]
+                best[k, x] = max(kept, value)
+                value = min(kept, value)
+    for x in range(wide):
+        total, found = np.float32(0), np.float32(0)
+        for k in range(most):
+            if best[k, x] > np.float32(-1.5):
+                total += best[k, x]
+                found += np.float32(1)
+        mean = total / max(found, np.float32(1)) if found > np.float32(1.5) else np.float32(0)
+        cost = np.float32(127) * (np.float32(1) - mean)
+        costs[x, d] = np.uint8(min(max(cost + np.float32(0.5), np.float32(0)), np.float32(254)))
+
+
+# Semi-global matching: depths that fit their pixels and change little from one to the next.
+#
+# Along each of eight directions a path carries, for each plane, the least cost of everything behind
+# it; the plane with the least sum of all eight wins. Hirschmueller's method, with whole costs.
+
+
+@njit
+def sum_paths(costs, small_step, large_step):
+    """Return float32 [h, w, D]: the sum of eight paths' costs; see the module.
+
+    Args:
+        costs: uint8 [h, w, D].
+        small_step: what a change by one plane between two pixels costs.
+        large_step: what a larger change costs.
+    """
+    high, wide, planes = costs.shape
+    total = np.zeros((high, wide, planes), np.float32)
+    # [direction, row before or here, pixel with a margin, plane with a margin]
+    paths = np.empty((3, 2, wide + 2, planes + 2), np.float32)
+    least = np.empty((3, 2, wide + 2), np.float32)
+    along = np.empty((2, planes + 2), np.float32)
+    for way in range(2):
+        paths[:] = 0
+        least[:] = 0
+        for row in range(high):
+            y = row if way == 0 else high - 1 - row
+            now, before = row % 2, 1 - row % 2
+            _start(paths, least, now)
+            along[:] = 0
+            along[:, 0] = along[:, planes + 1] = np.inf
+            along_least = np.float32(0)
+            for column in range(wide):
+                x = column if way == 0 else wide - 1 - column
+                here = column % 2
+                along_least = _step(
+                    costs[y, x], along[1 - here], along_least, along[here], total[y, x],
+                    small_step, large_step,
+                )  # fmt: skip
+                for k in range(3):
+                    least[k, now, x + 1] = _step(
+                        costs[y, x], paths[k, before, x + k], least[k, before, x + k],
+                        paths[k, now, x + 1], total[y, x], small_step, large_step,
+                    )  # fmt: skip
+    return total
+
+
+@njit
+def _start(paths, least, now):
+    """Paths that come in from the sides begin with nothing."""
+    wide, planes = paths.shape[2] - 2, paths.shape[3] - 2
+    for k in range(3):
+        for side in (0, wide + 1):
+            least[k, now, side] = 0
+            paths[k, now, side, :] = 0
+        for x in range(wide + 2):
+            for row in range(2):
+                paths[k, row, x, 0] = paths[k, row, x, planes + 1] = np.inf
+
+
+@njit
+def _step(costs, before, before_least, here, total, small_step, large_step):
+    """Carry a path on by one pixel and add it to the sum; return its least cost."""
+    small, jump = np.float32(small_step), before_least + np.float32(large_step)
+    smallest = np.float32(np.inf)
+    for d in range(len(costs)):
+        way = min(before[d + 1], min(before[d], before[d + 2]) + small)
+        value = np.float32(costs[d]) + (min(way, jump) - before_least)
+        here[d + 1] = value
+        total[d] += value
+        smallest = min(smallest, value)
+    return smallest
+
+
+@njit
+def best_planes(total):
+    """Return float32 [h, w]: the plane of the least sum, between planes by a parabola."""
+    high, wide, planes = total.shape
+    found = np.empty((high, wide), np.float32)
+    for y in range(high):
+        for x in range(wide):
+            best = 0
+            for d in range(1, planes):
+                if total[y, x, d] < total[y, x, best]:
+                    best = d
+            found[y, x] = best
+            if 0 < best < planes - 1:
+                low, mid, up = total[y, x, best - 1], total[y, x, best], total[y, x, best + 1]
+                bend = low + up - 2 * mid
+                if bend > 0:
+                    found[y, x] = best + (low - up) / (2 * bend)
+    return found
+
+
+NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse points.
+
+
+def depth_range(photo: SmallPhoto, all_m: np.ndarray) -> tuple[float, float]:
+    """Return the nearest and farthest z-depth that is tried."""
+    known = photo.guide_m if len(photo.guide_m) >= 20 else all_m
+    near, far = np.percentile(known, [1, 99])
+    return float(near * NEAR_SHARE), float(far * FAR_SHARE)
+
+
+def sweep(
+    photo: SmallPhoto,
+    others: list[SmallPhoto],
+    depths_m: tuple[float, float],
+    values: StereoParameters,
+) -> np.ndarray:
+    """Return float32 [h, w]: the z-depth of each pixel, between the two of ``depths_m``."""
+    near_m, far_m = depths_m
+    inverse = np.linspace(1 / far_m, 1 / near_m, values.planes)
+    turns, shifts = _homographies(photo, others)
+    costs = sweep_costs(
+        photo.grey, *_stacked([other.grey for other in others]), turns, shifts,
+        inverse.astype(np.float32), min(values.best_of, len(others)), values.window_px // 2,
+        values.noise**2,
+    )  # fmt: skip
+    if values.guide_cost:
+        _lean_on_points(costs, photo, inverse, values.guide_cost)
+    plane = best_planes(sum_paths(costs, values.small_step, values.large_step))
+    step = (inverse[-1] - inverse[0]) / (values.planes - 1)
+    return (1 / (inverse[0] + plane * step)).astype(np.float32)
+
+
+def _stacked(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return pictures of any sizes as one array with room for all, and their sizes."""
+    sizes = np.array([grey.shape for grey in greys], np.int64)
+    stack = np.zeros((len(greys), *sizes.max(axis=0)), np.float32)
+    for number, grey in enumerate(greys):
+        stack[number, : grey.shape[0], : grey.shape[1]] = grey
+    return stack, sizes
+
+
+def _lean_on_points(costs, photo, inverse, guide_cost):
+    """Raise the costs of planes far from a sparse point, in the pixels around it."""
+    high, wide, planes = costs.shape
+    at = (1 / photo.guide_m - inverse[0]) / (inverse[1] - inverse[0])
+    away = np.minimum(np.abs(np.arange(planes)[None] - at[:, None]) / 2, 1) * guide_cost
+    u, v = np.floor(photo.guide_px).astype(int).T
+    for dy in (-1, 0, 1):
+        for dx in (-1, 0, 1):
+            y, x = np.clip(v + dy, 0, high - 1), np.clip(u + dx, 0, wide - 1)
+            costs[y, x] = np.minimum(costs[y, x] + away, 254).astype(np.uint8)
+
+
+def _homographies(photo: SmallPhoto, others: list[SmallPhoto]):
+    """Return turns float32 [N, 3, 3] and shifts float32 [N, 3]; see cost.py."""
+    back = np.linalg.inv(photo.camera.matrix)
+    turns, shifts = [], []
+    for other in others:
+        here_to_there = invert_rigid(other.camera_to_scan) @ photo.camera_to_scan
+        turns.append(other.camera.matrix @ here_to_there[:3, :3] @ back)
+        shifts.append(other.camera.matrix @ here_to_there[:3, 3])
+    return np.array(turns, np.float32), np.array(shifts, np.float32)

@@ -1,0 +1,236 @@
+"""``describe_capture``: what a capture holds, told before any long work."""
+
+import dataclasses
+import shlex
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from world2minecraft.capture.images import read_header
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.quality import Survey, survey_capture
+from world2minecraft.capture.quality.diagnostics import Doubt, doubts_of
+from world2minecraft.capture.quality.processing_route import Route, route_of
+from world2minecraft.capture.validation import JudgedCapture, judge_capture
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.types import Camera
+
+if TYPE_CHECKING:
+    from world2minecraft.formats.roomplan import CapturedPlan
+
+# What a capture holds, in words for people and as values for programs.
+
+SHOWN_SKIPPED = 8
+
+
+def reconstructing(capture: AnyPath, options: Mapping[str, str]) -> str:
+    """Return the command that reconstructs a capture read with some options, to be typed as it is.
+
+    Example:
+        >>> reconstructing(Path("my room"), {"unit": "cm"})
+        "w2m reconstruct 'my room' --out OUT --set capture.unit=cm"
+    """
+    words = ["w2m", "reconstruct", str(capture), "--out", "OUT"]
+    for name, value in options.items():
+        words += ["--set", f"capture.{name}={value}"]
+    return typed(words)
+
+
+def typed(words: Sequence[str]) -> str:
+    """Return words as one line for this system's shell, in quotes where they need them."""
+    return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
+
+
+def as_data(summary: "CaptureSummary") -> dict[str, Any]:
+    """Return a summary as JSON values: its fields without the pictures."""
+    data = {
+        field.name: getattr(summary, field.name)
+        for field in dataclasses.fields(summary)
+        if field.name not in ("survey", "route", "doubts", "folder")
+    }
+    route = {**dataclasses.asdict(summary.route), "about": summary.route.about}
+    doubts = [dataclasses.asdict(doubt) for doubt in summary.doubts]
+    return {"folder": str(summary.folder), "route": route, **data, "doubts": doubts}
+
+
+def summary_lines(summary: "CaptureSummary") -> list[str]:
+    """Return what is printed of a capture, the next command last."""
+    route = summary.route
+    usable = f"{summary.usable} of {summary.frames} frames usable"
+    lines = [
+        f"{summary.folder}: {route.called} ({summary.source}), {usable}",
+        f"  route     {route.words}: {route.about}",
+        f"  colour    {_colour(summary)}",
+        f"  depth     {_depth(summary)}",
+        f"  poses     {_poses(summary)}",
+    ]
+    if summary.room_size_m:
+        size = " x ".join(f"{side:.1f}" for side in summary.room_size_m)
+        lines.append(f"  room      about {size} m")
+    if summary.labelled:
+        lines.append(f"  labels    {summary.labelled} frames")
+    lines += [f"  note      {note}" for note in summary.notes]
+    lines += [f"  skipped   {name}: {reason}" for name, reason in summary.skipped[:SHOWN_SKIPPED]]
+    if len(summary.skipped) > SHOWN_SKIPPED:
+        lines.append(f"  skipped   and {len(summary.skipped) - SHOWN_SKIPPED} more")
+    words = {"ok": "ok", "warn": "warning", "stop": "stop"}
+    for doubt in summary.doubts:
+        advice = f": {doubt.advice}" if doubt.advice else ""
+        lines.append(f"  {words[doubt.level]:<9} {doubt.text}{advice}")
+    return [*lines, f"next: {summary.next_command}"]
+
+
+def _colour(summary: "CaptureSummary") -> str:
+    if summary.colour_size_px is None:
+        return "none"
+    text = f"{summary.colour_size_px[0]}x{summary.colour_size_px[1]}"
+    if summary.colour_focal_px is None:
+        return f"{text}, focal length found with the poses"
+    guessed = " (a first guess)" * summary.lens_guessed
+    return f"{text}, focal length {summary.colour_focal_px:.0f} px{guessed}"
+
+
+def _depth(summary: "CaptureSummary") -> str:
+    size, focal = summary.depth_size_px, summary.depth_focal_px
+    if not summary.survey.judged.has_depth:
+        return "none; it is computed from the pictures"
+    lens = f"{size[0]}x{size[1]}, focal length {focal:.0f} px, " if size and focal else ""
+    guessed = " (guessed)" * summary.depth_unit_guessed
+    return f"{lens}{summary.depth_unit}{guessed}, typically {summary.typical_depth_m:.1f} m away"
+
+
+def _poses(summary: "CaptureSummary") -> str:
+    if not summary.posed:
+        return "none; they are found from the pictures"
+    unit = "" if summary.survey.judged.capture.scale == "unknown" else " m"
+    return (
+        f"{summary.usable} good, {summary.lost_poses} lost, cameras up to "
+        f"{summary.cameras_apart_m:.1f}{unit} apart"
+    )
+
+
+def plan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
+    """Return what is printed of a RoomPlan, the next command last."""
+    rooms = plan.rooms
+    kinds = ("walls", "openings", "objects")
+    counts = [(kind, sum(len(getattr(room, kind)) for room in rooms)) for kind in kinds]
+    held = ", ".join(
+        f"{count} {kind if count != 1 else kind[:-1]}"
+        for kind, count in [("rooms", len(rooms)), *counts]
+    )
+    return [
+        f"{capture}: a RoomPlan capture, {held}",
+        "  route     walls and furniture are built as they were measured: about 10 s",
+        *(f"  note      {note}" for note in plan.notes),
+        "  hint      with a scan of the same room: w2m reconstruct SCAN --plan "
+        f"{typed([str(capture)])} --out OUT",
+        f"next: {reconstructing(capture, {})}",
+    ]
+
+
+@dataclass(frozen=True)
+class CaptureSummary:
+    """What ``w2m scan`` prints.
+
+    ``frames`` counts all, ``usable`` those that a reconstruction would read; ``skipped`` names
+    the others with reasons. Focal lengths are None where nothing is stated; ``lens_guessed`` says
+    that they are a first guess. ``next_command`` is what to type. ``survey`` is what the picture
+    is drawn from.
+    """
+
+    folder: AnyPath
+    source: str
+    route: Route
+    frames: int
+    usable: int
+    lost_poses: int
+    posed: bool
+    colour_size_px: tuple[int, int] | None
+    depth_size_px: tuple[int, int] | None
+    colour_focal_px: float | None
+    depth_focal_px: float | None
+    lens_guessed: bool
+    depth_unit: str
+    depth_unit_guessed: bool
+    typical_depth_m: float
+    cameras_apart_m: float
+    room_size_m: tuple[float, float, float] | None
+    labelled: int
+    skipped: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...]
+    doubts: tuple[Doubt, ...]
+    next_command: str
+    survey: Survey = field(repr=False, compare=False)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The texts of the doubts that are no praise."""
+        return tuple(doubt.text for doubt in self.doubts if doubt.level != "ok")
+
+
+def describe_capture(
+    path: str | Path, *, options: Mapping[str, str] | None = None
+) -> CaptureSummary:
+    """Describe a capture from its headers and some decoded images.
+
+    Raises what ``judge_capture`` raises for captures that cannot be read.
+    """
+    return describe(judge_capture(path, parse_options(options or {})), options)
+
+
+def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) -> CaptureSummary:
+    """Describe a capture that is judged; ``options`` are named again in the next command."""
+    frames = judged.frames
+    survey = survey_capture(judged)
+    route = route_of(judged)
+    colour = next((frame.colour_camera for frame in frames if frame.colour_camera), None)
+    depth = next((frame.depth_camera for frame in frames if frame.depth_camera), None)
+    room = None if survey.plan is None else survey.plan.room_size_m
+    return CaptureSummary(
+        folder=judged.capture.folder,
+        source=judged.capture.source,
+        route=route,
+        frames=len(frames) + len(judged.skipped),
+        usable=len(frames),
+        lost_poses=sum("pose" in reason or "tracking" in reason for _, reason in judged.skipped),
+        posed=judged.posed,
+        colour_size_px=_size(judged, colour),
+        depth_size_px=_camera_size(depth),
+        colour_focal_px=colour.fx_px if colour else None,
+        depth_focal_px=depth.fx_px if depth else None,
+        lens_guessed=judged.capture.lens == "guess",
+        depth_unit=judged.encoding.said,
+        depth_unit_guessed=judged.encoding.guessed,
+        typical_depth_m=judged.typical_depth_m,
+        cameras_apart_m=_apart_m(survey),
+        room_size_m=None if room is None else (float(room[0]), float(room[1]), float(room[2])),
+        labelled=sum(frame.labels_path is not None for frame in frames),
+        skipped=judged.skipped,
+        notes=judged.notes,
+        doubts=doubts_of(survey, route),
+        next_command=reconstructing(judged.capture.folder, options or {}),
+        survey=survey,
+    )
+
+
+def _apart_m(survey: Survey) -> float:
+    if survey.plan is None:
+        return 0.0
+    return float(np.ptp(survey.plan.cameras[:, :3, 3], axis=0).max())
+
+
+def _camera_size(camera: Camera | None) -> tuple[int, int] | None:
+    return (camera.width_px, camera.height_px) if camera else None
+
+
+def _size(judged: JudgedCapture, camera: Camera | None) -> tuple[int, int] | None:
+    """Return the size of the colour images, from a header where no camera is stated."""
+    place = next((frame.colour_path for frame in judged.frames if frame.colour_path), None)
+    if camera is None and place is not None:
+        return read_header(place).size
+    return _camera_size(camera)

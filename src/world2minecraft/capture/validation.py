@@ -1,0 +1,330 @@
+"""A capture judged: its usable frames, the depth's unit and what was found on the way.
+
+This is the part that ``open_scan`` and ``describe_capture`` share; it decodes only a few images.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from world2minecraft.capture.alignment.image_rotation import SAID, quarter_turns_of, turned_frame
+from world2minecraft.capture.depth_images import (
+    DepthEncoding,
+    check_depth_kind,
+    find_encoding,
+    read_depth,
+)
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.images import (
+    ImageHeader,
+    ImagePlace,
+    check_whole,
+    read_header,
+    read_raw,
+)
+from world2minecraft.capture.label_images import attach_labels, check_labels
+from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.poses import check_spread, is_lost, mend_pose
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.core.errors import (
+    CaptureError,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UnknownNameError,
+)
+from world2minecraft.core.types import Camera
+
+# Which frames of a capture can be used, and why the others cannot.
+#
+# One bad frame among many is left out and listed. What concerns all frames (no poses, sizes that
+# contradict the intrinsics, a stream of mixed sizes) is refused at once.
+
+MAX_DAMAGED_SHARE = 0.25  # More than one image in four cut short is a broken copy, not a slip.
+MAX_WRONG_POSES_SHARE = 0.1  # More is how the capture was exported, not a slip of tracking.
+Skipped = tuple[tuple[str, str], ...]
+
+
+def check_frames(
+    capture: Capture, step: Callable[[int], None] = lambda done: None
+) -> tuple[tuple[FrameFiles, ...], Skipped]:
+    """Return the frames that can be used, cameras at their images' sizes and poses rigid.
+
+    Args:
+        capture: as its source listed it.
+        step: told after each frame how many are done.
+
+    Returns:
+        The usable frames in order, and (name, reason) of the others.
+
+    Raises:
+        CaptureError: there are none, none can be used, or all of them share a fault.
+        LimitError: an image is too large to decode.
+    """
+    if not capture.frames:
+        raise CaptureError(
+            capture.folder,
+            f"looks like a capture of the kind {capture.source}, but none of its frames is there; "
+            "docs/captures.md shows how the files are named",
+        )
+    sizes: dict[str, tuple[ImagePlace, ImageHeader]] = {}
+    used: list[FrameFiles] = []
+    skipped: list[tuple[str, str]] = []
+    damaged: list[InputError] = []
+    posed = is_posed(capture.frames)
+    for done, frame in enumerate(capture.frames, 1):
+        reason = frame.problem or (_pose_problem(frame) if posed else "")
+        if not reason:
+            try:
+                used.append(_sized(_check_images(frame, sizes, posed)))
+            except (CaptureError, LimitError):
+                raise
+            except InputError as error:
+                damaged.append(error)
+                reason = f"{Path(error.path).name} {error.reason}"
+        if reason:
+            skipped.append((frame.name, reason))
+        step(done)
+    _refuse_if_broken(capture, used, skipped, damaged)
+    mended, wrong = _mended(capture, used)
+    return mended, (*skipped, *wrong)
+
+
+def is_posed(frames: Sequence[FrameFiles]) -> bool:
+    """Return whether the capture states poses at all."""
+    return any(frame.camera_to_world is not None for frame in frames)
+
+
+def _pose_problem(frame: FrameFiles) -> str:
+    if frame.camera_to_world is None:
+        return "has no pose"
+    return "tracking was lost (its pose is not finite)" if is_lost(frame.camera_to_world) else ""
+
+
+def _check_images(
+    frame: FrameFiles, sizes: dict[str, tuple[ImagePlace, ImageHeader]], posed: bool
+) -> FrameFiles:
+    """Check a frame's image files against those before it; nothing is decoded.
+
+    Photos without poses may be of any sizes: some are taken upright, some lying.
+    """
+    for kind, path in _image_paths(frame):
+        header = read_header(path)
+        if kind == "depth":
+            check_depth_kind(path, header)
+        check_whole(path)
+        first_path, first = sizes.setdefault(kind, (path, header))
+        if header.size != first.size and (posed or kind == "depth"):
+            raise CaptureError(
+                path,
+                f"is {header.width_px}x{header.height_px} but {first_path.name} is "
+                f"{first.width_px}x{first.height_px}; all {kind} images must have one size",
+            )
+    return frame
+
+
+def _image_paths(frame: FrameFiles) -> Iterable[tuple[str, ImagePlace]]:
+    named = (
+        ("colour", frame.colour_path),
+        ("depth", frame.depth_path),
+        ("labels", frame.labels_path),
+        ("trust", frame.trust_path),
+    )
+    return [(kind, path) for kind, path in named if path is not None]
+
+
+def _sized(frame: FrameFiles) -> FrameFiles:
+    """Return the frame with its stated cameras carried to the sizes that its images have."""
+    colour = _fit(frame.colour_path, frame.colour_camera)
+    depth = _fit(frame.depth_path, frame.depth_camera)
+    return replace(frame, colour_camera=colour, depth_camera=depth)
+
+
+def _fit(path: ImagePlace | None, camera: Camera | None) -> Camera | None:
+    if path is None or camera is None:
+        return None
+    size = read_header(path).size
+    try:
+        fitted = camera.resized(*size)
+    except ValueError as error:
+        raise CaptureError(
+            path, f"its intrinsics speak of another image: {error}; give those of this size"
+        ) from error
+    if not (
+        0.2 < fitted.cx_px / fitted.width_px < 0.8 and 0.2 < fitted.cy_px / fitted.height_px < 0.8
+    ):
+        raise CaptureError(
+            path,
+            f"is {size[0]}x{size[1]} but the principal point of its intrinsics is at "
+            f"({fitted.cx_px:.0f}, {fitted.cy_px:.0f}); they speak of another "
+            "image size: give those of this one",
+        )
+    return fitted
+
+
+def _refuse_if_broken(
+    capture: Capture,
+    used: list[FrameFiles],
+    skipped: list[tuple[str, str]],
+    damaged: list[InputError],
+) -> None:
+    if damaged and (not used or len(damaged) > MAX_DAMAGED_SHARE * len(capture.frames)):
+        raise CaptureError(
+            damaged[0].path,
+            f"{damaged[0].reason} ({len(damaged)} of {len(capture.frames)} frames are damaged)",
+        )
+    if not used:
+        (reason, count), *_ = Counter(reason for _, reason in skipped).most_common(1)
+        raise CaptureError(
+            capture.folder,
+            f"none of {len(capture.frames)} frames can be used; {count} of them: {reason}",
+        )
+
+
+def _mended(capture: Capture, frames: list[FrameFiles]) -> tuple[tuple[FrameFiles, ...], Skipped]:
+    """Return the frames with rigid poses, and those whose pose is wrong where they are few.
+
+    Frames of a capture without poses stay as they are.
+    """
+    mended: list[FrameFiles] = []
+    wrong: list[CaptureError] = []
+    skipped: list[tuple[str, str]] = []
+    for frame in frames:
+        if frame.camera_to_world is None:
+            mended.append(frame)
+            continue
+        pose = np.asarray(frame.camera_to_world, np.float64)
+        try:
+            rigid = mend_pose(pose, capture.folder, frame.name)
+        except CaptureError as error:
+            wrong.append(error)
+            skipped.append((frame.name, error.reason))
+        else:
+            mended.append(replace(frame, camera_to_world=rigid))
+    if len(wrong) > MAX_WRONG_POSES_SHARE * len(frames):
+        raise wrong[0]
+    return tuple(mended), tuple(skipped)
+
+
+SAMPLED_FRAMES = 12
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedCapture:
+    """What can be used of a capture; ``typical_depth_m`` is the median over some frames, or 0."""
+
+    capture: Capture
+    frames: tuple[FrameFiles, ...]
+    skipped: Skipped
+    encoding: DepthEncoding
+    typical_depth_m: float
+    notes: tuple[str, ...]
+
+    @property
+    def has_depth(self) -> bool:
+        """Whether any usable frame has depth."""
+        return any(frame.depth_path for frame in self.frames)
+
+    @property
+    def posed(self) -> bool:
+        """Whether the frames have poses."""
+        return is_posed(self.frames)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the capture has all that ``open_scan`` needs; else ``prepare`` makes it."""
+        return self.has_depth and self.posed
+
+
+def judge_capture(
+    path: str | Path,
+    options: ScanOptions,
+    labels: Path | None = None,
+    step: Callable[[int, int], None] = lambda done, total: None,
+) -> JudgedCapture:
+    """Find out a capture's layout, check its frames and tell its depth unit.
+
+    Raises:
+        CaptureError: it cannot be used. LimitError: an image is too large.
+    """
+    return judge(find_capture(path, options), options, labels, step)
+
+
+def judge(
+    capture: Capture,
+    options: ScanOptions,
+    labels: Path | None = None,
+    step: Callable[[int, int], None] = lambda done, total: None,
+) -> JudgedCapture:
+    """Check the frames of a capture that was found. Raises what ``judge_capture`` raises."""
+    total = len(capture.frames[:: options.every])
+    capture = replace(capture, frames=capture.frames[:: options.every])
+    frames, skipped = check_frames(capture, lambda done: step(done, total))
+    if labels is not None:
+        frames = attach_labels(frames, labels)
+    frames, turned = _upright(frames, capture)
+    check_labels(frames)
+    looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
+    paths = _decodable([frame.depth_path for frame in looked_at if frame.depth_path])
+    encoding = _encoding(paths, options, capture) if paths else DepthEncoding("mm")
+    typical_m = _typical_depth(paths, encoding)
+    strayed: Skipped = ()
+    if is_posed(frames) and capture.scale != "unknown":
+        frames, strayed = check_spread(frames, capture.folder, typical_m)
+    notes = [*capture.notes, *turned]
+    if encoding.guessed:
+        notes.append(f"depth is read as {encoding.said}, told from its values")
+    return JudgedCapture(
+        capture, frames, (*capture.skipped, *skipped, *strayed), encoding, typical_m, tuple(notes)
+    )
+
+
+def _upright(
+    frames: tuple[FrameFiles, ...], capture: Capture
+) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
+    """Return the frames with upright images where the capture knows up, and what to tell."""
+    turns = 0 if capture.world_up is None else quarter_turns_of(frames, capture.world_up)
+    if turns == 0:
+        return frames, ()
+    note = f"the images lie on their side or head; they are read with {SAID[turns]}"
+    return tuple(turned_frame(frame, turns) for frame in frames), (note,)
+
+
+def _decodable(paths: list[ImagePlace]) -> list[ImagePlace]:
+    """Return the images that can be decoded: one that cannot is left out when its turn comes."""
+    found = []
+    for path in paths:
+        try:
+            read_raw(path)
+        except DamagedFileError:
+            continue
+        found.append(path)
+    return found or paths
+
+
+def _encoding(paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture) -> DepthEncoding:
+    try:
+        return find_encoding(paths, options.depth_unit or capture.depth_unit)
+    except UnknownNameError as error:  # The user's own was checked before: the capture states it.
+        raise CaptureError(capture.folder, str(error)) from error
+
+
+def spread_over(items: Sequence[T], count: int) -> list[T]:
+    """Return at most ``count`` of the items, evenly spread, the first among them."""
+    chosen = np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))
+    return [items[index] for index in chosen]
+
+
+def _typical_depth(paths: Sequence[ImagePlace], encoding: DepthEncoding) -> float:
+    """Return the median depth in metres over some images."""
+    medians = []
+    for path in paths[:4]:
+        depth = read_depth(path, encoding)[::4, ::4]
+        if (depth > 0).any():
+            medians.append(float(np.median(depth[depth > 0])))
+    return float(np.median(medians)) if medians else 0.0

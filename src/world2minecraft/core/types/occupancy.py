@@ -1,0 +1,160 @@
+"""What stages 2 and 3 give: what one view says, and what all views say together."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.types import checks
+
+# What stages 3 to 5 give: the semantic occupancy of a room.
+
+UNSEEN, OBSERVED, COMPLETED = 0, 1, 2
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyGrid:
+    """The paper's O_scene: ``labels[x, y, z]`` in the room frame, z up, C order.
+
+    ``labels`` are 0 to 11 or 255 unknown; ``source`` is 0 unseen, 1 observed, 2 completed;
+    ``instance`` is 0 or the id of an ObjectInstance. ``origin_m`` is the minimum corner of cell
+    (0, 0, 0). An unseen cell is labelled 255, and only an unseen one is.
+    """
+
+    labels: np.ndarray  # uint8 [X, Y, Z]
+    confidence: np.ndarray  # float16 [X, Y, Z], 0 to 1
+    colour: np.ndarray  # uint8 [X, Y, Z, 3]
+    source: np.ndarray  # uint8 [X, Y, Z]
+    instance: np.ndarray  # uint16 [X, Y, Z]
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+
+    def __post_init__(self):
+        put = object.__setattr__
+        labels = checks.labels("labels", self.labels, (None, None, None))
+        shape = labels.shape
+        if not labels.size:
+            raise ValueError(f"labels must have cells, not shape {shape}")
+        put(self, "labels", labels)
+        put(self, "confidence", checks.array("confidence", self.confidence, np.float16, shape))
+        put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
+        put(self, "source", checks.array("source", self.source, np.uint8, shape))
+        put(self, "instance", checks.array("instance", self.instance, np.uint16, shape))
+        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "origin_m", checks.origin(self.origin_m, self.voxel_m))
+        if self.source.max() > COMPLETED:
+            raise ValueError(f"source must be 0, 1 or 2, not {int(self.source.max())}")
+        if not np.array_equal(labels == 255, self.source == UNSEEN):
+            raise ValueError("labels must be 255 exactly where source is 0 (unseen)")
+        if not ((self.confidence >= 0) & (self.confidence <= 1)).all():
+            raise ValueError("confidence must lie between 0 and 1")
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """The number of cells along x, y and z."""
+        return self.labels.shape  # type: ignore[return-value]
+
+    @property
+    def occupied(self) -> np.ndarray:
+        """A bool [X, Y, Z] mask of the cells that hold a surface or an object."""
+        return (self.labels > 0) & (self.labels != 255)
+
+
+@dataclass(frozen=True, eq=False)
+class PointEvidence:
+    """What depth or stereo says of one view: surface points, in the scan frame.
+
+    ``weight`` is the area in square metres that the point's pixel covers, square to its ray:
+    ``z^2 / (fx fy)``. Fusion divides its sum in a cell by the cell's face to learn how much of
+    the cell the view really saw. ``normals`` are unit vectors towards the camera, (0, 0, 0) where
+    none is known; without them surfaces are taken to face the camera. ``labels`` are a shorter
+    form of ``votes``: one whole vote for one class. ``trust`` says how far each point is to be
+    trusted, 1 wholly; without it all are.
+    """
+
+    view: str
+    camera_m: np.ndarray  # float64 [3]
+    points_m: np.ndarray  # float32 [N, 3]
+    weight: np.ndarray  # float32 [N]
+    colour: np.ndarray | None = None  # uint8 [N, 3]
+    votes: np.ndarray | None = None  # float16 [N, 12]
+    normals: np.ndarray | None = None  # float32 [N, 3], scan frame
+    labels: np.ndarray | None = None  # uint8 [N], class ids; 0 and 255 vote for nothing
+    trust: np.ndarray | None = None  # float32 [N], 0 to 1
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "camera_m", checks.floats("camera_m", self.camera_m, (3,)))
+        put(self, "points_m", checks.array("points_m", self.points_m, np.float32, (None, 3)))
+        count = len(self.points_m)
+        put(self, "weight", checks.array("weight", self.weight, np.float32, (count,)))
+        if self.colour is not None:
+            put(self, "colour", checks.array("colour", self.colour, np.uint8, (count, 3)))
+        if self.votes is not None:
+            shape = (count, CLASS_COUNT)
+            put(self, "votes", checks.array("votes", self.votes, np.float16, shape))
+        if self.normals is not None:
+            put(self, "normals", checks.array("normals", self.normals, np.float32, (count, 3)))
+        if self.labels is not None:
+            put(self, "labels", checks.array("labels", self.labels, np.uint8, (count,)))
+        if self.trust is not None:
+            put(self, "trust", checks.array("trust", self.trust, np.float32, (count,)))
+
+
+@dataclass(frozen=True, eq=False)
+class GridEvidence:
+    """What a network says of one view, the paper's O_mono: class probabilities of its own grid.
+
+    ``colour`` is what the view shows of each cell, of no meaning where it is free.
+    """
+
+    view: str
+    probabilities: np.ndarray  # float16 [X, Y, Z, 12]
+    seen: np.ndarray  # bool [X, Y, Z]
+    voxel_m: float
+    grid_to_scan: np.ndarray  # 4x4: metres from the grid's minimum corner to the scan frame
+    colour: np.ndarray | None = None  # uint8 [X, Y, Z, 3]
+
+    def __post_init__(self):
+        put = object.__setattr__
+        shape = (None, None, None, CLASS_COUNT)
+        probabilities = checks.array("probabilities", self.probabilities, np.float16, shape)
+        put(self, "probabilities", probabilities)
+        put(self, "seen", checks.array("seen", self.seen, np.bool_, probabilities.shape[:3]))
+        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "grid_to_scan", checks.transform("grid_to_scan", self.grid_to_scan))
+        if self.colour is not None:
+            shape = (*probabilities.shape[:3], 3)
+            put(self, "colour", checks.array("colour", self.colour, np.uint8, shape))
+
+
+@dataclass(frozen=True, eq=False)
+class FusedEvidence:
+    """What all views say together, in the room frame. It is what ``evidence.npz`` holds.
+
+    A cell was seen where ``log_odds`` is not 0: above 0 it is occupied, below 0 free.
+    ``colour_sum`` and ``offset_sum`` are sums over the ``hits`` points of the cell;
+    ``offset_sum / hits`` is the mean surface point, in metres from the cell's centre.
+    """
+
+    log_odds: np.ndarray  # float16 [X, Y, Z]
+    votes: np.ndarray  # float16 [X, Y, Z, 12]
+    colour_sum: np.ndarray  # float32 [X, Y, Z, 3]
+    offset_sum: np.ndarray  # float32 [X, Y, Z, 3]
+    hits: np.ndarray  # uint16 [X, Y, Z]; sums are scaled down together where it would overflow
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+    scan_to_room: np.ndarray  # float64 [4, 4]
+
+    def __post_init__(self):
+        put = object.__setattr__
+        log_odds = checks.array("log_odds", self.log_odds, np.float16, (None, None, None))
+        shape = log_odds.shape
+        put(self, "log_odds", log_odds)
+        put(self, "votes", checks.array("votes", self.votes, np.float16, (*shape, CLASS_COUNT)))
+        for name in ("colour_sum", "offset_sum"):
+            put(self, name, checks.array(name, getattr(self, name), np.float32, (*shape, 3)))
+        put(self, "hits", checks.array("hits", self.hits, np.uint16, shape))
+        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "origin_m", checks.origin(self.origin_m, self.voxel_m))
+        put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))

@@ -1,0 +1,190 @@
+"""Everything of the report put together and written."""
+
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+
+from world2minecraft import __version__
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.files import write_bytes, write_json, write_text
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
+from world2minecraft.evaluation.report.comparison_pictures import (
+    Pair,
+    as_data_uri,
+    as_png,
+    make_pairs,
+)
+from world2minecraft.evaluation.report.figures import built_categories, scene_facts
+from world2minecraft.evaluation.report.scene import read_built, read_finished
+from world2minecraft.evaluation.scoring import evaluate_reconstruction
+from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.objects import read_placements
+from world2minecraft.formats.scan import read_registration
+from world2minecraft.furniture.layout_checks import category_integrity
+from world2minecraft.rendering.preview import plan_view, preview
+
+# The report of a run without photos: a plan's, or several rooms joined.
+#
+# There is no evidence to compare with, so it shows what was built, what is in it, and how it came
+# about. ``report.html``, ``report.json`` and ``preview.png`` are written, as of any run.
+
+PLAN_PX = 720
+
+
+def write_brief_report(
+    folder: Path, scan: Scan, links: Sequence[tuple[str, str]] = ()
+) -> dict[str, Any]:
+    """Write ``report.html``, ``report.json`` and ``preview.png`` of a run without photos.
+
+    Args:
+        folder: the run's folder, built.
+        scan: what is told of it: source, name, size and notes.
+        links: names and addresses of further reports, such as each room's own.
+
+    Returns:
+        What ``report.json`` holds.
+    """
+    volume = read_built(folder / "build")
+    rooms = read_layouts(folder / "layout.json")
+    facts = _facts(scan, volume, rooms, read_placements(folder / "placements.json"))
+    across = max(volume.states.shape[0], volume.states.shape[2])
+    outside = preview(volume)
+    plan = plan_view(volume, px_per_block=max(PLAN_PX // across, 2))
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    source = (
+        files("world2minecraft.evaluation.report").joinpath("brief.html.jinja").read_text("utf-8")
+    )
+    page = environment.from_string(source).render(
+        facts=facts,
+        links=list(links),
+        version=__version__,
+        outside=as_data_uri(outside),
+        plan=as_data_uri(plan, lossless=True),
+    )
+    write_bytes(folder / "preview.png", as_png(outside))
+    write_json(folder / "report.json", facts)
+    write_text(folder / "report.html", page)
+    return facts
+
+
+def _facts(
+    scan: Scan, volume: BlockVolume, rooms: tuple[Layout, ...], placed: tuple[Placement, ...]
+) -> dict[str, Any]:
+    return {
+        "name": scan.name,
+        "source": scan.source,
+        "room_size_m": [round(float(side), 3) for side in scan.room_size_m],
+        "notes": list(scan.notes),
+        "rooms": [
+            {
+                "name": room.name,
+                "floor_m2": round(_area_m2(room.floor_polygon_m), 2),
+                "height_m": round(float(room.wall_height_m), 3),
+                "openings": len(room.openings),
+            }
+            for room in rooms
+        ],
+        "objects": [
+            {
+                "id": one.object_id,
+                "class": CLASS_NAMES[one.class_id],
+                "template": one.template,
+                "size_m": [round(float(side), 3) for side in one.size_m],
+            }
+            for one in placed
+        ],
+        "blocks": int((volume.semantic > 0).sum()),
+        "blocks_per_metre": volume.blocks_per_metre,
+    }
+
+
+def _area_m2(polygon: np.ndarray) -> float:
+    x, y = polygon[:, 0], polygon[:, 1]
+    return float(abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2)
+
+
+def write_report(
+    folder: Path, scan: Scan, *, truth: Path | None = None, progress: Progress = silent
+) -> dict[str, Any]:
+    """Write ``report.html``, ``report.json`` and ``preview.png`` of a finished run.
+
+    Args:
+        folder: the run's folder.
+        scan: its scan; six of its views are shown.
+        truth: a capture's folder with ``truth.npz``, to be scored against.
+        progress: told of each step.
+
+    Returns:
+        What ``report.json`` holds.
+    """
+    scene = read_finished(folder)
+    progress("report", 0, 3, "figures")
+    facts = scene_facts(scene) | {"scan": _scan_facts(scan, folder)}
+    if truth is not None:
+        facts["truth"] = evaluate_reconstruction(folder, truth)
+        facts["layout"]["semantic_integrity"]["true_categories"] = round(
+            category_integrity(
+                built_categories(scene), {one.class_id for one in read_truth(truth).objects}
+            ),
+            4,
+        )
+    progress("report", 1, 3, "pictures")
+    pairs = make_pairs(scan, scene.volume)
+    facts["views"] = [
+        {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}
+        for p in pairs
+    ]
+    across = max(scene.volume.states.shape[0], scene.volume.states.shape[2])
+    plan = plan_view(scene.volume, px_per_block=max(PLAN_PX // across, 2))
+    outside = preview(scene.volume)
+    progress("report", 2, 3, "page")
+    write_bytes(folder / "preview.png", as_png(outside))
+    write_json(folder / "report.json", facts)
+    write_text(folder / "report.html", _page(facts, pairs, as_data_uri(outside), plan))
+    progress("report", 3, 3)
+    return facts
+
+
+def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:
+    return {
+        "source": scan.source,
+        "frames_used": len(scan.frames_used),
+        "frames_skipped": [{"frame": n, "reason": r} for n, r in scan.frames_skipped],
+        "scale": scan.scale,
+        "scale_sigma": scan.scale_sigma,
+        "notes": list(scan.notes),
+        "registration": read_registration(folder / "scan.json"),
+    }
+
+
+def _page(facts: dict[str, Any], pairs: list[Pair], outside: str, plan: Any) -> str:
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    source = (
+        files("world2minecraft.evaluation.report").joinpath("page.html.jinja").read_text("utf-8")
+    )
+    return environment.from_string(source).render(
+        facts=facts,
+        version=__version__,
+        outside=outside,
+        plan=as_data_uri(plan, lossless=True),
+        pairs=[
+            {
+                "name": pair.name,
+                "photo": None if pair.photo is None else as_data_uri(pair.photo),
+                "built": as_data_uri(pair.built),
+                "error_m": pair.depth_error_m,
+                "agrees": pair.depth_agrees,
+            }
+            for pair in pairs
+        ],
+        colours={
+            name: "#{:02x}{:02x}{:02x}".format(*colour)
+            for name, colour in zip(CLASS_NAMES, CLASS_COLOURS, strict=True)
+        },
+    )

@@ -1,0 +1,366 @@
+"""One call of a chat server through the openai SDK, with bounds on time and size.
+
+A server may answer late, by drops, with a megabyte, or with anything but what was asked. So a
+reply is read in pieces until it is whole, too large or too late, and nothing of it is taken
+without a look at its type. What goes wrong is one of three errors, by what helps: ask again later
+(``BusyServerError``), ask otherwise (``RefusedQuestionError``), or read nothing of it
+(``UselessReplyError``). Errors of keys and addresses are plain ``ServerError``. An error says
+whether the server may have been at work on the reply (``may_cost``), and never the key.
+"""
+
+import json
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+from urllib.parse import urlsplit
+
+from world2minecraft.core.errors import MissingExtraError, ServerError, UnknownNameError, UsageError
+from world2minecraft.external_models.chat_costs import CHARACTERS_A_TOKEN, estimated_tokens
+from world2minecraft.external_models.chat_messages import Question, Reply
+
+# Where models are served: a few known names, and any address that speaks the same protocol.
+#
+# ``gemini``, ``openai`` and ``qwen`` are clouds, each with its key in a variable of the environment;
+# ``local`` is a server on this machine, such as vLLM's or LLaMA-Factory's. A model may follow a
+# name: ``gemini:gemini-3.5-flash-lite``.
+
+NO_KEY = "none"  # The SDK wants a key, a server of one's own does not.
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A server and a model on it.
+
+    ``key_name`` names the variable of the environment that holds the key, empty for none.
+    ``length_name`` is what the server calls the most tokens of a reply.
+    """
+
+    url: str
+    model: str = ""  # empty: the only one that the server has
+    key_name: str = ""
+    length_name: str = "max_tokens"
+
+    def key(self, environment: Mapping[str, str] | None = None) -> str:
+        """Return the key of the server. Raises UsageError where the variable is not set."""
+        if not self.key_name:
+            return NO_KEY
+        key = (os.environ if environment is None else environment).get(self.key_name, "").strip()
+        if not key:
+            raise UsageError(
+                f"{self.url} needs a key: export {self.key_name}=..., or name another variable "
+                "with --key-env"
+            )
+        return key
+
+
+ENDPOINTS = {
+    "gemini": Endpoint(
+        "https://generativelanguage.googleapis.com/v1beta/openai/",
+        "gemini-3.8-flash",
+        "GEMINI_API_KEY",
+    ),
+    "openai": Endpoint(
+        "https://api.openai.com/v1", "gpt-4.1", "OPENAI_API_KEY", "max_completion_tokens"
+    ),
+    "qwen": Endpoint(
+        "https://dashscope-intl.aliyuncs.com/compatible-mode/v1",
+        "qwen3-vl-plus",
+        "DASHSCOPE_API_KEY",
+    ),
+    "local": Endpoint("http://localhost:8000/v1"),
+}
+
+
+def is_endpoint(text: str) -> bool:
+    """Return whether a text names a server: a known one, perhaps with a model, or an address.
+
+    Example:
+        >>> [is_endpoint(text) for text in ("gemini", "qwen:qwen-vl-max", "http://me/v1", "stop")]
+        [True, True, True, False]
+    """
+    return "://" in text or text.partition(":")[0] in ENDPOINTS
+
+
+def endpoint_of(text: str, *, model: str = "", key_name: str | None = None) -> Endpoint:
+    """Return the server that a text names.
+
+    Args:
+        text: a known name, NAME:MODEL, or an address http(s)://HOST/v1.
+        model: the model, where the text does not say it.
+        key_name: the variable of the environment with the key, None for the usual one.
+
+    Raises:
+        UnknownNameError: no such name. UsageError: the address is none.
+
+    Example:
+        >>> endpoint_of("qwen:qwen-vl-max").model, endpoint_of("http://localhost:8000/v1").key_name
+        ('qwen-vl-max', '')
+    """
+    if "://" in text:
+        found = Endpoint(_checked(text))
+    else:
+        name, _, named = text.partition(":")
+        if name not in ENDPOINTS:
+            raise UnknownNameError("model server", name, ENDPOINTS)
+        found = ENDPOINTS[name]
+        found = replace(found, model=named or found.model)
+    found = replace(found, model=model or found.model)
+    return found if key_name is None else replace(found, key_name=key_name)
+
+
+def _checked(address: str) -> str:
+    try:
+        parts = urlsplit(address)
+        fine = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+        secret = parts.username or parts.password
+    except ValueError:
+        fine, secret = False, None
+    if secret:
+        raise UsageError("an address with a password in it is kept in records; use --key-env NAME")
+    if not fine:
+        raise UsageError(f"{address!r} is no address; one is http://localhost:8000/v1")
+    return address.rstrip("/")
+
+
+MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
+MAX_TOLD = 300  # Characters of a server's own words in an error.
+MAX_TOKENS_COUNTED = 10_000_000
+BUSY = (408, 409, 425, 429, 500, 502, 503, 504, 529)
+REFUSED = (400, 413, 415, 422, 501)
+UNSENT = ("ConnectError", "ConnectTimeout", "PoolTimeout")  # Of httpx, whose name SDKs change.
+
+
+class BusyServerError(ServerError):
+    """The server is busy, late or away; the same question may be answered later."""
+
+    def __init__(self, text: str, retry_after_s: float | None = None, *, may_cost: bool = False):
+        super().__init__(text)
+        self.retry_after_s, self.may_cost = retry_after_s, may_cost
+
+
+class RefusedQuestionError(ServerError):
+    """The server takes no such question; another form of it may be answered."""
+
+
+class UselessReplyError(ServerError):
+    """The server replied with what is no reply: too large, or not of the protocol."""
+
+    may_cost = True
+
+
+class ChatWire:
+    """A connection to a server; it may be used by several threads."""
+
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        *,
+        timeout_s: float,
+        max_reply_bytes: int = MAX_REPLY_BYTES,
+        clock: Callable[[], float] = time.monotonic,
+    ):
+        """Prepare a connection; nothing is sent yet.
+
+        Raises:
+            MissingExtraError: the SDK is not installed. UsageError: the key is not set.
+        """
+        try:
+            import openai  # noqa: PLC0415  # An extra, and slow to import.
+        except ImportError:
+            raise MissingExtraError("asking a language model", "vln") from None
+        self.endpoint, self.timeout_s = endpoint, timeout_s
+        self._limit, self._clock, self._sdk = max_reply_bytes, clock, openai
+        self._key = endpoint.key()
+        browser = openai.DefaultHttpxClient(
+            event_hooks={"response": [self._refuse_failures]}, follow_redirects=False
+        )
+        self._client = openai.OpenAI(
+            api_key=self._key,
+            base_url=endpoint.url,
+            timeout=timeout_s,
+            max_retries=0,
+            http_client=browser,
+            default_headers={"Accept-Encoding": "identity"},
+        )
+
+    def ask(self, question: Question) -> Reply:
+        """Ask once. Raises the errors of this module, or ServerError."""
+        began = self._clock()
+        with self._without_key():
+            data = self._called(self._client.chat.completions, self._words(question))
+            return _reply(data, question, self._clock() - began)
+
+    def models(self) -> tuple[str, ...]:
+        """Return the names of the models that the server has. Raises as ``ask``."""
+        with self._without_key():
+            told = self._called(self._client.models, None)
+        listed = told.get("data") if isinstance(told, dict) else None
+        entries = [one for one in _list(listed) if isinstance(one, dict)]
+        return tuple(clean(str(one.get("id", ""))) for one in entries)
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._client.close()
+
+    @contextmanager
+    def _without_key(self) -> Iterator[None]:
+        """Take the key out of what errors tell: some servers say it back, and errors are kept."""
+        try:
+            yield
+        except ServerError as error:
+            if self._key != NO_KEY:
+                error.args = (str(error).replace(self._key, "(the key)"),)
+            raise
+
+    def _words(self, question: Question) -> dict[str, Any]:
+        words: dict[str, Any] = {
+            "model": question.model,
+            "messages": [turn.wire() for turn in question.turns],
+            self.endpoint.length_name: question.max_tokens,
+        }
+        if question.temperature is not None:
+            words["temperature"] = question.temperature
+        if question.form is not None:
+            words["response_format"] = question.form
+        return words
+
+    def _called(self, part: Any, words: dict[str, Any] | None) -> Any:
+        """Call a part of the SDK and return the JSON that came."""
+        deadline = self._clock() + self.timeout_s
+        streaming = part.with_streaming_response
+        try:
+            opened = streaming.list() if words is None else streaming.create(**words)
+            with opened as response:
+                data = self._read(response.iter_bytes(), response.headers, deadline)
+        except ServerError:
+            raise
+        except self._sdk.APITimeoutError as error:
+            raise self._late(_is_sent(error)) from None
+        except self._sdk.APIConnectionError as error:
+            if isinstance(error.__cause__, ServerError):  # Raised by _refuse_failures.
+                raise error.__cause__ from None
+            raise BusyServerError(
+                f"{self.endpoint.url} cannot be reached: {_cause(error)}",
+                may_cost=_is_sent(error),
+            ) from None
+        except Exception as error:  # Whatever the SDK and its transport raise on odd bytes.
+            text = f"{self.endpoint.url} broke off: {_cause(error)}"
+            raise BusyServerError(text, may_cost=True) from None
+        try:
+            return json.loads(data)
+        except (ValueError, RecursionError):
+            raise UselessReplyError(f"{self.endpoint.url} sent no JSON: {_told(data)}") from None
+
+    def _read(self, pieces: Iterable[bytes], headers: Any, deadline: float) -> bytes:
+        if headers.get("content-encoding", "identity") != "identity":
+            raise UselessReplyError(f"{self.endpoint.url} sent a packed reply, which was not asked")
+        data = bytearray()
+        for piece in pieces:
+            data += piece
+            if len(data) > self._limit:
+                raise UselessReplyError(
+                    f"{self.endpoint.url} sent over {self._limit:,} bytes; a reply has far fewer"
+                )
+            if self._clock() > deadline:
+                raise self._late()
+        return bytes(data)
+
+    def _late(self, is_sent: bool = True) -> BusyServerError:
+        return BusyServerError(
+            f"{self.endpoint.url} took over {self.timeout_s:g} s; --timeout gives it longer",
+            may_cost=is_sent,
+        )
+
+    def _refuse_failures(self, response: Any) -> None:
+        """Raise what a status says, after a look at the first bytes of the body alone."""
+        status = int(response.status_code)
+        if 200 <= status < 300:
+            return
+        told = ""
+        for piece in response.iter_raw():
+            told = _told(piece)
+            break
+        text = f"{self.endpoint.url} says {status}: {told or 'nothing more'}"
+        if status in BUSY:
+            raise BusyServerError(text, _seconds(response.headers.get("retry-after")))
+        if status in REFUSED:
+            raise RefusedQuestionError(text)
+        if status in (401, 403):
+            text += f"; is the key in {self.endpoint.key_name or '--key-env NAME'} right?"
+        raise ServerError(text)
+
+
+def clean(text: str) -> str:
+    """Return a text that is safe to show and to write: no control characters, no half letters.
+
+    Example:
+        >>> clean("a" + chr(27) + "[31mb" + chr(0xd800))
+        'a [31mb?'
+    """
+    whole = text.encode("utf-8", "replace").decode()
+    return "".join(letter if letter.isprintable() or letter in "\n\t" else " " for letter in whole)
+
+
+def _reply(told: Any, question: Question, latency_s: float) -> Reply:
+    choices = _list(told.get("choices")) if isinstance(told, dict) else []
+    first = choices[0] if choices else None
+    message = first.get("message") if isinstance(first, dict) else None
+    if not isinstance(message, dict):
+        raise UselessReplyError(f"the server sent no choice: {_told(json.dumps(told).encode())}")
+    text = clean(_text(message.get("content")) or _text(message.get("refusal")))
+    usage = told.get("usage")
+    counts = [_count(usage, name) for name in ("prompt_tokens", "completion_tokens")]
+    guessed = (estimated_tokens(question), len(text) // CHARACTERS_A_TOKEN + 1)
+    prompt, completion = (
+        own if own is not None else guess for own, guess in zip(counts, guessed, strict=True)
+    )
+    if (total := _count(usage, "total_tokens")) is not None and None not in counts:
+        completion = max(completion, total - prompt)  # Gemini leaves thoughts out of the others.
+    finish = clean(str(first.get("finish_reason") or ""))[:40] if isinstance(first, dict) else ""
+    return Reply(text, prompt, completion, finish, None in counts, round(latency_s, 3))
+
+
+def _text(content: Any) -> str:
+    """Return the text of a content: a text, or a list of parts with texts."""
+    if isinstance(content, str):
+        return content
+    texts = [part.get("text") for part in _list(content) if isinstance(part, dict)]
+    return "".join(text for text in texts if isinstance(text, str))
+
+
+def _count(usage: Any, name: str) -> int | None:
+    value = usage.get(name) if isinstance(usage, dict) else None
+    fine = type(value) is int and 0 <= value <= MAX_TOKENS_COUNTED
+    return value if fine else None
+
+
+def _list(value: Any) -> list[Any]:
+    """Return a list, an empty one for what is none."""
+    return value if isinstance(value, list) else []
+
+
+def _seconds(header: str | None) -> float | None:
+    """Return what a Retry-After says in seconds; dates are not read."""
+    try:
+        seconds = float(header or "")
+    except ValueError:
+        return None
+    return seconds if 0 <= seconds < float("inf") else None
+
+
+def _told(data: bytes) -> str:
+    words = clean(data[:4096].decode("utf-8", "replace")).split()
+    return " ".join(words)[:MAX_TOLD]
+
+
+def _is_sent(error: BaseException) -> bool:
+    """Whether a question may have reached the server before its connection failed."""
+    return type(error.__cause__).__name__ not in UNSENT
+
+
+def _cause(error: BaseException) -> str:
+    inner = error.__cause__ or error
+    return clean(str(inner) or type(inner).__name__)[:MAX_TOLD]

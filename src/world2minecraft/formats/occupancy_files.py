@@ -1,0 +1,331 @@
+"""``occ.json`` and ``centers.json`` of any make: the paper prints no schema for either.
+
+Read as voxels, whatever holds them (an object's first list of the names in ``_HOLDERS``):
+
+- ``[[x, y, z, class], ...]``; ``[{"x", "y", "z", "class"}, ...]``; ``[{"position": [x, y, z],
+  "class"}, ...]``; two lists of the same length, of places and of classes;
+- a list of places for each class: ``{"chair": [[x, y, z], ...], ...}`` or ``{"5": ...}``;
+- a class for each cell: ``[[[...]]]``, by x, y and z.
+
+Classes are numbers of 0 to 11, 255, or names. Places are cells where all are whole numbers, else
+metres: their middles. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their kin; what
+is missing is 0.08 m (of metres: the smallest step) and just large enough. Centres are read alike.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import array_names, read_json, read_npy, read_npz
+from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
+from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
+from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
+
+# Any occupancy file: ours, the paper's, or a bare array of class ids.
+#
+# ===================  ==========================================================================
+# ``room.npz``         all arrays of OccupancyGrid
+# ``*.npz``            ``labels`` uint8 [X, Y, Z]; optional ``voxel_m`` (0.08) and ``origin_m`` (0)
+# ``*.npy``            the labels alone
+# ``*.json``           ``occ.json``
+# ===================  ==========================================================================
+
+DEFAULT_VOXEL_M = 0.08  # The paper's.
+
+
+def read_occupancy(path: str | Path) -> OccupancyGrid:
+    """Read a grid from any of the files above, found out by suffix and content.
+
+    Raises:
+        InputError: the file is missing or of another kind. DamagedFileError: it is not what its
+        format says. LimitError: it is too large.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise InputError(source, "is not there; give a room.npz, occ.json, .npz or .npy of labels")
+    if source.suffix == ".json":
+        return read_occ_json(source)
+    if source.suffix == ".npy":
+        return labels_grid(read_npy(source), source)
+    if source.suffix != ".npz":
+        raise InputError(source, "is no occupancy file; those end with .npz, .npy or .json")
+    held = array_names(source)
+    if set(GRID_ARRAYS) <= set(held):
+        return read_room(source)[0]
+    wanted = ("labels", *(name for name in ("voxel_m", "origin_m") if name in held))
+    arrays = read_npz(source, wanted)
+    return labels_grid(
+        arrays["labels"],
+        source,
+        float(arrays.get("voxel_m", DEFAULT_VOXEL_M)),
+        np.asarray(arrays.get("origin_m", np.zeros(3)), np.float64),
+    )
+
+
+def labels_grid(
+    labels: np.ndarray,
+    source: str | Path = "labels",
+    voxel_m: float = DEFAULT_VOXEL_M,
+    origin_m: np.ndarray | None = None,
+) -> OccupancyGrid:
+    """Return a grid of labels alone: sure of everything, without colour.
+
+    Raises:
+        DamagedFileError: they are no [X, Y, Z] array of class ids.
+    """
+    try:
+        whole = labels.astype(np.uint8)
+        if not np.array_equal(whole, labels):
+            raise ValueError("labels must be whole numbers, 0 to 11 or 255")
+        known = whole != 255
+        return OccupancyGrid(
+            labels=whole,
+            confidence=known.astype(np.float16),
+            colour=np.zeros((*whole.shape, 3), np.uint8),
+            source=np.where(known, OBSERVED, UNSEEN).astype(np.uint8),
+            instance=np.zeros(whole.shape, np.uint16),
+            voxel_m=voxel_m,
+            origin_m=np.zeros(3) if origin_m is None else origin_m,
+        )
+    except (ValueError, TypeError) as error:
+        raise DamagedFileError(source, f"holds no grid of class ids ({error})") from error
+
+
+def inner_corner_m(grid: OccupancyGrid) -> np.ndarray:
+    """Return the corner (x_min, y_max) of the room's inner box, float64 [2], whole cells.
+
+    It is the inner face of the outermost wall layers; where there is no wall, the outermost
+    occupied cells.
+    """
+    walls = np.equal(grid.labels, SemanticClass.WALL)
+    occupied = grid.occupied
+    x_cell = _inner_cell(walls.sum(axis=(1, 2)), np.asarray(occupied.any(axis=(1, 2))))
+    y_cell = _inner_cell(walls.sum(axis=(0, 2))[::-1], np.asarray(occupied.any(axis=(0, 2)))[::-1])
+    cells = np.array([x_cell, grid.shape[1] - y_cell])
+    return np.round(grid.origin_m[:2] / grid.voxel_m + cells) * grid.voxel_m
+
+
+def _inner_cell(wall_counts: np.ndarray, occupied: np.ndarray) -> int:
+    """Return the first cell past the outermost large wall layer, or the first occupied cell."""
+    half = len(wall_counts) // 2
+    layers = np.flatnonzero(wall_counts[: half + 1] >= 0.5 * max(wall_counts.max(), 1))
+    if len(layers):
+        return int(layers[0]) + 1
+    return int(occupied.argmax())
+
+
+CELLS, METRES = "cells", "metres"
+_HOLDERS = (
+    "voxels", "occupancy", "occ", "centers", "centres", "center_points", "cells", "points",
+    "grid", "data", "objects", "instances",
+)  # fmt: skip
+_PLACES = (
+    "position_m", "center_m", "position", "center", "centre", "coords", "coord", "coordinates",
+    "positions", "location", "point", "xyz", "indices", "index", "points",
+)  # fmt: skip
+_CLASSES = (
+    "class_id", "class", "label", "category", "category_id", "semantic", "type", "cls",
+    "labels", "classes", "categories", "value", "name",
+)  # fmt: skip
+_SIDES = ("voxel_m", "voxel_size", "voxelSize", "resolution", "voxel", "cell_size")
+_ORIGINS = ("origin_m", "origin", "min_bound", "offset", "min")
+_SHAPES = ("shape", "dims", "dimensions", "grid_size", "gridSize", "size")
+_OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0, "free": 0}
+
+
+class Center(NamedTuple):
+    """The middle of an object, float64 [3], in the room frame, and its class."""
+
+    position_m: np.ndarray
+    class_id: int
+
+
+def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
+    """Read a grid, and whether its places were ``cells`` or ``metres``.
+
+    Raises:
+        DamagedFileError: it holds voxels in none of the forms above. LimitError: it asks for too
+        many cells.
+    """
+    value = read_json(path)
+    if isinstance(value, dict) and value.get("format") == "world2minecraft/occ":
+        return read_occ_json(path), CELLS
+    told = value if isinstance(value, dict) else {}
+    try:
+        held = _held(value)
+        if (labels := _dense(held)) is not None:
+            unit, origin = CELLS, _told(told, _ORIGINS, [0.0] * 3)
+            voxel_m = float(_told(told, _SIDES, DEFAULT_VOXEL_M))
+        else:
+            points, classes = _points(held)
+            unit = CELLS if np.array_equal(points, np.round(points)) else METRES
+            voxel_m = float(
+                _told(told, _SIDES, _step(points) if unit == METRES else DEFAULT_VOXEL_M)
+            )
+            cells, origin = _cells(points, unit, voxel_m, _told(told, _ORIGINS, None))
+            labels = _filled(path, cells, classes, _told(told, _SHAPES, None))
+        low = np.array(origin, np.float64)
+        return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+        raise DamagedFileError(path, f"holds voxels in no known form ({error})") from error
+
+
+def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[Center, ...]:
+    """Read the centres of objects.
+
+    Args:
+        path: of ``centers.json``.
+        grid: the cells that they are of.
+        unit: of ``occ.json``; centres are in the same, but for keys that end with ``_m``.
+
+    Raises:
+        DamagedFileError: it holds centres in none of the forms above.
+    """
+    value = read_json(path)
+    try:
+        held = _held(value)
+        rows = held if isinstance(held, list) else []
+        in_metres = unit == METRES or _is_said(rows, ("position_m", "center_m"))
+        points, classes = _points(held)
+        if not in_metres:
+            points = grid.origin_m + (points + 0.5) * grid.voxel_m
+        return tuple(map(Center, points, map(int, classes)))
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+        raise DamagedFileError(path, f"holds centres in no known form ({error})") from error
+
+
+def _held(value: Any) -> Any:
+    """Return what holds the voxels: the value itself, or a part of it under a known name."""
+    for name in _HOLDERS:
+        if isinstance(value, dict) and isinstance(value.get(name), list | dict):
+            names = (*_CLASSES, *_PLACES)
+            has_twin = any(isinstance(value.get(other), list) for other in names if other != name)
+            if name in _PLACES and has_twin and _is_flat(value, name):
+                return value
+            return _held(value[name]) if isinstance(value[name], dict) else value[name]
+    return value
+
+
+def _is_flat(value: Mapping[str, Any], name: str) -> bool:
+    """Whether a list of places has its classes in a list beside it."""
+    return any(
+        isinstance(value.get(other), list) and len(value[other]) == len(value[name])
+        for other in _CLASSES
+    )
+
+
+def _dense(held: Any) -> np.ndarray | None:
+    """Return labels [X, Y, Z] where there is a class for each cell, else None."""
+    try:
+        is_deep = isinstance(held, list) and isinstance(held[0][0], list)
+    except (IndexError, KeyError, TypeError):
+        return None
+    if not is_deep:
+        return None
+    labels = np.array(held)
+    if labels.ndim != 3:
+        raise ValueError("its rows have different lengths")
+    return labels
+
+
+def _points(held: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return places float64 [N, 3] and classes int [N]."""
+    pairs = list(_pairs(held))
+    points = np.array([place for place, _ in pairs], np.float64).reshape(-1, 3)
+    if not np.isfinite(points).all():
+        raise ValueError("a place is no number")
+    return points, np.array([_class(name) for _, name in pairs], np.int64)
+
+
+def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
+    if isinstance(held, dict):
+        places, classes = _told(held, _PLACES, None), _told(held, _CLASSES, None)
+        if isinstance(places, list) and isinstance(classes, list):
+            if len(places) != len(classes):
+                raise ValueError(f"{len(places)} places have {len(classes)} classes")
+            yield from zip(places, classes, strict=True)
+            return
+        for name, places in held.items():
+            if not isinstance(places, list):
+                continue
+            for row in places:
+                yield _place(row), name
+        return
+    if not isinstance(held, list):
+        raise ValueError("there is no list of them")
+    for row in held:
+        if isinstance(row, list) and len(row) < 4:
+            raise ValueError(f"{row} is not x, y, z and a class")
+        yield _place(row), row[3] if isinstance(row, list) else _told(row, _CLASSES, None)
+
+
+def _place(row: Any) -> list[float]:
+    if isinstance(row, list):
+        return [float(value) for value in row[:3]]
+    if "x" in row:
+        return [float(row[axis]) for axis in "xyz"]
+    place = _told(row, _PLACES, None)
+    return [float(place[axis]) for axis in "xyz"] if isinstance(place, dict) else place[:3]
+
+
+def _class(name: Any) -> int:
+    """Return the class id of a number, a number in a text, or a name."""
+    word = str(name).strip().lower()
+    if word in CLASS_NAMES:
+        return CLASS_NAMES.index(word)
+    try:
+        number = float(_OTHER_NAMES.get(word, word))
+    except ValueError:
+        number = -1.0
+    if not (number in range(12) or number == 255):
+        raise ValueError(f"{name!r} is no class; they are 0 to 11, 255 or their names")
+    return int(number)
+
+
+def _told(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
+    return next((row[name] for name in names if name in row), default)
+
+
+def _is_said(rows: Iterable[Any], names: Iterable[str]) -> bool:
+    return any(name in row for row in rows if isinstance(row, dict) for name in names)
+
+
+def _step(points: np.ndarray) -> float:
+    """Return the smallest step between places, which is the side of a cell."""
+    steps = [np.diff(np.unique(np.round(axis, 4))) for axis in points.T]
+    found = [float(step.min()) for step in steps if len(step)]
+    return round(min(found), 4) if found else DEFAULT_VOXEL_M
+
+
+def _cells(
+    points: np.ndarray, unit: str, voxel_m: float, origin: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells int64 [N, 3] of places, from 0 up, and the origin in metres."""
+    if not (math.isfinite(voxel_m) and voxel_m > 0):
+        raise ValueError(f"the side of a cell must be above 0, not {voxel_m}")
+    first = points.min(axis=0) if len(points) else np.zeros(3)
+    if unit == CELLS:
+        shift = np.minimum(first, 0)
+        low = np.zeros(3) if origin is None else np.array(origin, np.float64)
+        return (points - shift).astype(np.int64), low + shift * voxel_m
+    low = first - voxel_m / 2 if origin is None else np.array(origin, np.float64)
+    return np.floor((points - low) / voxel_m + 1e-6).astype(np.int64), low
+
+
+def _filled(path: str | Path, cells: np.ndarray, classes: np.ndarray, shape: Any) -> np.ndarray:
+    if not len(cells) and shape is None:
+        raise ValueError("there is no voxel, and no shape")
+    least = cells.max(axis=0) + 1 if len(cells) else np.ones(3, np.int64)
+    sides = least if shape is None else np.maximum(np.array(shape, np.int64).reshape(3), least)
+    if (cells < 0).any():
+        raise ValueError("a voxel lies before the origin")
+    if np.prod(sides.astype(np.float64)) > MAX_CELLS:
+        raise LimitError(path, f"takes a grid of {sides.tolist()}; at most {MAX_CELLS:,} cells")
+    labels = np.zeros(tuple(sides), np.uint8)
+    labels[tuple(cells.T)] = classes
+    return labels

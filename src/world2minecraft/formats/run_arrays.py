@@ -1,0 +1,92 @@
+"""``centers.npz``: the density map, the candidates and their clusters (the paper's D, C and C').
+
+Arrays: ``density`` float32 [X, Y, Z]; ``candidates`` int32 [M, 3], cells; ``cluster`` int32 [M],
+the number of each candidate's cluster, -1 for none.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
+
+# ``room.npz``: an OccupancyGrid, and where it stands in the scan.
+#
+# Arrays: ``labels``, ``confidence``, ``colour``, ``source``, ``instance`` as in OccupancyGrid;
+# ``voxel_m`` float64; ``origin_m`` float64 [3]; ``scan_to_room`` float64 [4, 4].
+
+GRID_ARRAYS = ("labels", "confidence", "colour", "source", "instance", "voxel_m", "origin_m")
+
+
+def write_room(path: str | Path, grid: OccupancyGrid, scan_to_room: np.ndarray) -> None:
+    """Write a grid; the same grid gives the same bytes."""
+    arrays = {name: np.asarray(getattr(grid, name)) for name in GRID_ARRAYS}
+    write_npz(path, arrays | {"scan_to_room": np.asarray(scan_to_room, np.float64)})
+
+
+def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
+    """Read a grid and its ``scan_to_room``.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it holds no valid grid.
+        LimitError: an array is too large.
+    """
+    arrays = read_npz(path, (*GRID_ARRAYS, "scan_to_room"))
+    scan_to_room = arrays.pop("scan_to_room")
+    try:
+        arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
+        return OccupancyGrid(**arrays), np.asarray(scan_to_room, np.float64).reshape(4, 4)  # type: ignore[arg-type]
+    except (ValueError, TypeError) as error:
+        raise DamagedFileError(path, f"is no room ({error})") from error
+
+
+# ``evidence.npz``: FusedEvidence, enough to run the label stage and all after it again.
+#
+# Arrays as in FusedEvidence. Cells without votes take most of the room, and compress to nothing.
+
+EVIDENCE_ARRAYS = (
+    "log_odds",
+    "votes",
+    "colour_sum",
+    "offset_sum",
+    "hits",
+    "voxel_m",
+    "origin_m",
+    "scan_to_room",
+)
+
+
+def write_evidence(path: str | Path, evidence: FusedEvidence) -> None:
+    """Write fused evidence; the same evidence gives the same bytes."""
+    write_npz(path, {name: np.asarray(getattr(evidence, name)) for name in EVIDENCE_ARRAYS})
+
+
+def read_evidence(path: str | Path) -> FusedEvidence:
+    """Read fused evidence.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it holds no valid evidence.
+        LimitError: an array is too large.
+    """
+    arrays = read_npz(path, EVIDENCE_ARRAYS)
+    try:
+        arrays["voxel_m"] = float(arrays["voxel_m"])  # type: ignore[assignment]
+        return FusedEvidence(**arrays)  # type: ignore[arg-type]
+    except (ValueError, TypeError) as error:
+        raise DamagedFileError(path, f"is no evidence ({error})") from error
+
+
+def write_centers(
+    path: str | Path, density: np.ndarray, candidates: np.ndarray, cluster: np.ndarray
+) -> None:
+    """Write the density map, the candidates and their clusters."""
+    write_npz(
+        path,
+        {
+            "density": density.astype(np.float32),
+            "candidates": candidates.astype(np.int32),
+            "cluster": cluster.astype(np.int32),
+        },
+    )

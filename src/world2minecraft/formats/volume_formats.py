@@ -1,0 +1,302 @@
+"""Every form that a volume comes in: the game's formats, and those of other programs beside them.
+
+In: a path. Out: a volume, or a file. A form is one class, as in ``minecraft.formats``, and one line
+of ``FORMS``. Beside the blocks, a run's folder and its ``build`` know what the blocks are.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.formats.scene import Scene, read_scene
+from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
+from world2minecraft.minecraft.formats import (
+    FORMATS,
+    LABELS,
+    BlockFormat,
+    block_formats,
+    read_blocks,
+)
+
+# Blocks and, from the ``scene.json`` beside them, what they are and how large they are.
+
+SCENE_FILE = "scene.json"
+
+
+def place_of_blocks(path: Path) -> Path:
+    """Return where the blocks of a place lie: of a run or a build, its world or its schematic.
+
+    A player may have changed the world, so it comes first. Other places are their own.
+
+    Raises:
+        InputError: the folder of a build holds neither.
+    """
+    build = next((p for p in (path, path / "build") if (p / SCENE_FILE).is_file()), None)
+    if build is None:
+        return path
+    world, schematic = build / "world", build / "room.schem"
+    if (world / "level.dat").is_file():
+        return world
+    if schematic.is_file():
+        return schematic
+    raise InputError(build, "holds a scene.json and neither world nor room.schem")
+
+
+def labelled(volume: BlockVolume, path: Path) -> BlockVolume:
+    """Return the volume with the labels and the scale of the scene that it belongs to.
+
+    Args:
+        volume: the blocks that were read.
+        path: where they were asked for: a run, its ``build``, or a file or world in it. A scene
+            counts only where all that it labels lies where the volume has its blocks.
+
+    Raises:
+        DamagedFileError: there is a scene, and it cannot be read.
+    """
+    places = (path, path / "build", path.parent)
+    folder = next((place for place in places if (place / SCENE_FILE).is_file()), None)
+    if folder is None:
+        return volume
+    scene = read_scene(folder)
+    return with_scene(volume, scene) if _overlaps(volume, scene) else volume
+
+
+def with_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
+    """Return the volume with a scene's labels on all blocks that are there, and its scale."""
+    ours, theirs = common_cells(volume, scene)
+    semantic, instance = np.zeros_like(volume.semantic), np.zeros_like(volume.instance)
+    is_block = volume.states[ours] > 0
+    semantic[ours] = np.where(is_block, scene.semantic[theirs], 0)
+    instance[ours] = np.where(is_block, scene.instance[theirs], 0)
+    return replace(volume, semantic=semantic, instance=instance, block_to_room=scene.block_to_room)
+
+
+def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
+    """Whether most of what the scene labels is still a block: else it is another's scene."""
+    ours, theirs = common_cells(volume, scene)
+    wanted = int((scene.semantic > 0).sum())
+    met = int(((scene.semantic[theirs] > 0) & (volume.states[ours] > 0)).sum())
+    return wanted > 0 and met >= wanted / 2
+
+
+def common_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+    """Return the cells that both hold, as slices of each."""
+    low = np.maximum(volume.corner, scene.corner)
+    high = np.minimum(
+        np.add(volume.corner, volume.states.shape), np.add(scene.corner, scene.semantic.shape)
+    )
+    high = np.maximum(low, high)
+
+    def window(corner: tuple[int, int, int]) -> tuple[slice, ...]:
+        steps = zip(low - np.array(corner), high - np.array(corner), strict=True)
+        return tuple(slice(max(int(a), 0), max(int(b), 0)) for a, b in steps)
+
+    return window(volume.corner), window(scene.corner)
+
+
+FORMS = Registry(
+    "scene_format",
+    {
+        "glb": "world2minecraft.formats.volume_formats:GltfFormat",
+        "habitat": "world2minecraft.formats.volume_formats:HabitatFormat",
+    },
+)
+
+
+class GltfFormat(FileFormat):
+    """Binary glTF; read only where this program wrote it."""
+
+    suffix = ".glb"
+    keeps_labels = True
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read the blocks that lie beside the meshes."""
+        from world2minecraft.formats.gltf import read_gltf  # noqa: PLC0415  # It needs numba.
+
+        return read_gltf(path)
+
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
+        """Write meshes, and the blocks beside them."""
+        from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
+
+        write_gltf(volume, path, templates=options.other.get("templates"))
+
+
+class HabitatFormat:
+    """A folder for Habitat-Sim; it is written and not read."""
+
+    suffix = ".habitat"
+    can_read = False
+    can_write = True
+    keeps_labels = True
+
+    def is_at(self, path: Path) -> bool:
+        """Whether the name ends so."""
+        return path.is_dir() and path.suffix.lower() == self.suffix
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Refuse: meshes are no blocks."""
+        raise InputError(path, "holds meshes and no blocks; it is written and not read")
+
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
+        """Write the scene dataset; blocks become meshes."""
+        from world2minecraft.formats.habitat import write_habitat  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.entities import BLOCK_DISPLAY  # noqa: PLC0415
+
+        write_habitat(volume, path, name=path.stem)
+        losses.add("block states (the scene holds meshes)", int((volume.states > 0).sum()))
+        losses.add("block entities", len(volume.block_entities))
+        undrawn = sum(entity.id != BLOCK_DISPLAY for entity in volume.entities)
+        losses.add("entities that are no block displays", undrawn)
+
+
+def read_form(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read a volume from any form: a file, a world, a run's folder or its ``build``.
+
+    What lies beside the blocks in ``scene.json`` says what they are and how large they are.
+
+    Args:
+        path: the file or folder.
+        losses: what the file holds and the volume cannot is counted here.
+
+    Raises:
+        InputError: nothing is there or no form knows it, or one of its kinds from the reader.
+    """
+    source, told = Path(path), Losses() if losses is None else losses
+    if not source.exists():
+        raise InputError(source, "is not there")
+    for form in other_forms():
+        if form.is_at(source):
+            return form.read(source, told)
+    try:
+        volume = read_blocks(place_of_blocks(source), told)
+    except InputError as error:
+        if not error.reason.startswith("is no block file"):
+            raise
+        known = known_forms("read")
+        raise InputError(source, f"is no block file that is read; known: {known}") from None
+    return labelled(volume, source)
+
+
+def write_form(
+    volume: BlockVolume,
+    path: str | Path,
+    options: WriteOptions | None = None,
+    losses: Losses | None = None,
+) -> None:
+    """Write a volume in the form that the path's suffix names; without one, as a world.
+
+    Raises:
+        UsageError: no form has this suffix. OutputError: the path cannot be written.
+    """
+    target, told = Path(path), Losses() if losses is None else losses
+    form = form_to_write(target)
+    form.write(volume, target, options or WriteOptions(), told)
+    if not form.keeps_labels:
+        told.add(LABELS, int((volume.semantic > 0).sum()))
+
+
+def form_to_write(path: str | Path) -> BlockFormat:
+    """Return the form that a path's suffix names.
+
+    Raises:
+        UsageError: no form that is written has it.
+    """
+    suffix = Path(path).suffix.lower()
+    for form in [*block_formats(), *other_forms()]:
+        if suffix == form.suffix:
+            if form.can_write:
+                return form
+            raise UsageError(f"{path}: {suffix} is read and not written; write a .schem instead")
+    known = known_forms("write")
+    dots = "; the name of a world folder has no dot" if not suffix[1:].isalpha() else ""
+    raise UsageError(f"{path}: no block format ends in {suffix}; known: {known}{dots}")
+
+
+def write_forms(
+    folder: str | Path,
+    volume: BlockVolume,
+    names: Sequence[str],
+    options: WriteOptions | None = None,
+    *,
+    stem: str = "room",
+) -> dict[str, Losses]:
+    """Write a volume into a folder as ``room.SUFFIX``, once for each form named.
+
+    Args:
+        folder: where to write; made when it is not there.
+        volume: the blocks.
+        names: names of forms, such as ``litematic``, or their suffixes, with a dot or without.
+        options: the game's version and more.
+        stem: what the files are called.
+
+    Returns:
+        What each form could not carry, by its name as given.
+
+    Raises:
+        UnknownNameError: no form has the name. UsageError: one is a world folder or only read.
+        OutputError: a file cannot be written.
+    """
+    forms = {name: form_named(name) for name in names}  # All are known before one is written.
+    result: dict[str, Losses] = {}
+    for name, form in forms.items():
+        result[name] = Losses()
+        write_form(volume, Path(folder) / f"{stem}{form.suffix}", options, result[name])
+    return result
+
+
+def form_named(name: str) -> BlockFormat:
+    """Return the form of a name or a suffix that can be written as a file of its own.
+
+    Raises:
+        UnknownNameError: there is none. UsageError: it is a world folder, or only read.
+    """
+    wanted = name.lower().removeprefix(".")
+    for registry in (FORMATS, FORMS):
+        for known in registry.names():
+            form = registry.load(known)()
+            if wanted in (known, form.suffix.removeprefix(".")) and form.suffix:
+                if not form.can_write:
+                    raise UsageError(f"the form {name!r} is read and not written")
+                return form
+    raise UnknownNameError("form", name, form_names())
+
+
+def form_names() -> list[str]:
+    """Return the names of the forms that are written as files of their own."""
+    pairs = [
+        (name, registry.load(name)()) for registry in (FORMATS, FORMS) for name in registry.names()
+    ]
+    return [name for name, form in pairs if form.can_write and form.suffix]
+
+
+def other_forms() -> list[BlockFormat]:
+    """Return the forms that are not the game's."""
+    return [FORMS.load(name)() for name in FORMS.names()]
+
+
+def known_forms(verb: Literal["read", "write"]) -> str:
+    """Return the suffixes that are read or written, as an error's end."""
+    every = [*block_formats(), *other_forms()]
+    able = [form for form in every if (form.can_read if verb == "read" else form.can_write)]
+    return ", ".join(form.suffix or "a world folder" for form in able)
+
+
+def templates_of_run(folder: str | Path) -> Mapping[int, str]:
+    """Return the template of each object of a run's folder; of any other place, none.
+
+    Raises:
+        DamagedFileError: ``placements.json`` is there and cannot be read.
+    """
+    path = Path(folder) / "placements.json"
+    if not path.is_file():
+        return {}
+    from world2minecraft.formats.objects import read_placements  # noqa: PLC0415
+
+    return {placement.object_id: placement.template for placement in read_placements(path)}

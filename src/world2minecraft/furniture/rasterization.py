@@ -1,0 +1,134 @@
+"""The overlap of a template's cells with an object's, at several places at once."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.jit import njit
+from world2minecraft.furniture.template import Parameters, Template
+
+# Templates as cells of a grid.
+
+MAX_CELLS = 8_000_000  # A box of 4 m at 0.02 m; more is a mistake in the size.
+CLOSE = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
+
+
+def cells_of(
+    template: Template,
+    size_m: Sequence[float] | np.ndarray,
+    parameters: Parameters | None = None,
+    quarter_turns: int = 0,
+    shift: Sequence[int] = (0, 0, 0),
+    voxel_m: float = 0.08,
+) -> np.ndarray:
+    """Return the cells, int32 [N, 3], of a template whose turned box begins at ``shift``.
+
+    Args:
+        template: what to rasterise.
+        size_m: depth, width and height in metres, each rounded to whole cells, one at least.
+        parameters: some of the template's parameters; the others are usual.
+        quarter_turns: counter-clockwise from above.
+        shift: the cell where the turned box begins.
+        voxel_m: the side of a cell.
+
+    Raises:
+        ValueError: the box has more than ``MAX_CELLS`` cells, or a parameter is refused.
+    """
+    counts = size_in_cells(size_m, voxel_m)
+    values = tuple(sorted(template.complete(parameters).items()))
+    solid = turn_grid(raster(template, counts, values, voxel_m), quarter_turns)
+    return (np.argwhere(solid) + np.asarray(shift)).astype(np.int32)
+
+
+def size_in_cells(size_m: Sequence[float] | np.ndarray, voxel_m: float) -> tuple[int, int, int]:
+    """Return a size in whole cells, at least one along each axis."""
+    depth, width, height = (max(1, int(side / voxel_m + 0.5)) for side in size_m)
+    return depth, width, height
+
+
+@lru_cache(maxsize=1024)
+def raster(
+    template: Template,
+    counts: tuple[int, int, int],
+    values: tuple[tuple[str, float], ...],
+    voxel_m: float,
+) -> np.ndarray:
+    """Return the solid cells, bool [depth, width, height], of a template that looks to +x.
+
+    A part fills the cells whose centres lie in it, and at least one cell along each axis, so
+    that a thin leg or table top is never lost. Read-only, for it is kept for the next call.
+    """
+    if np.prod(counts, dtype=np.float64) > MAX_CELLS:
+        raise ValueError(f"{template.name} of {counts} cells is too large; {MAX_CELLS} at most")
+    size = np.array(counts, np.float64) * voxel_m
+    parts = template.parts(size, dict(values))
+    boxes = np.array([part.box_m for part in parts]) + np.tile((size[0] / 2, size[1] / 2, 0.0), 2)
+    grid = np.zeros(counts, np.bool_)
+    for low, high in _cell_ranges(boxes / voxel_m, np.array(counts)):
+        grid[low[0] : high[0], low[1] : high[1], low[2] : high[2]] = True
+    grid.flags.writeable = False
+    return grid
+
+
+def _cell_ranges(boxes: np.ndarray, counts: np.ndarray) -> list[tuple[list[int], list[int]]]:
+    """Return the first cell and the one past the last of boxes in cells, float64 [N, 6].
+
+    Bounds are closed at both ends, so that a symmetric shape gives symmetric cells: a thin post
+    on the border of two cells takes both.
+    """
+    low = np.ceil(boxes[:, :3] - 0.5 - CLOSE)
+    high = np.floor(boxes[:, 3:] + 0.5 + CLOSE)
+    thin = high <= low
+    middle = (boxes[:, :3] + boxes[:, 3:]) / 2
+    low = np.where(thin, np.ceil(middle - 1 - CLOSE), low)
+    high = np.where(thin, np.floor(middle + 1 + CLOSE), high)
+    low = np.clip(low, 0, counts - 1).astype(np.int64)
+    high = np.clip(high, low + 1, counts).astype(np.int64)
+    return list(zip(low.tolist(), high.tolist(), strict=True))
+
+
+def surface(solid: np.ndarray) -> np.ndarray:
+    """Return the cells of a solid bool [X, Y, Z] that touch a cell outside it by a face."""
+    padded = np.pad(solid, 1)
+    inner = padded.copy()
+    for axis in range(3):
+        for step in (-1, 1):
+            inner &= np.roll(padded, step, axis)
+    return solid & ~inner[1:-1, 1:-1, 1:-1]
+
+
+@njit
+def overlaps(template, code, corners):  # pragma: no cover - compiled
+    """Return int64 [S, 3]: own cells covered, cells against, cells beyond, for each corner.
+
+    Args:
+        template: bool [A, B, C], the turned template's cells, C order.
+        code: uint8 [X, Y, Z] of ``Evidence``.
+        corners: int64 [S, 3], where the template's first cell lies; what falls outside the
+            window counts against.
+    """
+    counts = np.zeros((len(corners), 3), np.int64)
+    for x in range(template.shape[0]):
+        for y in range(template.shape[1]):
+            for z in range(template.shape[2]):
+                if not template[x, y, z]:
+                    continue
+                for s in range(len(corners)):
+                    i, j, k = x + corners[s, 0], y + corners[s, 1], z + corners[s, 2]
+                    if (
+                        i < 0
+                        or j < 0
+                        or k < 0
+                        or i >= code.shape[0]
+                        or j >= code.shape[1]
+                        or k >= code.shape[2]
+                        or code[i, j, k] == 1
+                    ):
+                        counts[s, 1] += 1
+                    elif code[i, j, k] == 2:
+                        counts[s, 0] += 1
+                    elif code[i, j, k] == 3:
+                        counts[s, 2] += 1
+    return counts

@@ -1,0 +1,456 @@
+"""Few boxes for many cells: exact partitions first, then coarser ones within a bound.
+
+A shape comes as labels on a grid, 0 where there is nothing; it goes out as boxes of one label,
+``[label, x0, y0, z0, x1, y1, z1]`` with the last corner excluded. The boxes of a partition never
+share a cell, and together they are the shape. The fewest boxes are hard to find, so the shape is
+swept in 48 ways (six orders of growth, from eight corners) and the best sweep wins.
+"""
+
+from itertools import permutations, product
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+
+MAX_PARTITION_SEARCH_CELLS = 4_000_000  # Above it one sweep is made: 48 would take seconds.
+
+
+def partition_boxes(labels: np.ndarray) -> np.ndarray:
+    """Return few boxes of one label that are a shape exactly and share no cell.
+
+    Args:
+        labels: int [X, Y, Z], 0 where there is nothing, else 1 and more.
+
+    Returns:
+        int32 [N, 7], sorted: label, first cell, and the one past the last along each axis.
+
+    Raises:
+        ValueError: the labels have not three axes.
+
+    Example:
+        >>> partition_boxes(np.array([[[1, 1, 0], [1, 1, 0]]])).tolist()
+        [[1, 0, 0, 0, 1, 2, 2]]
+    """
+    if labels.ndim != 3:
+        raise ValueError(f"labels must have shape [X, Y, Z], not {labels.shape}")
+    low, inner = _cropped(labels)
+    if not inner.size:
+        return np.empty((0, 7), np.int32)
+    orders = list(product(permutations(range(3)), product((False, True), repeat=3)))
+    best: np.ndarray | None = None
+    for axes, flips in orders[: 1 if inner.size > MAX_PARTITION_SEARCH_CELLS else None]:
+        found = _swept(inner, axes, flips)
+        if best is None or len(found) < len(best):
+            best = found
+    joined = join_pairs(best)  # type: ignore[arg-type]  # There is one order at least.
+    return _sorted(joined + np.array([0, *low, *low], np.int32))
+
+
+def _cropped(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first cell that holds something, and the labels of the box around all."""
+    held = np.argwhere(labels)
+    if not len(held):
+        return np.zeros(3, np.int32), np.empty((0, 0, 0), np.int32)
+    low, high = held.min(axis=0), held.max(axis=0) + 1
+    window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    return low.astype(np.int32), labels[window].astype(np.int32)
+
+
+def _swept(labels: np.ndarray, axes: tuple[int, ...], flips: tuple[bool, ...]) -> np.ndarray:
+    """Return the boxes of one sweep: the axes in an order, some of them backwards."""
+    turned = labels.transpose(axes)
+    turned = turned[tuple(slice(None, None, -1 if flip else 1) for flip in flips)]
+    boxes = np.empty((int(np.count_nonzero(labels)), 7), np.int32)
+    boxes = boxes[: _grow(np.ascontiguousarray(turned), boxes)]
+    result = np.empty_like(boxes)
+    result[:, 0] = boxes[:, 0]
+    for place, (axis, flip) in enumerate(zip(axes, flips, strict=True)):
+        first, last = boxes[:, 1 + place], boxes[:, 4 + place]
+        if flip:
+            first, last = turned.shape[place] - last, turned.shape[place] - first
+        result[:, 1 + axis], result[:, 4 + axis] = first, last
+    return result
+
+
+@njit
+def _grow(labels, boxes):  # pragma: no cover
+    """Write the boxes that grow from each free cell along the last axis first; return how many."""
+    size_x, size_y, size_z = labels.shape
+    done = np.zeros(labels.shape, np.bool_)
+    count = 0
+    for x in range(size_x):
+        for y in range(size_y):
+            for z in range(size_z):
+                label = labels[x, y, z]
+                if label == 0 or done[x, y, z]:
+                    continue
+                z1 = z + 1
+                while z1 < size_z and labels[x, y, z1] == label and not done[x, y, z1]:
+                    z1 += 1
+                y1 = y + 1
+                while y1 < size_y and _is_free(labels, done, label, x, x + 1, y1, y1 + 1, z, z1):
+                    y1 += 1
+                x1 = x + 1
+                while x1 < size_x and _is_free(labels, done, label, x1, x1 + 1, y, y1, z, z1):
+                    x1 += 1
+                done[x:x1, y:y1, z:z1] = True
+                boxes[count, 0] = label
+                boxes[count, 1], boxes[count, 2], boxes[count, 3] = x, y, z
+                boxes[count, 4], boxes[count, 5], boxes[count, 6] = x1, y1, z1
+                count += 1
+    return count
+
+
+@njit
+def _is_free(labels, done, label, x0, x1, y0, y1, z0, z1):  # pragma: no cover
+    for x in range(x0, x1):
+        for y in range(y0, y1):
+            for z in range(z0, z1):
+                if labels[x, y, z] != label or done[x, y, z]:
+                    return False
+    return True
+
+
+def join_pairs(boxes: np.ndarray) -> np.ndarray:
+    """Return boxes, int32 [N, 7], with every two of one label that make one box joined."""
+    held = [tuple(row) for row in _sorted(boxes).tolist()]
+    for axis in (3, 2, 1):
+        others = [0, *(a for n in (1, 2, 3) if n != axis for a in (n, n + 3))]
+        held.sort(key=lambda row: ([row[n] for n in others], row[axis]))
+        joined: list[list[int]] = []
+        for row in held:
+            last = joined[-1] if joined else None
+            if (
+                last is not None
+                and all(last[n] == row[n] for n in others)
+                and last[axis + 3] == row[axis]
+            ):
+                last[axis + 3] = row[axis + 3]
+            else:
+                joined.append(list(row))
+        held = [tuple(row) for row in joined]
+    return _sorted(np.array(held, np.int32).reshape(-1, 7))
+
+
+def painted_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return the labels, int32 of a shape, that boxes int [N, 7] are; later ones cover earlier."""
+    labels = np.zeros(shape, np.int32)
+    for label, x0, y0, z0, x1, y1, z1 in boxes.tolist():
+        labels[x0:x1, y0:y1, z0:z1] = label
+    return labels
+
+
+def _sorted(boxes: np.ndarray) -> np.ndarray:
+    return boxes[np.lexsort(boxes.T[::-1])]
+
+
+# Fewer boxes than a shape has exactly, as long as the shape stays the same but for a little.
+#
+# Each step joins two boxes that lie near each other into the box around both, or drops a small
+# one: whichever changes fewest cells for each box that it saves. Boxes never come to overlap.
+
+REACH = 2  # Cells between boxes that may be joined; a box over a wider gap changes the shape.
+MAX_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.
+RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label.
+
+
+def simplify_boxes(
+    labels: np.ndarray,
+    least_iou: float,
+    open_cells: np.ndarray | None = None,
+    *,
+    enough: int = 1,
+) -> np.ndarray:
+    """Return fewer boxes that share no cell, their union of at least an IoU with a shape.
+
+    Args:
+        labels: int [X, Y, Z], 0 where there is nothing.
+        least_iou: from above 0 to 1; at 1 the boxes are the shape exactly. Cells that take
+            another label count by half.
+        open_cells: bool [X, Y, Z], cells without a label that may be filled at no cost, such as
+            those inside an object that no camera saw.
+        enough: boxes are joined no further once they are so few.
+
+    Returns:
+        int32 [N, 7], as ``partition_boxes`` gives them.
+
+    Raises:
+        ValueError: the bound lies outside its range, or ``labels`` have not three axes.
+    """
+    if not 0 < least_iou <= 1:
+        raise ValueError(f"least_iou must be above 0, up to 1, not {least_iou}")
+    boxes = partition_boxes(labels).astype(np.int64)
+    if not enough < len(boxes) <= MAX_BOXES:
+        return boxes.astype(np.int32)
+    costly = labels == 0
+    if open_cells is not None:
+        costly &= ~open_cells
+    empty = np.zeros(np.add(labels.shape, 1), np.int64)
+    empty[1:, 1:, 1:] = costly.cumsum(0).cumsum(1).cumsum(2)
+    alive = _coarsen(boxes, empty, float(np.count_nonzero(labels)), float(least_iou), enough)
+    return join_pairs(boxes[alive].astype(np.int32))
+
+
+@njit
+def _coarsen(boxes, empty, size, least, enough):  # pragma: no cover
+    """Change ``boxes`` in place, step by step; return which of them are left, bool [N].
+
+    ``met`` is the size of what the shape and the boxes share, less what was relabelled by half;
+    ``union`` that of both together.
+    """
+    alive = np.ones(len(boxes), np.bool_)
+    met, union = size, size
+    while alive.sum() > enough:
+        best, first, second = np.inf, -1, -1
+        for i in range(len(boxes)):
+            if not alive[i]:
+                continue
+            own = _size(boxes[i])
+            if alive.sum() > 1 and (met - own) / union >= least and own < best:
+                best, first, second = own, i, i
+            for j in range(i + 1, len(boxes)):
+                if not alive[j] or not _is_near(boxes[i], boxes[j]):
+                    continue
+                added, recoloured, saved = _joined(boxes, alive, empty, i, j)
+                if saved == 0 or (met - recoloured) / (union + added) < least:
+                    continue
+                if (added + recoloured) / saved < best:
+                    best, first, second = (added + recoloured) / saved, i, j
+        if first < 0:
+            return alive
+        if first == second:
+            met -= _size(boxes[first])
+            alive[first] = False
+            continue
+        added, recoloured, _ = _joined(boxes, alive, empty, first, second)
+        met, union = met - recoloured, union + added
+        _join(boxes, alive, first, second)
+    return alive
+
+
+@njit
+def _size(box):  # pragma: no cover
+    return float((box[4] - box[1]) * (box[5] - box[2]) * (box[6] - box[3]))
+
+
+@njit
+def _is_near(one, other):  # pragma: no cover
+    for axis in range(1, 4):
+        if one[axis] > other[axis + 3] + REACH or other[axis] > one[axis + 3] + REACH:
+            return False
+    return True
+
+
+@njit
+def _around(one, other):  # pragma: no cover
+    """Return the box around two, labelled as the larger of them."""
+    box = one.copy() if _size(one) >= _size(other) else other.copy()
+    for axis in range(1, 4):
+        box[axis] = min(one[axis], other[axis])
+        box[axis + 3] = max(one[axis + 3], other[axis + 3])
+    return box
+
+
+@njit
+def _joined(boxes, alive, empty, i, j):  # pragma: no cover
+    """Return the cells that a join adds, what it relabels by cost, and how many boxes it saves.
+
+    It saves none where another box lies partly in the box around both.
+    """
+    box = _around(boxes[i], boxes[j])
+    recoloured, inside = 0.0, 0
+    for n in range(len(boxes)):
+        if not alive[n]:
+            continue
+        meets, within = True, True
+        for axis in range(1, 4):
+            meets &= boxes[n, axis] < box[axis + 3] and box[axis] < boxes[n, axis + 3]
+            within &= boxes[n, axis] >= box[axis] and boxes[n, axis + 3] <= box[axis + 3]
+        if within:
+            inside += 1
+            if boxes[n, 0] != box[0]:
+                recoloured += RECOLOUR * _size(boxes[n])
+        elif meets:
+            return 0.0, 0.0, 0
+    return float(_sum_in_box(empty, box)), recoloured, inside - 1
+
+
+@njit
+def _sum_in_box(sums, box):  # pragma: no cover
+    """Return the sum over a box from the sums [X + 1, Y + 1, Z + 1] of all below each corner."""
+    total = 0
+    for x in range(2):
+        for y in range(2):
+            for z in range(2):
+                sign = 1 if (x + y + z) % 2 == 1 else -1
+                total += sign * sums[box[1 + 3 * x], box[2 + 3 * y], box[3 + 3 * z]]
+    return total
+
+
+@njit
+def _join(boxes, alive, first, second):  # pragma: no cover
+    """Put the box around two in the place of the first; what lies in it goes."""
+    box = _around(boxes[first], boxes[second])
+    for n in range(len(boxes)):
+        within = True
+        for axis in range(1, 4):
+            within &= boxes[n, axis] >= box[axis] and boxes[n, axis + 3] <= box[axis + 3]
+        if within:
+            alive[n] = False
+    boxes[first] = box
+    alive[first] = True
+
+
+# Few boxes for round shapes: boxes may overlap where a partition would need many more.
+#
+# A disc of cells falls into a box for each step of its rim; boxes that overlap take two steps each.
+
+MAX_COVER_SHARE = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
+MIN_COVER_BOXES = (
+    8  # With fewer boxes a partition is always taken: it needs no care where boxes meet.
+)
+MAX_COVER_SEARCH_CELLS = 1_000_000
+# The orders in which a box grows from a cell, along both ways of each axis in turn.
+_ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
+
+
+def few_boxes(labels: np.ndarray) -> np.ndarray:
+    """Return few boxes of one label whose union is a shape exactly.
+
+    They share no cell, except where boxes that overlap within one label are far fewer.
+
+    Args:
+        labels: int [X, Y, Z], 0 where there is nothing.
+
+    Returns:
+        int32 [N, 7], as ``partition_boxes`` gives them; the largest first where they overlap.
+
+    Raises:
+        ValueError: the labels have not three axes.
+    """
+    apart = partition_boxes(labels)
+    if len(apart) < MIN_COVER_BOXES or labels.size > MAX_COVER_SEARCH_CELLS:
+        return apart
+    over = cover_boxes(labels)
+    return over if len(over) <= MAX_COVER_SHARE * len(apart) else apart
+
+
+def cover_boxes(labels: np.ndarray) -> np.ndarray:
+    """Return few boxes, int32 [N, 7], that cover a shape exactly and may overlap in one label.
+
+    Greedy from each of eight corners: the first cell that is not covered yet grows into the box
+    that covers most; at last boxes that the others cover are dropped.
+    """
+    held = np.argwhere(labels)
+    if not len(held):
+        return np.empty((0, 7), np.int32)
+    low, high = held.min(axis=0), held.max(axis=0) + 1
+    window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    inner = labels[window].astype(np.int32)
+    best: np.ndarray | None = None
+    for flips in product((False, True), repeat=3):
+        found = _covered(inner, flips)
+        if best is None or len(found) < len(best):
+            best = found
+    boxes = best + np.array([0, *low, *low])  # type: ignore[operator]  # Eight were tried.
+    volume = np.prod(boxes[:, 4:] - boxes[:, 1:4], axis=1)
+    return boxes[np.lexsort((*boxes.T[::-1], -volume))].astype(np.int32)
+
+
+def _covered(labels: np.ndarray, flips: tuple[bool, ...]) -> np.ndarray:
+    ways = tuple(slice(None, None, -1 if flip else 1) for flip in flips)
+    boxes = np.empty((int(np.count_nonzero(labels)), 7), np.int64)
+    boxes = boxes[: _cover(np.ascontiguousarray(labels[ways]), _ORDERS, boxes)]
+    for axis, flip in enumerate(flips):
+        if flip:
+            first, last = boxes[:, 1 + axis].copy(), boxes[:, 4 + axis].copy()
+            boxes[:, 1 + axis] = labels.shape[axis] - last
+            boxes[:, 4 + axis] = labels.shape[axis] - first
+    return boxes
+
+
+@njit
+def _cover(labels, orders, boxes):  # pragma: no cover
+    """Write the boxes of a cover; return how many."""
+    times = np.zeros(labels.shape, np.int32)
+    count = 0
+    for x in range(labels.shape[0]):
+        for y in range(labels.shape[1]):
+            for z in range(labels.shape[2]):
+                if labels[x, y, z] == 0 or times[x, y, z] > 0:
+                    continue
+                most = -1
+                for n in range(len(orders)):
+                    box = _grown(labels, orders[n], x, y, z)
+                    new = _fresh(times, box)
+                    if new > most:
+                        most = new
+                        boxes[count, 0] = labels[x, y, z]
+                        boxes[count, 1:] = box
+                _add_in_box(times, boxes[count, 1:], 1)
+                count += 1
+    return _pruned(times, boxes, count)
+
+
+@njit
+def _pruned(times, boxes, count):  # pragma: no cover
+    """Drop, from the last to the first, the boxes whose every cell another covers too."""
+    kept = 0
+    needed = np.ones(count, np.bool_)
+    for n in range(count - 1, -1, -1):
+        a, b, c, d, e, f = boxes[n, 1:]
+        if times[a:d, b:e, c:f].min() > 1:
+            needed[n] = False
+            _add_in_box(times, boxes[n, 1:], -1)
+    for n in range(count):
+        if needed[n]:
+            boxes[kept] = boxes[n]
+            kept += 1
+    return kept
+
+
+@njit
+def _grown(labels, order, x, y, z):  # pragma: no cover
+    """Return the box, int64 [6], that grows from a cell along each axis of an order in turn."""
+    box = np.array([x, y, z, x + 1, y + 1, z + 1])
+    label = labels[x, y, z]
+    for axis in order:
+        while box[axis] > 0:
+            box[axis] -= 1
+            if not _is_one(labels, label, box, axis, box[axis]):
+                box[axis] += 1
+                break
+        while box[3 + axis] < labels.shape[axis]:
+            if not _is_one(labels, label, box, axis, box[3 + axis]):
+                break
+            box[3 + axis] += 1
+    return box
+
+
+@njit
+def _is_one(labels, label, box, axis, place):  # pragma: no cover
+    """Tell whether a box's layer at a place along an axis is of one label."""
+    low, high = box[:3].copy(), box[3:].copy()
+    low[axis], high[axis] = place, place + 1
+    for x in range(low[0], high[0]):
+        for y in range(low[1], high[1]):
+            for z in range(low[2], high[2]):
+                if labels[x, y, z] != label:
+                    return False
+    return True
+
+
+@njit
+def _fresh(times, box):  # pragma: no cover
+    new = 0
+    for x in range(box[0], box[3]):
+        for y in range(box[1], box[4]):
+            for z in range(box[2], box[5]):
+                if times[x, y, z] == 0:
+                    new += 1
+    return new
+
+
+@njit
+def _add_in_box(times, box, step):  # pragma: no cover
+    times[box[0] : box[3], box[1] : box[4], box[2] : box[5]] += step

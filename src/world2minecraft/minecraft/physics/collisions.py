@@ -1,0 +1,193 @@
+"""What stops a player: the collision boxes of blocks, near a place."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.collision_shapes import boxes_of
+from world2minecraft.minecraft.physics.body import STEP_HEIGHT, TOUCH, WIDTH, body_box
+
+# A box moves among boxes: how far it comes along each axis, and up what steps.
+#
+# Boxes are float64 [N, 6]: low and high corner. What a box lies in already does not hold it.
+
+_OTHERS = ((1, 2), (0, 2), (0, 1))
+
+
+def overlapping(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> np.ndarray:
+    """Return which of some boxes a box lies over, bool [N]; touching is not lying over."""
+    inside = (boxes[:, :3] < box[3:] - touch) & (boxes[:, 3:] > box[:3] + touch)
+    return np.asarray(inside.all(axis=1))
+
+
+def free_way(
+    boxes: np.ndarray, box: np.ndarray, axis: int, way: float, touch: float = TOUCH
+) -> float:
+    """Return how much of a way along one axis a box can go before it meets another."""
+    if not way or not len(boxes):
+        return way
+    one, two = _OTHERS[axis]
+    beside = (
+        (boxes[:, one] < box[3 + one] - touch)
+        & (boxes[:, 3 + one] > box[one] + touch)
+        & (boxes[:, two] < box[3 + two] - touch)
+        & (boxes[:, 3 + two] > box[two] + touch)
+    )
+    if way > 0:
+        gaps = boxes[beside, axis] - box[3 + axis]
+        return float(min(way, gaps[gaps >= -touch].min(initial=way)))
+    gaps = boxes[beside, 3 + axis] - box[axis]
+    return float(max(way, gaps[gaps <= touch].max(initial=way)))
+
+
+def swept(
+    boxes: np.ndarray, box: np.ndarray, way: np.ndarray, touch: float = TOUCH
+) -> tuple[float, float, float]:
+    """Return how much of a way, float64 [3], a box can go: up or down, then the longer side first.
+
+    That order is the game's: one slides along what one meets.
+    """
+    longer_first = (1, 2, 0) if abs(way[0]) < abs(way[2]) else (1, 0, 2)
+    gone = [0.0, 0.0, 0.0]
+    here = box.copy()
+    for axis in longer_first:
+        gone[axis] = free_way(boxes, here, axis, float(way[axis]), touch)
+        here[[axis, 3 + axis]] += gone[axis]
+    return gone[0], gone[1], gone[2]
+
+
+def climbed(
+    boxes: np.ndarray, box: np.ndarray, way: np.ndarray, height: float, touch: float = TOUCH
+) -> tuple[float, float, float]:
+    """Return how much of a way a box can go when it may step up by a height and down again."""
+    best = swept(boxes, box, np.array([way[0], height, way[2]]), touch)
+    reach = box.copy()  # All that it would pass over: as high as all of that lets it.
+    reach[:3] += np.minimum([way[0], 0, way[2]], 0)
+    reach[3:] += np.maximum([way[0], 0, way[2]], 0)
+    up = free_way(boxes, reach, 1, height, touch)
+    if up < height:
+        x, _, z = swept(boxes, _moved(box, (0, up, 0)), np.array([way[0], 0, way[2]]), touch)
+        if _length(x, z) > _length(best[0], best[2]):
+            best = (x, up, z)
+    down = free_way(boxes, _moved(box, best), 1, way[1] - best[1], touch)
+    return best[0], best[1] + down, best[2]
+
+
+def _moved(box: np.ndarray, way: tuple[float, float, float]) -> np.ndarray:
+    return box + np.array([*way, *way])
+
+
+def _length(x: float, z: float) -> float:
+    return x * x + z * z
+
+
+_TALLEST = 1  # Cells by which a box may reach beyond its own: fences are 1.5 high.
+_RINGS = 40  # Of places tried around one that is taken, a quarter of a body apart.
+
+
+class World(Protocol):
+    """Anything that knows its boxes."""
+
+    def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the boxes, float64 [N, 6] in blocks, that reach into a box; more do no harm."""
+        ...
+
+
+class BoxWorld:
+    """A list of boxes."""
+
+    def __init__(self, boxes: Sequence[Sequence[float]] | np.ndarray):
+        self.boxes = np.asarray(boxes, np.float64).reshape(-1, 6)
+
+    def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the boxes that reach into a box."""
+        return self.boxes[overlapping(self.boxes, np.concatenate([low, high]), 0.0)]
+
+
+class BlockWorld:
+    """The blocks of a volume, in world block coordinates.
+
+    ``kinds`` uint16 [X, Y, Z] names the shape of each cell, ``shapes`` are float32 [N, 6] in
+    block units; 0 is the shape of air, which has no box. ``corner`` is the place of cell 0, 0, 0.
+    """
+
+    def __init__(
+        self, kinds: np.ndarray, shapes: Sequence[np.ndarray], corner: Sequence[int]
+    ) -> None:
+        self.kinds, self.shapes = kinds, tuple(shapes)
+        self.corner = np.array(corner, np.int64)
+
+    @classmethod
+    def of_volume(cls, volume: BlockVolume) -> "BlockWorld":
+        """Return the world of a volume; states of equal shape share one kind."""
+        shapes: list[np.ndarray] = [np.zeros((0, 6), np.float32)]
+        numbers = {shapes[0].tobytes(): 0}
+        rows = np.zeros(len(volume.palette), np.uint16)
+        for row, state in enumerate(volume.palette):
+            boxes = boxes_of(state)
+            rows[row] = numbers.setdefault(boxes.tobytes(), len(shapes))
+            if rows[row] == len(shapes):
+                shapes.append(boxes)
+        return cls(rows[volume.states], shapes, volume.corner)
+
+    @classmethod
+    def of_cells(cls, solid: np.ndarray, corner: Sequence[int] = (0, 0, 0)) -> "BlockWorld":
+        """Return the world of bool [X, Y, Z] in block axes: full cubes and air."""
+        cube = np.array([[0, 0, 0, 1, 1, 1]], np.float32)
+        return cls(solid.astype(np.uint16), (np.zeros((0, 6), np.float32), cube), corner)
+
+    def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the boxes of all cells that a box reaches, and of those just below."""
+        first = np.floor(low).astype(np.int64) - self.corner - [0, _TALLEST, 0]
+        last = np.floor(high).astype(np.int64) - self.corner + 1
+        first = np.clip(first, 0, self.kinds.shape)
+        last = np.clip(last, 0, self.kinds.shape)
+        part = self.kinds[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
+        found = [np.zeros((0, 6))]
+        for kind in np.unique(part):
+            shape = self.shapes[kind]
+            if len(shape):
+                cells = np.argwhere(part == kind) + first + self.corner
+                found.append((np.tile(cells, 2)[:, None] + shape[None]).reshape(-1, 6))
+        return np.concatenate(found)
+
+
+def standing_place(
+    world: World, position: tuple[float, float, float], scale: float = 1.0
+) -> tuple[float, float, float]:
+    """Return the nearest place to a position where a body of a scale fits and stands.
+
+    Places are tried in rings around it, as high as it is or as one step lower or higher; the
+    position itself comes back where none is free.
+    """
+    for ring in range(_RINGS):
+        for x, z in _ring(ring):
+            at = np.array(position) + np.array([x, 0, z]) * WIDTH * scale / 4
+            if (free := _stands(world, at, scale)) is not None:
+                return free
+    return position
+
+
+def _ring(ring: int) -> list[tuple[int, int]]:
+    """Return the places of a square ring, the nearest to its middle first."""
+    span = range(-ring, ring + 1)
+    places = [(x, z) for x in span for z in span if max(abs(x), abs(z)) == ring]
+    return sorted(places, key=lambda place: (place[0] ** 2 + place[1] ** 2, place))
+
+
+def _stands(world: World, at: np.ndarray, scale: float) -> tuple[float, float, float] | None:
+    """Return a place moved onto what lies under it, within a step; None where none can stand."""
+    reach = STEP_HEIGHT * scale
+    x, y, z = at.tolist()
+    box = body_box((x, y, z), scale)
+    boxes = world.near(box[:3] - 2 * reach, box[3:] + 2 * reach)
+    for lift in (0.0, reach):
+        raised = box + np.tile([0, lift, 0], 2)
+        if overlapping(boxes, raised, TOUCH * scale).any():
+            continue
+        down = free_way(boxes, raised, 1, -lift - reach, TOUCH * scale)
+        if down > -lift - reach:
+            return x, y + lift + down, z
+    return None

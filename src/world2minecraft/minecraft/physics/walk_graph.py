@@ -1,0 +1,422 @@
+"""The walkable graph of a volume: the places where a player can stand, and the steps between.
+
+The player has the game's body, times a scale that is the volume's own where none is named: at 4
+blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, jumps 1.25 where he
+may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.collision_shapes import FULL_CUBE
+from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
+from world2minecraft.minecraft.physics.collisions import BlockWorld
+
+# Doors and gates that a player opens on the way: shut ones count as open for walking.
+#
+# Iron doors open only by a button or the like, so they stay as they are.
+
+_OPENED = ("_door", "_fence_gate")
+_LOCKED = ("minecraft:iron_door",)
+
+
+def is_door(state: str) -> bool:
+    """Whether a block state is a door or a gate, of any kind, open or shut."""
+    return state.partition("[")[0].endswith(_OPENED)
+
+
+def is_shut(state: str) -> bool:
+    """Whether a block state is a door or gate that a player would open.
+
+    Example:
+        >>> is_shut("minecraft:oak_door[facing=west,half=lower,open=false]")
+        True
+    """
+    locked = state.partition("[")[0] in _LOCKED
+    return is_door(state) and not locked and "open=false" in state
+
+
+def opened(state: str) -> str:
+    """Return the state of the same door, open; other states come back as they are."""
+    return state.replace("open=false", "open=true") if is_shut(state) else state
+
+
+def doors_opened(volume: BlockVolume) -> BlockVolume:
+    """Return the volume with all its doors and gates open; its cells are the same array."""
+    return replace(volume, palette=tuple(opened(state) for state in volume.palette))
+
+
+# Where a body can stand in each column of a grid: the gaps between what is over and under it.
+#
+# Heights are counted in sixteenths of a block, as the game's shapes are.
+
+FINE = 16  # Heights a block.
+MOST_FLOORS = 16  # Stands over each other in one column; towers have more.
+SKY = np.iinfo(np.int32).max  # The ceiling of what is open above.
+WET = 254  # The class of liquids: neither a way nor a ground.
+_FULL = (1 << FINE) - 1
+
+
+class Solid(NamedTuple):
+    """The collision boxes of a volume, as the kernels read them."""
+
+    kinds: np.ndarray  # uint16 [X, Y, Z]; 0 has no box
+    start: np.ndarray  # int32 [K + 1], the first box of each kind
+    boxes: np.ndarray  # float64 [B, 6], block units within their cell
+    classes: np.ndarray  # uint8 [X, Y, Z], WET for liquids
+    is_full: np.ndarray  # bool [K]
+
+
+class Stands(NamedTuple):
+    """The gaps of a grid of C columns in which a body fits; heights in sixteenths of a block."""
+
+    counts: np.ndarray  # int32 [C]
+    floor: np.ndarray  # int32 [C, MOST_FLOORS]
+    ceiling: np.ndarray  # int32 [C, MOST_FLOORS]
+    ground: np.ndarray  # uint8 [C, MOST_FLOORS], the class of what is under the feet
+
+
+def stands_of(
+    solid: Solid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
+) -> Stands:
+    """Return where a body stands in each column of a volume.
+
+    Args:
+        solid: what stops a body.
+        columns: where they are along x and along z, float64, in cells from the volume's corner.
+        half: half the body's width, in blocks.
+        height: how high it is, in blocks.
+    """
+    xs, zs = columns
+    count = len(xs) * len(zs)
+    stands = Stands(
+        np.zeros(count, np.int32),
+        np.zeros((count, MOST_FLOORS), np.int32),
+        np.zeros((count, MOST_FLOORS), np.int32),
+        np.zeros((count, MOST_FLOORS), np.uint8),
+    )
+    need = int(np.ceil(height * FINE - 1e-6))
+    if count:
+        _fill(solid, xs, zs, half, need, stands)
+    return stands
+
+
+@njit
+def _fill(solid, xs, zs, half, need, stands):
+    masks = np.zeros(solid.kinds.shape[1] + 2, np.int32)
+    for column in range(len(stands.counts)):
+        x, z = xs[column // len(zs)], zs[column % len(zs)]
+        box = (x - half + TOUCH, z - half + TOUCH, x + half - TOUCH, z + half - TOUCH)
+        _mask(solid, box, masks)
+        _gaps(solid, box, masks, need, column, stands)
+
+
+@njit
+def _mask(solid, box, masks):
+    """Set in each layer's mask the sixteenths of its height that a box meets something in."""
+    masks[:] = 0
+    nx, ny, nz = solid.kinds.shape
+    for i in range(max(0, int(np.floor(box[0]))), min(nx - 1, int(np.floor(box[2]))) + 1):
+        for k in range(max(0, int(np.floor(box[1]))), min(nz - 1, int(np.floor(box[3]))) + 1):
+            for j in range(ny):
+                kind = solid.kinds[i, j, k]
+                if kind == 0:
+                    continue
+                if solid.is_full[kind]:
+                    masks[j] |= _FULL
+                    continue
+                mask = _cell_mask(solid, kind, box, i, k)
+                masks[j] |= mask & _FULL
+                masks[j + 1] |= mask >> FINE
+
+
+@njit
+def _cell_mask(solid, kind, box, i, k):
+    """Return the sixteenths, from its cell's bottom, of the boxes of a kind that a box meets."""
+    mask = 0
+    for n in range(solid.start[kind], solid.start[kind + 1]):
+        b = solid.boxes[n]
+        if i + b[0] < box[2] and i + b[3] > box[0] and k + b[2] < box[3] and k + b[5] > box[1]:
+            low = max(0, int(np.floor(b[1] * FINE + 1e-6)))
+            top = int(np.ceil(b[4] * FINE - 1e-6))
+            mask |= ((1 << max(top - low, 0)) - 1) << low
+    return mask
+
+
+@njit
+def _gaps(solid, box, masks, need, column, stands):
+    """Write the gaps of a column that are high enough and have a floor."""
+    found, floor, is_free = 0, -1, True
+    for j in range(len(masks)):
+        mask = masks[j]
+        if (mask == 0 and is_free) or (mask == _FULL and not is_free):
+            continue
+        for bit in range(FINE):
+            if bool(mask >> bit & 1) != is_free:
+                continue
+            at = j * FINE + bit
+            if not is_free:
+                floor = at
+            elif floor >= 0 and at - floor >= need:
+                found = _add(solid, box, floor, at, column, found, stands)
+            is_free = not is_free
+    if is_free and floor >= 0:
+        found = _add(solid, box, floor, SKY, column, found, stands)
+    stands.counts[column] = found
+
+
+@njit
+def _add(solid, box, floor, ceiling, column, found, stands):
+    ground = _ground(solid, box, floor)
+    if ground == WET or found == MOST_FLOORS:
+        return found
+    stands.floor[column, found] = floor
+    stands.ceiling[column, found] = ceiling
+    stands.ground[column, found] = ground
+    return found + 1
+
+
+@njit
+def _ground(solid, box, floor):
+    """Return the largest class of what a body stands on at a height; unknown counts as none."""
+    nx, ny, nz = solid.kinds.shape
+    top, found = (floor - 1) // FINE, 0
+    for i in range(max(0, int(np.floor(box[0]))), min(nx - 1, int(np.floor(box[2]))) + 1):
+        for k in range(max(0, int(np.floor(box[1]))), min(nz - 1, int(np.floor(box[3]))) + 1):
+            for j in range(max(0, top - 1), min(ny - 1, top) + 1):
+                kind = solid.kinds[i, j, k]
+                if kind == 0:
+                    continue
+                mask = _cell_mask(solid, kind, box, i, k)
+                if mask >> (floor - 1 - j * FINE) & 1 and solid.classes[i, j, k] != 255:
+                    found = max(found, int(solid.classes[i, j, k]))
+    return found
+
+
+JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
+SLIM = 0.4  # Of a player's scale: where cluttered scans leave no floor, a camera still fits.
+DROP = 3.0  # Blocks: from higher a fall hurts.
+COARSE_M = 0.15  # Smaller blocks need no columns at their corners.
+SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
+_LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
+_FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the first to the last.
+
+
+@dataclass(frozen=True)
+class WalkRule:
+    """How one walks; lengths are those of a player of the game's size.
+
+    ``scale`` None takes the volume's blocks a metre. ``on_furniture`` lets one stand on what is
+    labelled chair to furniture, and on beds, as the game does; where nothing is labelled one may
+    anyway. ``at_corners`` adds the columns in which a body's side touches that of a block, where
+    shortest ways bend; not where blocks are so small that it matters little.
+    """
+
+    scale: float | None = None
+    step: float = STEP_HEIGHT
+    jump: bool = False
+    drop: float = DROP
+    on_furniture: bool = False
+    opens_doors: bool = True
+    at_corners: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class WalkGraph:
+    """N places to stand and the E steps between them, in rows: those of place n go to
+    ``edge_to[edge_start[n]:edge_start[n + 1]]``. Steps down may have no way back.
+    """  # noqa: D205
+
+    feet: np.ndarray  # float64 [N, 3], world block coordinates
+    headroom: np.ndarray  # float64 [N], blocks over the feet, inf under the open sky
+    ground: np.ndarray  # uint8 [N], the class of what is under the feet
+    edge_start: np.ndarray  # int64 [N + 1]
+    edge_to: np.ndarray  # int32 [E]
+    edge_m: np.ndarray  # float64 [E], metres of the room
+    scale: float  # of the player
+    blocks_per_metre: float
+    spacing: float  # blocks from a column to the next, at most
+
+    def __len__(self) -> int:
+        return len(self.feet)
+
+    def nearest(self, position: np.ndarray | tuple[float, float, float]) -> int:
+        """Return the place nearest to a position in world blocks. Raises ValueError: none is."""
+        if not len(self):
+            raise ValueError("the graph has no place to stand")
+        return int(((self.feet - np.asarray(position)) ** 2).sum(axis=1).argmin())
+
+    def part(self, places: np.ndarray) -> "WalkGraph":
+        """Return the graph of some places alone, in their order, with the steps between them."""
+        number = np.full(len(self), -1, np.int32)
+        number[places] = np.arange(len(places))
+        kept = (number[self.edge_from] >= 0) & (number[self.edge_to] >= 0)
+        begins, ends = number[self.edge_from[kept]], number[self.edge_to[kept]]
+        order = np.argsort(begins, kind="stable")
+        counts = np.bincount(begins, minlength=len(places))
+        return replace(
+            self,
+            feet=self.feet[places],
+            headroom=self.headroom[places],
+            ground=self.ground[places],
+            edge_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+            edge_to=ends[order],
+            edge_m=self.edge_m[kept][order],
+        )
+
+    @cached_property
+    def edge_from(self) -> np.ndarray:
+        """Int32 [E]: where each step begins."""
+        return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.edge_start))
+
+    @cached_property
+    def backward(self) -> "tuple[np.ndarray, np.ndarray, np.ndarray]":
+        """The steps turned round: ``edge_start``, ``edge_to`` and ``edge_m``."""
+        order = np.argsort(self.edge_to, kind="stable")
+        counts = np.bincount(self.edge_to, minlength=len(self))
+        start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        return start, self.edge_from[order], self.edge_m[order]
+
+
+def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
+    """Return the walkable graph of a volume.
+
+    Args:
+        volume: the blocks; what is beyond them is air without a floor.
+        rule: how one walks.
+
+    Example:
+        >>> from world2minecraft.minecraft.physics.shortest_paths import shortest_path
+        >>> graph = walk_graph(volume)                                  # doctest: +SKIP
+        >>> path = shortest_path(graph, graph.nearest(spawn), goal)     # doctest: +SKIP
+    """
+    how = rule or WalkRule()
+    scale = volume.blocks_per_metre if how.scale is None else how.scale
+    width, height = WIDTH * scale, HEIGHT * scale
+    per_block = columns_per_block(volume.blocks_per_metre, width)
+    half = width / 2 if how.at_corners and 1 / volume.blocks_per_metre >= COARSE_M else None
+    xs, zs = (_columns(volume.states.shape[axis], per_block, half) for axis in (0, 2))
+    stands = stands_of(solid_of(volume, how.opens_doors), (xs, zs), width / 2, height)
+    if not how.on_furniture:
+        stands = _without_furniture(stands)
+    deep = len(zs)
+    column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
+    first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
+    climb = (JUMP_HEIGHT if how.jump else how.step) * scale * FINE + 1e-6
+    limits = (climb, how.drop * scale * FINE + 1e-6, how.step * scale * FINE + 1e-6)
+    need = int(np.ceil(height * FINE - 1e-6))
+    start, to = _steps(stands.counts, stands.floor, stands.ceiling, first, deep, need, limits)
+    feet = np.stack([xs[column // deep], np.zeros(len(column)), zs[column % deep]], axis=1)
+    feet += np.array(volume.corner)
+    feet[:, 1] += stands.floor[column, level] / FINE
+    ceiling = stands.ceiling[column, level]
+    rooms = np.where(ceiling == SKY, np.inf, (ceiling - stands.floor[column, level]) / FINE)
+    origin = np.repeat(np.arange(len(feet)), np.diff(start))
+    length_m = np.linalg.norm(feet[to] - feet[origin], axis=1) / volume.blocks_per_metre
+    return WalkGraph(
+        feet, rooms, stands.ground[column, level], start, to, length_m, scale,
+        volume.blocks_per_metre, 1 / per_block,
+    )  # fmt: skip
+
+
+def _columns(count: int, per_block: int, half: float | None) -> np.ndarray:
+    """Return where columns are along a side of so many cells, float64, in cells."""
+    even = 0.5 + np.arange(per_block * (count - 1) + 1 if count else 0) / per_block
+    if half is None:
+        return even
+    touching = np.add.outer(np.arange(count + 1), [-half, half]).ravel()
+    touching = touching[(touching > 0.5) & (touching < count - 0.5)]
+    return np.unique(np.round(np.concatenate([even, touching]), 9))
+
+
+def columns_per_block(blocks_per_metre: float, width: float) -> int:
+    """Return how many columns a block has: near each other, and no farther than a body is wide."""
+    return max(1, round(1 / (SPACING_M * blocks_per_metre)), int(np.ceil(1 / width - 1e-6)))
+
+
+def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
+    """Return the boxes of a volume for the kernels; liquids count as full and are no ground."""
+    world = BlockWorld.of_volume(doors_opened(volume) if opens_doors else volume)
+    wet = np.array([state.startswith(_LIQUIDS) for state in volume.palette])[volume.states]
+    shapes = [*world.shapes, FULL_CUBE]
+    kinds = np.where(wet, len(shapes) - 1, world.kinds).astype(np.uint16)
+    beds = np.array([state.partition("[")[0].endswith("_bed") for state in volume.palette])
+    classes = np.where(beds[volume.states], int(SemanticClass.BED), volume.semantic)
+    counts = [len(shape) for shape in shapes]
+    full = [len(shape) == 1 and np.array_equal(shape, FULL_CUBE) for shape in shapes]
+    return Solid(
+        kinds,
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+        np.concatenate(shapes).astype(np.float64).reshape(-1, 6),
+        np.where(wet, WET, classes).astype(np.uint8),
+        np.array(full),
+    )
+
+
+def _without_furniture(stands: Stands) -> Stands:
+    """Return the stands whose ground is none of chair, bed, sofa, table, screen and furniture."""
+    low, high = _FURNITURE
+    there = np.arange(stands.floor.shape[1]) < stands.counts[:, None]
+    kept = there & ~((stands.ground >= low) & (stands.ground <= high))
+    order = np.argsort(~kept, axis=1, kind="stable")
+    moved = [np.take_along_axis(part, order, axis=1) for part in stands[1:]]
+    return Stands(kept.sum(axis=1).astype(np.int32), *moved)
+
+
+@njit
+def _steps(count, floor, ceiling, first, deep, need, limits):
+    """Return ``edge_start`` and ``edge_to`` of all stands."""
+    total = first[-1]
+    start, to = np.zeros(total + 1, np.int64), np.empty(total * 8, np.int32)
+    edges, wide = 0, len(count) // deep if deep > 0 else 0
+    for column in range(len(count)):
+        x, z = column // deep, column % deep
+        for level in range(count[column]):
+            low, high = floor[column, level], ceiling[column, level]
+            for dx in range(-1, 2):
+                for dz in range(-1, 2):
+                    if (dx == 0 and dz == 0) or not (0 <= x + dx < wide and 0 <= z + dz < deep):
+                        continue
+                    other = column + dx * deep + dz
+                    there = _reached(count, floor, ceiling, other, low, high, need, limits)
+                    if there < 0:
+                        continue
+                    goal = floor[other, there]
+                    lift, least = max(low, goal), min(low, goal) - limits[2]
+                    if dx != 0 and dz != 0:
+                        one = _passes(count, floor, ceiling, column + dz, lift, least, need)
+                        two = _passes(count, floor, ceiling, column + dx * deep, lift, least, need)
+                        if not (one and two):
+                            continue
+                    to[edges] = first[other] + there
+                    edges += 1
+            start[first[column] + level + 1] = edges
+    return start, to[:edges].copy()
+
+
+@njit
+def _reached(count, floor, ceiling, other, low, high, need, limits):
+    """Return the stand of another column that one step leads to; -1 for none."""
+    for n in range(count[other]):
+        goal = floor[other, n]
+        lift = max(low, goal)
+        if goal - low > limits[0] or low - goal > limits[1]:
+            continue
+        if high - lift >= need and ceiling[other, n] - lift >= need:
+            return n
+    return -1
+
+
+@njit
+def _passes(count, floor, ceiling, side, lift, least, need):
+    """Whether a body at a height may brush a column that it passes by, and would not fall there."""
+    for n in range(count[side]):
+        if least <= floor[side, n] <= lift and ceiling[side, n] - lift >= need:
+            return True
+    return False

@@ -1,0 +1,198 @@
+"""What is seen of a block state: boxes, where the collision table shows something else.
+
+In: a state's text. Out: the boxes of its look within the unit cube. One data file written by hand,
+``data/visual_boxes.json``, says what is seen of fences, walls, signs, torches, plants and others;
+all else looks as it collides.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache, lru_cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.collision_shapes import boxes_of
+
+# Which block states are seen at full brightness, whatever the light.
+
+LUMINOUS = (
+    "sea_lantern",
+    "glowstone",
+    "shroomlight",
+    "froglight",
+    "lantern",
+    "torch",
+    "end_rod",
+    "redstone_lamp[lit=true",
+    "beacon",
+    "candle",
+)
+DARK = ("torchflower", "lit=false")  # A flower, and candles and torches that do not burn.
+
+
+def is_luminous(state: str) -> bool:
+    """Tell whether a state is drawn at full brightness."""
+    return any(part in state for part in LUMINOUS) and not any(part in state for part in DARK)
+
+
+DATA_FILE = "data/visual_boxes.json"
+# Clockwise from above, from the side that the data file's boxes are written for.
+QUARTERS = ("north", "east", "south", "west")
+
+
+@dataclass(frozen=True, eq=False)
+class VisualFamily:
+    """Blocks that look alike: the patterns of their names and the parts that are drawn."""
+
+    name: str
+    patterns: tuple[str, ...]
+    needs: tuple[str, ...]
+    turn: str
+    rotation: str
+    point: str
+    axis: str
+    parts: tuple[Mapping[str, Any], ...]
+
+
+@lru_cache(maxsize=1 << 16)
+def visual_boxes_of(state: str) -> np.ndarray:
+    """Return the boxes that are seen of a block state.
+
+    Args:
+        state: its text; missing properties count as the defaults.
+
+    Returns:
+        Read-only float32 [N, 6]: x0 y0 z0 x1 y1 z1 in block units within the unit cube, x east,
+        y up, z south. The boxes share no volume, but for the edges of vines. Air, barriers and
+        light blocks have none.
+
+    Raises:
+        UsageError: the text is no block state.
+
+    Example:
+        >>> visual_boxes_of("minecraft:red_carpet").tolist()
+        [[0.0, 0.0, 0.0, 1.0, 0.0625, 1.0]]
+    """
+    whole = complete(parse_state(state))
+    family = family_of(whole)
+    boxes = _table_boxes(whole) if family is None else _family_boxes(family, whole)
+    boxes.flags.writeable = False
+    return boxes
+
+
+def family_of(state: BlockState) -> VisualFamily | None:
+    """Return the family whose look was written by hand for a complete state, or None."""
+    name = state.name.partition(":")[2]
+    properties = dict(state.properties)
+    for family in visual_families():
+        if all(key in properties for key in family.needs) and any(
+            fnmatchcase(name, pattern) for pattern in family.patterns
+        ):
+            return family
+    return None
+
+
+@cache
+def visual_families() -> tuple[VisualFamily, ...]:
+    """Read the shipped file, once; the first family that fits a block counts."""
+    raw = json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
+    return tuple(_family(entry) for entry in raw["families"])
+
+
+def _family(entry: Mapping[str, Any]) -> VisualFamily:
+    turn, rotation, point, axis = (
+        entry.get(key, "") for key in ("turn", "rotation", "point", "axis")
+    )
+    turning = [key for key in (turn, rotation, point, axis) if key]
+    sides = QUARTERS if any("sides" in part for part in entry["parts"]) else ()
+    return VisualFamily(
+        name=entry["name"],
+        patterns=tuple(entry["blocks"]),
+        needs=(*entry.get("needs", ()), *turning, *sides),
+        turn=turn,
+        rotation=rotation,
+        point=point,
+        axis=axis,
+        parts=tuple(entry["parts"]),
+    )
+
+
+def _table_boxes(state: BlockState) -> np.ndarray:
+    """Return the collision boxes within the unit cube."""
+    boxes = np.clip(boxes_of(str(state)), 0, 1)
+    return boxes[(boxes[:, 3:] > boxes[:, :3]).all(axis=1)]
+
+
+def _family_boxes(family: VisualFamily, state: BlockState) -> np.ndarray:
+    values = dict(state.properties)
+    drawn = [box for part in family.parts for box in _part_boxes(part, values)]
+    boxes = np.array(drawn, np.float64).reshape(-1, 6)
+    if family.turn:
+        boxes = _turned(boxes, _quarter(values[family.turn]))
+    if family.rotation:
+        boxes = _turned(boxes, _quarter_of_rotation(values[family.rotation]))
+    if family.point:
+        boxes = _pointed(boxes, values[family.point])
+    if family.axis and values[family.axis] != "y":
+        boxes = _turned(_pointed(boxes, "north"), values[family.axis] == "x")
+    return (boxes / 16).astype(np.float32)
+
+
+def _part_boxes(part: Mapping[str, Any], values: Mapping[str, str]) -> Iterator[list[float]]:
+    """Yield the boxes of a part, in sixteenths, where the state draws it."""
+    when = part.get("when", {})
+    cases = when if isinstance(when, list) else [when]
+    if not any(all(_holds(values, *pair) for pair in case.items()) for case in cases):
+        return
+    if "sides" not in part and "faces" not in part:
+        yield from part["boxes"]
+        return
+    wanted = part.get("sides", part.get("faces"))
+    boxes = np.array(part["boxes"], np.float64)
+    for quarter, side in enumerate(QUARTERS):
+        if _holds(values, side, wanted):
+            yield from _turned(boxes, quarter).tolist()
+    if "faces" in part:
+        for side in ("up", "down"):
+            if _holds(values, side, wanted):
+                upright = boxes[:, [0, 2, 1, 3, 5, 4]]  # The north face's plate, laid down.
+                yield from _pointed(upright, "down" if side == "up" else "up").tolist()
+
+
+def _holds(values: Mapping[str, str], key: str, wanted: str) -> bool:
+    return values.get(key, "") in wanted.split("|")
+
+
+def _quarter(facing: str) -> int:
+    """Return the quarter turns, clockwise from above, from north to a side."""
+    return QUARTERS.index(facing) if facing in QUARTERS else 0
+
+
+def _quarter_of_rotation(rotation: str) -> int:
+    """Return the nearest quarter turn from north: 0 looks south, and it grows clockwise."""
+    sixteenths = int(rotation) % 16 if rotation.isdecimal() and len(rotation) < 4 else 0
+    return ((sixteenths + 2) // 4 + 2) % 4
+
+
+def _turned(boxes: np.ndarray, quarters: int) -> np.ndarray:
+    """Turn boxes, float64 [N, 6] in sixteenths, clockwise from above: x' = 16 - z, z' = x."""
+    for _ in range(int(quarters) % 4):
+        x0, y0, z0, x1, y1, z1 = boxes.T
+        boxes = np.stack([16 - z1, y0, x0, 16 - z0, y1, x1], axis=1)
+    return boxes
+
+
+def _pointed(boxes: np.ndarray, facing: str) -> np.ndarray:
+    """Tip boxes that are written for up towards one of the six sides."""
+    x0, y0, z0, x1, y1, z1 = boxes.T
+    if facing == "down":
+        return np.stack([x0, 16 - y1, z0, x1, 16 - y0, z1], axis=1)
+    if facing in QUARTERS:
+        north = np.stack([x0, z0, 16 - y1, x1, z1, 16 - y0], axis=1)
+        return _turned(north, _quarter(facing))
+    return boxes

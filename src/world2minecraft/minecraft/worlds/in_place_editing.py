@@ -1,0 +1,337 @@
+"""Chunks of 1.18 and later with some blocks changed, everything else in them kept as it is."""
+
+import struct
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import AIR, BlockEntity
+from world2minecraft.minecraft.bit_packing import (
+    SECTION,
+    pack_section,
+    unpack_section,
+    words_of_today,
+)
+from world2minecraft.minecraft.nbt import Byte, Long, NbtLimits, NbtReader
+from world2minecraft.minecraft.state_nbt import state_entry, state_text
+from world2minecraft.minecraft.worlds.anvil import (
+    EXTERNAL,
+    MAX_CHUNK_BYTES,
+    SECTOR,
+    ZLIB,
+    region_position,
+    unpack_chunk,
+)
+
+# Region files with some chunks replaced: every other chunk keeps its bytes as they lie there.
+#
+# Reading a whole world and writing it again would pack each of its chunks anew, and lose what a mod
+# keeps there. Here the table is made anew, and the records of untouched chunks are copied.
+
+Place = tuple[int, int]
+MAX_EDITED_BYTES = 128 << 20  # It is held three times; regions of players have 2 to 20 MB.
+LEVEL = 1  # As anvil.pack_region: a third of the time of 6, and most of a file is padding.
+MOST_SECTORS = 255  # A longer record lies in a file of its own.
+_HEAD = struct.Struct(">IB")
+
+
+@dataclass(frozen=True)
+class RegionFile:
+    """A region file as it lies on disk.
+
+    ``records`` are the packed chunks by their place in the world, each with the byte before it
+    that says how it is packed; ``times`` are when each was saved, in seconds.
+    """
+
+    path: Path
+    records: Mapping[Place, bytes] = field(default_factory=dict)
+    times: Mapping[Place, int] = field(default_factory=dict)
+
+    def chunk(self, place: Place) -> bytes | None:
+        """Return the NBT of a chunk, or None where the file has none there.
+
+        Raises:
+            DamagedFileError: it is not packed as it says. LimitError: it is too large.
+        """
+        record = self.records.get(place)
+        if record is None:
+            return None
+        kind, packed = record[0], record[1:]
+        source = self.path
+        if kind & EXTERNAL:
+            source = self.path.parent / outside_name(place)
+            packed = read_bytes(source, MAX_CHUNK_BYTES)
+        return unpack_chunk(packed, kind & ~EXTERNAL, source, place)
+
+    def with_chunks(self, chunks: Mapping[Place, bytes]) -> dict[str, bytes | None]:
+        """Return the files that change when chunks are put in: their bytes, by name.
+
+        None stands for a file that must go. Nothing is written.
+
+        Args:
+            chunks: NBT by place, all within this region.
+        """
+        records, changed = dict(self.records), {}
+        for place, data in sorted(chunks.items()):
+            packed, name = zlib.compress(data, LEVEL), outside_name(place)
+            was_outside = bool(records.get(place, b"\0")[0] & EXTERNAL)
+            if len(packed) + _HEAD.size > MOST_SECTORS * SECTOR:
+                changed[name], records[place] = packed, bytes([ZLIB | EXTERNAL])
+                continue
+            records[place] = bytes([ZLIB]) + packed
+            if was_outside:
+                changed[name] = None
+        return {self.path.name: _packed(records, self.times), **changed}
+
+
+def read_region_file(path: Path) -> RegionFile:
+    """Read a region file without unpacking its chunks; a missing or empty file has none.
+
+    Raises:
+        DamagedFileError: it is no region file. LimitError: it is too large.
+    """
+    region_x, region_z = region_position(path)
+    data = read_bytes(path, MAX_EDITED_BYTES) if path.exists() else b""
+    if not data:
+        return RegionFile(path)
+    if len(data) < 2 * SECTOR:
+        raise DamagedFileError(path, f"is no region file: it has {len(data)} bytes, no whole head")
+    locations, times = np.frombuffer(data, ">u4", 2048).reshape(2, 1024).tolist()
+    records: dict[Place, bytes] = {}
+    saved: dict[Place, int] = {}
+    for slot, location in enumerate(locations):
+        if location:
+            place = (region_x * 32 + slot % 32, region_z * 32 + slot // 32)
+            records[place] = _record(data, location, path, place)
+            saved[place] = times[slot]
+    return RegionFile(path, records, saved)
+
+
+def outside_name(place: Place) -> str:
+    """Return the name of the file that holds a chunk too large for its region file."""
+    return f"c.{place[0]}.{place[1]}.mcc"
+
+
+def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
+    start, sectors = (location >> 8) * SECTOR, location & 255
+    if start < 2 * SECTOR or not sectors or start + _HEAD.size > len(data):
+        raise DamagedFileError(path, f"chunk {place} lies on the head or beyond the end")
+    length = _HEAD.unpack_from(data, start)[0]
+    record = data[start + 4 : start + 4 + length]
+    if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
+        raise DamagedFileError(path, f"chunk {place} says {length:,} bytes and holds fewer")
+    return record
+
+
+def _packed(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes:
+    table = np.zeros((2, 1024), ">u4")
+    body: list[bytes] = []
+    sector = 2
+    for place, record in sorted(records.items(), key=lambda item: item[0][::-1]):
+        whole = len(record).to_bytes(4, "big") + record
+        whole += bytes(-len(whole) % SECTOR)
+        slot = (place[0] & 31) + (place[1] & 31) * 32
+        table[0, slot] = sector << 8 | len(whole) // SECTOR
+        table[1, slot] = times.get(place, 0)
+        body.append(whole)
+        sector += len(whole) // SECTOR
+    return b"".join([table.tobytes(), *body])
+
+
+FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
+FULL = ("minecraft:full", "full")
+LIMITS = NbtLimits(depth=512, values=2_000_000, bytes=64 << 20)
+LIGHT_KEYS = ("BlockLight", "SkyLight")
+VOID_BIOMES = {"palette": ["minecraft:the_void"]}
+
+
+@dataclass
+class StateNumbers:
+    """The states of many chunks, numbered together, with the NBT that each was first met as."""
+
+    texts: list[str] = field(default_factory=lambda: [AIR])
+    entries: dict[int, dict[str, Any]] = field(default_factory=dict)
+    _numbers: dict[str, int] = field(default_factory=lambda: {AIR: 0})
+
+    def number(self, state: str, entry: dict[str, Any] | None = None) -> int:
+        """Return the number of a state; ``entry`` is its NBT where it was read from some."""
+        if state not in self._numbers:
+            if len(self.texts) > np.iinfo(np.uint16).max:
+                raise InputError("palette", "the place holds more than 65,536 block states")
+            self._numbers[state] = len(self.texts)
+            self.texts.append(state)
+        number = self._numbers[state]
+        if entry is not None:
+            self.entries.setdefault(number, entry)
+        return number
+
+
+class _Reader(NbtReader):
+    must_end = False  # The game ignores bytes after a chunk, and other servers leave some there.
+
+
+def open_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
+    """Return the tree of a chunk; None where the game has not finished making it.
+
+    Args:
+        data: the chunk's NBT.
+        place: its position in the world, in chunks.
+        path: the file that errors name.
+
+    Raises:
+        DamagedFileError: it is no chunk, or another one. LimitError: it is too large.
+        InputError: it is of a game before 1.18.
+    """
+    _, root = _Reader(data, path, LIMITS).root()
+    version = root.get("DataVersion", 0)
+    if not isinstance(version, int) or version < FIRST_DATA_VERSION:
+        reason = f"chunk {place} is of a game before 1.18 (data version {version})"
+        raise InputError(path, f"{reason}; open the world once in a newer game and go there")
+    stated = (root.get("xPos"), root.get("zPos"))
+    if stated != place:
+        raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
+    for key in ("sections", "block_entities"):
+        held = root.setdefault(key, [])
+        if not isinstance(held, list) or not all(isinstance(entry, dict) for entry in held):
+            raise DamagedFileError(path, f"chunk {place} has {key} that are no list of compounds")
+    if not all(isinstance(section.get("Y"), int) for section in root["sections"]):
+        raise DamagedFileError(path, f"chunk {place} has a section without a height")
+    return root if root.get("Status") in FULL else None
+
+
+def new_chunk(place: Place, data_version: int, min_section: int) -> dict[str, Any]:
+    """Return a chunk of air that the game takes as finished.
+
+    Args:
+        place: its position in the world, in chunks.
+        data_version: that of the world.
+        min_section: the lowest section, as -4.
+    """
+    return {
+        "DataVersion": data_version,
+        "xPos": place[0],
+        "zPos": place[1],
+        "yPos": min_section,
+        "Status": FULL[0],
+        "LastUpdate": Long(0),
+        "InhabitedTime": Long(0),
+        "isLightOn": Byte(0),
+        "Heightmaps": {},
+        "structures": {"References": {}, "starts": {}},
+        "block_ticks": [],
+        "fluid_ticks": [],
+        "PostProcessing": [],
+        "block_entities": [],
+        "sections": [],
+    }
+
+
+def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> dict[int, np.ndarray]:
+    """Return the blocks of a chunk: uint16 [16, 16, 16] (x, y, z) by section.
+
+    Raises:
+        DamagedFileError: a section is broken.
+    """
+    found = {}
+    for section in root["sections"]:
+        try:
+            blocks = section.get("block_states")
+            if blocks is None:
+                continue
+            local = [numbers.number(state_text(entry), entry) for entry in blocks["palette"]]
+            words = blocks.get("data", np.zeros(0, np.int64)).view(np.uint64)
+            place = int(section["Y"])
+        except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
+            raise DamagedFileError(path, f"has a broken section ({error})") from error
+        cells = np.zeros((16, 16, 16), np.uint16)
+        is_sized = 1 <= len(local) <= SECTION
+        packed = words_of_today(words, len(local), straddles=False) if is_sized else None
+        if packed is None:
+            reason = f"{len(local)} states in {len(words)} words"
+            raise DamagedFileError(path, f"section {place} has {reason}")
+        if not unpack_section(packed, np.array(local, np.uint16), cells, np.zeros(3, np.int64)):
+            raise DamagedFileError(path, f"section {place} points outside its palette")
+        found[place] = cells
+    return found
+
+
+def set_section(root: dict[str, Any], place: int, cells: np.ndarray, numbers: StateNumbers) -> None:
+    """Put blocks into a chunk's tree, in place; the section is made where there is none.
+
+    Args:
+        root: the chunk.
+        place: the section.
+        cells: uint16 [16, 16, 16], numbers of ``numbers``.
+        numbers: the states.
+    """
+    met = np.zeros(SECTION, np.uint16)
+    words = np.zeros(SECTION // 4, np.uint64)
+    blank = np.full(len(numbers.texts), -1, np.int32)
+    count, used = pack_section(cells, np.zeros(3, np.int64), blank, met, words)
+    version = root["DataVersion"]
+    blocks: dict[str, Any] = {
+        "palette": [
+            numbers.entries.get(number) or state_entry(numbers.texts[number], version)
+            for number in met[:count].tolist()
+        ]
+    }
+    if used:
+        blocks["data"] = words[:used].view(np.int64)
+    for section in root["sections"]:
+        if int(section["Y"]) == place:
+            section["block_states"] = blocks
+            section.setdefault("biomes", VOID_BIOMES)
+            return
+    near = min(root["sections"], key=lambda s: abs(int(s["Y"]) - place), default={})
+    biomes = near.get("biomes", VOID_BIOMES)
+    root["sections"].append({"Y": Byte(place), "block_states": blocks, "biomes": biomes})
+    root["sections"].sort(key=lambda section: int(section["Y"]))
+
+
+def data_of(root: dict[str, Any], path: Path) -> list[BlockEntity]:
+    """Return the block entities of a chunk.
+
+    Raises:
+        DamagedFileError: one has no id or no place.
+    """
+    found = []
+    for nbt in root["block_entities"]:
+        try:
+            rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
+            position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
+            found.append(BlockEntity(position, str(nbt["id"]), rest))
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise DamagedFileError(path, "has a block entity without id and place") from error
+    return found
+
+
+def set_data(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:
+    """Make these the block entities of a chunk, in place."""
+    root["block_entities"] = [
+        {
+            **entity.nbt,
+            "id": entity.id,
+            **dict(zip("xyz", (int(v) for v in entity.block_pos), strict=True)),
+        }
+        for entity in entities
+    ]
+
+
+def forget_light(root: dict[str, Any]) -> None:
+    """Let the game make light and heights of a changed chunk anew, when it loads it.
+
+    Servers that keep their light in tags of their own (Paper) look at those alone.
+    """
+    root["isLightOn"] = Byte(0)
+    root["Heightmaps"] = {}
+    for key in [key for key in root if key.startswith("starlight.")]:
+        del root[key]
+    for section in root["sections"]:
+        for key in [k for k in section if k in LIGHT_KEYS or k.startswith("starlight.")]:
+            del section[key]

@@ -1,0 +1,223 @@
+"""The agent that is a vision-language model: it looks, says what it does, and does that.
+
+A reply that cannot be read after two repairs is INVALID: a decision without moves, told as such. A
+server that does not answer makes a failed one. Neither is ever replaced by a move of our own.
+"""
+
+import math
+from collections.abc import Sequence
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_messages import MOST_PX, Picture, at_most, check_most_px
+from world2minecraft.external_models.chat_transport import BusyServerError, RefusedQuestionError
+from world2minecraft.external_models.structured_replies import Try, ask_form
+from world2minecraft.navigation.agents.action_format import MOST_MOVES, step_form
+from world2minecraft.navigation.agents.values import Decision, Sight, Task
+from world2minecraft.navigation.agents.vlm_prompts import (
+    MAPS,
+    MapKind,
+    Moment,
+    moment_turn,
+    system_turn,
+)
+from world2minecraft.navigation.values import Move, Stance
+
+# Where an agent has been, in words that it could have counted itself: steps ahead, to the side.
+#
+# Directions are those of the start: x metres ahead of it, and to its right. Nothing of the scene's
+# map is in it; a model that reads it knows what odometry knows.
+
+MOST_PLACES = 12  # Of a map in words; those between are left out evenly.
+LEAST_M = 0.5  # Places nearer to the last one are the same place.
+
+
+def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[float, float]:
+    """Return how far a stance is ahead of the start and to its right, metres.
+
+    Example:
+        >>> relative_m(Stance(0, 64, 0, 90), Stance(-4, 64, 0, 0), 0.25)  # Yaw 90 looks west.
+        (1.0, 0.0)
+    """
+    yaw = math.radians(start.yaw_deg)
+    x, z = stance.x - start.x, stance.z - start.z
+    ahead = -math.sin(yaw) * x + math.cos(yaw) * z
+    right = -math.cos(yaw) * x - math.sin(yaw) * z
+    return (
+        round(ahead * metres_per_block, 2) + 0.0,
+        round(right * metres_per_block, 2) + 0.0,
+    )
+
+
+def facing(start: Stance, stance: Stance) -> str:
+    """Return where one looks, by the direction of the start.
+
+    Example:
+        >>> facing(Stance(0, 0, 0, 170), Stance(0, 0, 0, -100))
+        '90 degrees right of the start'
+    """
+    turned = (stance.yaw_deg - start.yaw_deg + 180) % 360 - 180
+    if abs(turned) < 0.5:
+        return "as at the start"
+    if abs(turned) > 179.5:
+        return "back"
+    return f"{abs(turned):.0f} degrees {'right' if turned > 0 else 'left'} of the start"
+
+
+def trail_text(stances: Sequence[Stance], metres_per_block: float) -> str:
+    """Return a map in words: the places that were visited, the last one where one stands."""
+    start, here = stances[0], stances[-1]
+    kept = [0]
+    for number, stance in enumerate(stances):
+        last = stances[kept[-1]]
+        away = math.dist(stance.feet, last.feet) * metres_per_block
+        if away >= LEAST_M:
+            kept.append(number)
+    if len(kept) > MOST_PLACES:
+        last_index = len(kept) - 1
+        kept = [kept[round(i * last_index / (MOST_PLACES - 1))] for i in range(MOST_PLACES)]
+    lines = []
+    for place, number in enumerate(kept):
+        ahead, right = relative_m(start, stances[number], metres_per_block)
+        lines.append(f"Place {place}: {_place(ahead, right)} (move {number})")
+    ahead, right = relative_m(start, here, metres_per_block)
+    lines.append(f"You are {_place(ahead, right)} and look {facing(start, here)}.")
+    return "\n".join(lines)
+
+
+def _place(ahead: float, right: float) -> str:
+    if not ahead and not right:
+        return "at the start"
+    words = []
+    if ahead:
+        words.append(f"{abs(ahead):g} m {'ahead of' if ahead > 0 else 'behind'} the start")
+    if right:
+        words.append(f"{abs(right):g} m to its {'right' if right > 0 else 'left'}")
+    return ", ".join(words)
+
+
+JPEG_QUALITY = 85
+HISTORY = 3  # Pictures before the one of now, as the paper shows them.
+MOST_HISTORY = 8
+MOST_PROGRESS = 400  # Characters of its own words that a model is told again.
+MOST_DONE = 16
+
+
+class ModelAgent:
+    """Asks a language model at each step.
+
+    Args:
+        model: whom to ask.
+        chunk: how many moves it may give at once, 1 to 4.
+        history: how many views of before it is shown, 0 to 8.
+        map_kind: ``text`` tells it in words where it was; ``plan`` shows it a plan of the building
+            with its way, which is more than its eyes know.
+        most_px: pixels of a picture that it is shown; larger ones are made smaller.
+    """
+
+    is_privileged = is_blind = False
+
+    def __init__(
+        self,
+        model: ChatModel,
+        *,
+        chunk: int = MOST_MOVES,
+        history: int = HISTORY,
+        map_kind: MapKind = "none",
+        most_px: int = MOST_PX,
+    ):
+        if not 1 <= chunk <= MOST_MOVES:
+            raise UsageError(f"a model gives 1 to {MOST_MOVES} moves at once, not {chunk}")
+        if not 0 <= history <= MOST_HISTORY:
+            raise UsageError(f"a model is shown 0 to {MOST_HISTORY} views of before, not {history}")
+        if map_kind not in MAPS:
+            raise UnknownNameError("map", map_kind, MAPS)
+        check_most_px(most_px)
+        self.name, self.model = model.name, model
+        self.chunk, self.history, self.map_kind = chunk, history, map_kind
+        self.most_px = most_px
+        self._form = step_form(chunk)
+        self._task: Task | None = None
+        self._forget()
+
+    def begin(self, task: Task) -> None:
+        """Take a task and forget the one before."""
+        self._task = task
+        self._forget()
+
+    def decide(self, sight: Sight) -> Decision:
+        """Look, ask, and return what the model does.
+
+        Raises:
+            BudgetError: a cap is reached. ServerError: the key or the address is wrong.
+        """
+        task = self._task
+        if task is None:
+            raise UsageError("call begin(task) before decide(sight)")
+        self._stances.append(sight.stance)
+        self._done = (self._done + list(sight.done))[-MOST_DONE:]
+        moment = self._moment(task, sight)
+        turns = (system_turn(task, self.chunk), moment_turn(task, moment))
+        self._views = [*self._views, moment.view][-self.history :] if self.history else []
+        try:
+            formed = ask_form(self.model, turns, self._form)
+        except (BusyServerError, RefusedQuestionError) as error:
+            return Decision((), outcome="failed", told={"problem": str(error)})
+        told = {"raw": formed.raw, "tries": [told_of(one) for one in formed.tries]}
+        if formed.value is None:
+            self._refused = formed.problem
+            return Decision((), outcome="invalid", told={**told, "problem": formed.problem})
+        self._refused = ""
+        self._progress = formed.value.progress[:MOST_PROGRESS] or self._progress
+        step = formed.value
+        return Decision(step.moves, step.thought, step.progress, told=told)
+
+    def _moment(self, task: Task, sight: Sight) -> Moment:
+        told_map = ""
+        if self.map_kind == "text":
+            told_map = trail_text(self._stances, task.metres_per_block)
+        plan = None
+        if self.map_kind == "plan":
+            if task.plan is None:
+                raise UsageError("no plan of this scene can be drawn; ask for another map")
+            plan = self._picture(task.plan(self._stances))
+        return Moment(
+            sight.step, self._picture(sight.colour), tuple(self._views), tuple(self._done),
+            self._progress, told_map, self._refused, plan,
+        )  # fmt: skip
+
+    def _picture(self, colour: np.ndarray) -> Picture:
+        return Picture(jpeg(at_most(colour, self.most_px)))
+
+    def _forget(self) -> None:
+        self._views: list[Picture] = []
+        self._stances: list[Stance] = []
+        self._done: list[tuple[Move, bool]] = []
+        self._progress = self._refused = ""
+
+
+def jpeg(colour: np.ndarray) -> bytes:
+    """Return a picture, uint8 [H, W, 3], as JPEG."""
+    stream = BytesIO()
+    Image.fromarray(colour).save(stream, "JPEG", quality=JPEG_QUALITY)
+    return stream.getvalue()
+
+
+def told_of(tried: Try) -> dict[str, Any]:
+    """Return a try for the trace."""
+    reply = tried.reply
+    told: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}
+    if reply is not None:
+        told |= {
+            "raw": reply.text,
+            "tokens": [reply.prompt_tokens, reply.completion_tokens],
+            "latency_s": reply.latency_s,
+            "attempts": reply.attempts,
+            "is_replayed": reply.is_replayed,
+        }
+    return told

@@ -1,0 +1,205 @@
+"""Where wrong pictures of a question may be taken: near its place, by other moves than the way's.
+
+    turned      the next place with another heading
+    other_move  what another move would show
+    mirror      where the last moves lead with left and right exchanged
+    beside      some steps to a side, or back, from here or from the next place: no move leads there
+
+Every place is one that the world's physics leads to.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.navigation.data.keyframes import MOST_FORWARD_M, Mark
+from world2minecraft.navigation.data.pictures import (
+    Album,
+    Pictured,
+    Shot,
+    is_nearly,
+    look_apart,
+    shows_something,
+    unlike,
+)
+from world2minecraft.navigation.values import Move, Stance
+from world2minecraft.navigation.walk_discretization import Walker
+from world2minecraft.navigation.walk_stream import wrapped_deg
+
+# Wrong pictures that are taken for a question: as many as wanted more like the present one.
+
+CHOICES = 4
+MOST_OF_A_KIND = 2  # Of one question: three steps beside would tell the right one by being other.
+MOST_TAKEN = 3  # Pictures that are taken in full for one that is kept.
+
+
+class RankDeck:
+    """Says how many wrong pictures are to be nearer than the right one, so that no rank leads.
+
+    What came of a question is told to it: a rank that is seldom found is asked for more often.
+    """
+
+    def __init__(self, rng: np.random.Generator):
+        self._rng, self._counts = rng, np.zeros(CHOICES, np.int64)
+
+    def wanted(self) -> int:
+        """Return the rank that came least often so far; one of them by chance."""
+        least = np.flatnonzero(self._counts == self._counts.min())
+        return int(self._rng.choice(least))
+
+    def came(self, rank: int) -> None:
+        """Count what came of a question."""
+        self._counts[rank] += 1
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A wrong picture, or of what kind it is to be.
+
+    ``nearer``: more like the present picture than the right one is.
+    """
+
+    kind: str
+    nearer: bool
+    picture: Pictured | None = None
+
+
+class Taker:
+    """Takes the wrong pictures of one question."""
+
+    def __init__(self, album: Album, now: Pictured, right: Pictured):
+        self._album, self._now, self._right = album, now, right
+        self._limit = unlike(now, right)
+
+    def filled(
+        self, plan: Sequence[Slot], places: Sequence[tuple[str, Stance]], most_far: int
+    ) -> list[Slot]:
+        """Return slots with pictures, as far as there are such; a kind that has none comes first.
+
+        Args:
+            plan: what is wanted; a slot that is not filled stays as it is.
+            places: where pictures may be taken, with their kinds, in the order to try.
+            most_far: how many slots that are not nearer are filled.
+        """
+        looks = self._album.look([stance for _, stance in places])
+        left: dict[bool, list[tuple[str, Stance]]] = {True: [], False: []}
+        for place, look in zip(places, looks, strict=True):  # Small pictures say where to go.
+            left[unlike(self._now, look) < self._limit].append(place)
+        slots: list[Slot] = []
+        for slot in plan:
+            is_wanted = slot.nearer or most_far > 0
+            taken = self._one(left[slot.nearer], slots, slot.nearer) if is_wanted else None
+            most_far -= taken is not None and not slot.nearer
+            slots.append(taken or slot)
+        return slots
+
+    def _one(
+        self, left: list[tuple[str, Stance]], slots: Sequence[Slot], near: bool
+    ) -> Slot | None:
+        """Take a picture that differs from the others, and out of what is left; none at times."""
+        kinds = Counter(slot.kind for slot in slots if slot.picture)
+        left[:] = [one for one in left if kinds[one[0]] < MOST_OF_A_KIND]
+        left.sort(key=lambda one: kinds[one[0]])
+        others = (self._right, *(slot.picture for slot in slots if slot.picture))
+        for _ in range(min(MOST_TAKEN, len(left))):
+            kind, stance = left.pop(0)
+            (shot,) = self._album.take([stance])
+            as_wanted = (unlike(self._now, shot) < self._limit) == near
+            if as_wanted and differs(shot, self._now, others):
+                name = f"{self._right.image.removesuffix('.jpg')}_{kind}{len(slots)}.jpg"
+                return Slot(kind, near, self._album.write(name, stance, shot))
+        return None
+
+
+def differs(one: Pictured | Shot, now: Pictured, others: Sequence[Pictured]) -> bool:
+    """Whether a picture is something to choose: not the present one, not one of the others."""
+    if not shows_something(one) or is_nearly(one, now):
+        return False
+    return all(look_apart(one, other) for other in others)
+
+
+TAKEN = ("turned", "other_move", "mirror", "beside")
+TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
+OTHER_TURNS = (1, 2, 4)  # Moves: from as like as can be to as far as a keyframe turns.
+BESIDE_M = (0.25, 0.5, 0.75)  # From here; from the next place the middle one.
+MIRRORED = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
+MIRRORED_RUNS = 3  # As many as pictures are shown.
+
+
+@dataclass(frozen=True)
+class Scout:
+    """Who goes to such places. ``walker`` is the world's physics."""
+
+    walker: Walker
+    metres_per_block: float
+
+    def places(self, kind: str, marks: Sequence[Mark], step: int) -> list[Stance]:
+        """Return where pictures of a kind may be taken, none of them the right one's stance.
+
+        Args:
+            kind: of ``TAKEN``.
+            marks: the keyframes of a way.
+            step: which is the current one.
+        """
+        right = marks[step + 1].stance
+        found = {
+            "turned": lambda: [_turned(right, turn) for turn in TURNS_DEG],
+            "other_move": lambda: self._other_moves(marks[step]),
+            "mirror": lambda: self._mirrored(marks, step),
+            "beside": lambda: (
+                self._beside(marks[step].stance, BESIDE_M) + self._beside(right, BESIDE_M[1:2])
+            ),
+        }[kind]()
+        return [stance for stance in dict.fromkeys(found) if stance != right]
+
+    def _other_moves(self, mark: Mark) -> list[Stance]:
+        found = []
+        for move in (Move.LEFT, Move.RIGHT):
+            if move != mark.move:
+                found += [self._after(mark.stance, [move] * count) for count in OTHER_TURNS]
+        if mark.move != Move.FORWARD:
+            found += [self._ahead(mark.stance, length_m) for length_m in (0.5, MOST_FORWARD_M)]
+        return [stance for stance in found if stance is not None]
+
+    def _mirrored(self, marks: Sequence[Mark], step: int) -> list[Stance]:
+        found = []
+        for first in range(max(0, step - MIRRORED_RUNS + 1), step + 1):
+            moves = [mark.move for mark in marks[first : step + 1] for _ in range(mark.run)]
+            if set(moves) & MIRRORED.keys():
+                there = self._after(marks[first].stance, [MIRRORED.get(one, one) for one in moves])
+                found += [there] if there is not None else []
+        return found
+
+    def _beside(self, stance: Stance, lengths_m: Sequence[float]) -> list[Stance]:
+        found = []
+        for side_deg in (-90.0, 90.0, 180.0):
+            for length_m in lengths_m:
+                there = self._ahead(_turned(stance, side_deg), length_m)
+                found += [replace(there, yaw_deg=stance.yaw_deg)] if there is not None else []
+        return found
+
+    def _after(self, stance: Stance, moves: Sequence[Move]) -> Stance | None:
+        """Return where moves lead; None where something is in the way."""
+        for move in moves:
+            stance, collided = self.walker(stance, move)
+            if collided:
+                return None
+        return stance
+
+    def _ahead(self, stance: Stance, length_m: float) -> Stance | None:
+        """Return where steps of about a length lead; None where not one can be made."""
+        begin, walked_m = stance, 0.0
+        while walked_m < length_m - 1e-6:
+            there, collided = self.walker(stance, Move.FORWARD)
+            step = np.hypot(there.x - stance.x, there.z - stance.z)
+            if collided or step == 0:
+                break
+            walked_m += float(step) * self.metres_per_block
+            stance = there
+        return None if stance == begin else stance
+
+
+def _turned(stance: Stance, turn_deg: float) -> Stance:
+    return replace(stance, yaw_deg=float(wrapped_deg(stance.yaw_deg + turn_deg)))

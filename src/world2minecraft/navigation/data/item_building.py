@@ -1,0 +1,196 @@
+"""Items of scenes: wrong pictures of elsewhere come from the same split, never from another."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.navigation.data.pictures import Pictured
+from world2minecraft.navigation.data.scene_items import MADE_BY, SceneWork
+from world2minecraft.navigation.data.tasks import ViewQuestion, action_item, view_item
+from world2minecraft.navigation.values import LETTERS, Item, Trajectory
+
+# Which letter the right answer has: by chance, and each as often as every other.
+
+
+class LetterDeck:
+    """Deals letters from shuffled packs of one each, so that no letter comes more often."""
+
+    def __init__(self, rng: np.random.Generator, choices: int = 4):
+        self._rng, self._letters = rng, LETTERS[:choices]
+        self._pack: list[str] = []
+
+    def deal(self) -> str:
+        """Return the next letter."""
+        if not self._pack:
+            self._pack = [self._letters[n] for n in self._rng.permutation(len(self._letters))]
+        return self._pack.pop()
+
+
+# How many items a set has: all that were made, or as many as the paper counts.
+
+# Of the paper's table of instruction lengths; its table of sizes has the two rows swapped.
+PAPER_SIZE: Mapping[tuple[str, str], int] = {
+    ("next_action", "base"): 769,
+    ("next_view", "base"): 290,
+    ("next_action", "extend"): 1351,
+    ("next_view", "extend"): 1132,
+}
+# Of its table of sizes, the rows put right: how many of them it scores on.
+PAPER_HELD: Mapping[tuple[str, str], int] = {
+    ("next_action", "base"): 175,
+    ("next_view", "base"): 41,
+    ("next_action", "extend"): 309,
+    ("next_view", "extend"): 230,
+}
+PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together: with room to cut from.
+COMPOSITIONS = ("base", "extend", "combined")
+
+
+def cut_as_the_paper(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
+    """Return as many items as the paper has of each task and composition.
+
+    Args:
+        items: of a set.
+        splits_too: cut what trains and what is held out each to the paper's number.
+    """
+    if not splits_too:
+        return cut(items, PAPER_SIZE)
+    train = {key: PAPER_SIZE[key] - PAPER_HELD[key] for key in PAPER_SIZE}
+    kept = cut([item for item in items if item.split == "train"], train)
+    kept += cut([item for item in items if item.split != "train"], PAPER_HELD)
+    chosen = {item.item_id for item in kept}
+    return [item for item in items if item.item_id in chosen]
+
+
+def cut(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) -> list[Item]:
+    """Return items, no more of a task and composition than its quota, in their order.
+
+    They are taken from the trajectories of all scenes in turn, so that no scene is left out.
+
+    Args:
+        items: of a set, those of a trajectory beside each other.
+        quotas: how many, by task and composition; what is not named is kept whole.
+    """
+    kept: set[str] = set()
+    for key in {(item.task, item.composition) for item in items}:
+        own = [item for item in items if (item.task, item.composition) == key]
+        kept |= {item.item_id for item in _in_turn(own)[: quotas.get(key, len(own))]}
+    return [item for item in items if item.item_id in kept]
+
+
+def _in_turn(items: Sequence[Item]) -> list[Item]:
+    """Return items so that each scene's n-th trajectory comes before any scene's next one."""
+    turns: dict[str, dict[str, int]] = {}
+    for item in items:
+        own = turns.setdefault(item.scene_id, {})
+        own.setdefault(item.trajectory_id, len(own))
+    return sorted(items, key=lambda item: turns[item.scene_id][item.trajectory_id])
+
+
+TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like as is wanted.
+
+
+@dataclass(frozen=True)
+class _Pool:
+    """The pictures of a split, by scene; each with its trajectory."""
+
+    by_scene: dict[str, list[tuple[str, Pictured]]]
+
+    def elsewhere(self, trajectory: Trajectory, rng: np.random.Generator) -> list[Pictured]:
+        own = [
+            one
+            for name, one in self.by_scene[trajectory.scene_id]
+            if name != trajectory.trajectory_id
+        ]
+        return _drawn(own, rng)
+
+    def other_scene(self, trajectory: Trajectory, rng: np.random.Generator) -> list[Pictured]:
+        others = [name for name in sorted(self.by_scene) if name != trajectory.scene_id]
+        if not others:
+            return []
+        chosen = self.by_scene[others[rng.integers(len(others))]]
+        return _drawn([one for _, one in chosen], rng)
+
+
+def _drawn(pictures: Sequence[Pictured], rng: np.random.Generator) -> list[Pictured]:
+    return [pictures[n] for n in rng.permutation(len(pictures))[:TRIES]]
+
+
+def items_of(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
+    """Return the items of scenes, those of a trajectory beside each other.
+
+    Args:
+        works: of ``work_scene``, one a scene.
+        seed: orders choices and letters.
+    """
+    pools = {split: _pool(works, split) for split in _splits(works)}
+    decks = {
+        task: LetterDeck(np.random.default_rng([seed, *task.encode()]))
+        for task in ("next_view", "next_action")
+    }
+    items: list[Item] = []
+    for work in works:
+        views: dict[str, list[ViewQuestion]] = {}
+        for question in work.views:
+            views.setdefault(question.trajectory_id, []).append(question)
+        for trajectory in work.trajectories:
+            rng = np.random.default_rng([seed, *trajectory.trajectory_id.encode()])
+            items += _views(work, trajectory, views, pools[trajectory.split], decks, rng)
+            items += _actions(work, trajectory, decks, rng)
+    return items
+
+
+def _views(
+    work: SceneWork,
+    trajectory: Trajectory,
+    questions: dict[str, list[ViewQuestion]],
+    pool: _Pool,
+    decks: dict[str, LetterDeck],
+    rng: np.random.Generator,
+) -> list[Item]:
+    name = trajectory.trajectory_id
+    items = []
+    for question in questions.get(name, []):
+        item = view_item(
+            question, trajectory, work.spoken[name], work.pictures[name],
+            pool.elsewhere(trajectory, rng), pool.other_scene(trajectory, rng),
+            decks["next_view"].deal(), rng,
+            composition=work.composition, oracle_version=MADE_BY,
+        )  # fmt: skip
+        items += [item] if item is not None else []
+    return items
+
+
+def _actions(
+    work: SceneWork,
+    trajectory: Trajectory,
+    decks: dict[str, LetterDeck],
+    rng: np.random.Generator,
+) -> list[Item]:
+    name = trajectory.trajectory_id
+    return [
+        action_item(
+            trajectory, work.spoken[name], work.pictures[name], step, decks["next_action"].deal(),
+            rng, composition=work.composition, oracle_version=MADE_BY,
+        )
+        for step in work.actions[name]
+    ]  # fmt: skip
+
+
+def _splits(works: Sequence[SceneWork]) -> list[str]:
+    return sorted({one.split for work in works for one in work.trajectories})
+
+
+def _pool(works: Sequence[SceneWork], split: str) -> _Pool:
+    by_scene: dict[str, list[tuple[str, Pictured]]] = {}
+    for work in works:
+        own = [
+            (one.trajectory_id, picture)
+            for one in work.trajectories
+            if one.split == split
+            for picture in work.pictures[one.trajectory_id]
+        ]
+        if own:
+            by_scene[work.scene_id] = own
+    return _Pool(by_scene)

@@ -1,0 +1,127 @@
+"""How long a row is for Qwen2.5-VL: what its pictures take, and a bound of what its words take.
+
+One token stands for 28 x 28 pixels (14 a patch, two by two merged). A text has at most as many
+tokens as bytes, because the tokenizer's alphabet is the bytes: a row that fits by this bound fits.
+"""
+
+import math
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.prompts import IMAGE, Question
+from world2minecraft.navigation.values import Item
+
+# How many steps a recipe takes, by the trainers' own loops, told before anybody pays for them.
+
+# Of the paper's tables.
+SFT_EPOCHS, SFT_BATCH, SFT_ACCUMULATED = 5, 1, 2
+GRPO_EPOCHS, GRPO_BATCH, GRPO_ROLLOUTS = 30, 128, 5
+
+
+@dataclass(frozen=True)
+class GrpoPlan:
+    """``batch`` prompts a step, of which an epoch has ``steps_an_epoch``; ``left_out`` do not fit.
+
+    Which rows are left out changes from epoch to epoch: the loader shuffles, then drops the rest.
+    """
+
+    batch: int
+    steps_an_epoch: int
+    steps: int
+    left_out: int
+
+
+def sft_steps(rows: int, max_samples: int, gpus: int) -> int:
+    """Return the optimizer's steps of the SFT recipe.
+
+    Example:
+        >>> sft_steps(1151, 1000, 1), sft_steps(249, 1000, 8)
+        (2500, 80)
+    """
+    used = min(rows, max_samples) if max_samples else rows
+    batches = math.ceil(used / (gpus * SFT_BATCH))
+    return math.ceil(batches / SFT_ACCUMULATED) * SFT_EPOCHS
+
+
+def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
+    """Return how EasyR1 goes through rows when a rollout batch is one batch of the paper.
+
+    Its loader drops what does not fill a batch, and its own default of 512 leaves a set of the
+    paper's Base without a single one; the batch is the paper's 128, or less where the rows are
+    fewer, always a multiple of the GPUs.
+
+    Raises:
+        UsageError: there are fewer rows than GPUs.
+
+    Example:
+        >>> grpo_plan(249, 8)
+        GrpoPlan(batch=128, steps_an_epoch=1, steps=30, left_out=121)
+    """
+    batch = min(GRPO_BATCH, rows) // gpus * gpus
+    if batch == 0:
+        raise UsageError(
+            f"{rows} rows do not fill one batch on {gpus} GPUs; say --gpus {rows or 1}"
+        )
+    steps = rows // batch
+    return GrpoPlan(batch, steps, steps * GRPO_EPOCHS, rows - steps * batch)
+
+
+PIXELS_A_TOKEN_SIDE = 28
+LEAST_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
+MOST_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
+CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the model's own template.
+
+
+def image_tokens(width_px: int, height_px: int, max_pixels: int) -> int:
+    """Return how many tokens a picture takes, the marks around it not counted.
+
+    Args:
+        width_px: its width.
+        height_px: its height.
+        max_pixels: the trainer shrinks what has more.
+
+    Example:
+        >>> image_tokens(640, 360, 262_144), image_tokens(1280, 720, 262_144)
+        (299, 336)
+    """
+    if width_px * height_px > max_pixels:
+        factor = math.sqrt(max_pixels / (width_px * height_px))
+        width_px, height_px = int(width_px * factor), int(height_px * factor)
+    side = PIXELS_A_TOKEN_SIDE
+    rows, columns = (max(1, round(length / side)) for length in (height_px, width_px))
+    pixels = width_px * height_px
+    if rows * columns * side * side > MOST_PIXELS:
+        factor = math.sqrt(pixels / MOST_PIXELS)
+        rows, columns = (max(1, int(n / factor / side)) for n in (height_px, width_px))
+    elif rows * columns * side * side < LEAST_PIXELS:
+        factor = math.sqrt(LEAST_PIXELS / pixels)
+        rows, columns = (math.ceil(n * factor / side) for n in (height_px, width_px))
+    return rows * columns
+
+
+def row_tokens(
+    item: Item, question: Question, pictures: Pictures, max_pixels: int, more_text: str = ""
+) -> int:
+    """Return the most tokens that an item's row can take. Raises what ``Pictures.size`` raises."""
+    sizes = (pictures.size(name, item.sha256.get(name, "")) for name in question.images)
+    shown = sum(image_tokens(*size, max_pixels) + 2 for size in sizes)
+    text = unicodedata.normalize("NFC", question.text.replace(IMAGE, "") + more_text)
+    return shown + len(text.encode()) + CHAT_TOKENS
+
+
+def longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) -> int:
+    """Return the greatest length.
+
+    Raises:
+        UsageError: it exceeds the limit; trainers would cut or drop such a row without a word.
+    """
+    item, most = max(lengths, key=lambda pair: pair[1])
+    if most > limit:
+        raise UsageError(
+            f"item {item.item_id} takes up to {most:,} tokens, over the {limit:,} of {what}; "
+            "export with --max-pixels set lower"
+        )
+    return most

@@ -1,0 +1,114 @@
+"""How an agent acts by a body on a server: moves made by keys, or the keys themselves."""
+
+from functools import lru_cache
+
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
+from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.navigation.environment.action_spaces import Continuous, Discrete
+from world2minecraft.navigation.moves import forward_blocks, heading, wrapped_yaw
+from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.server.body import ServerBody
+from world2minecraft.navigation.values import Move, MoveSet, Stance
+
+# Which keys to hold, and how long, to go a certain way on foot from rest to rest.
+#
+# A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
+# come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
+
+MOST_SNEAKING = 9  # Ticks: with as many, most lengths are met to a hundredth.
+MOST_BLOCKS = 16.0
+_FLAT = BoxWorld([[-99, -1, -99, 99, 0, 99]])
+_WALK = Keys(forward=True)
+_SNEAK = Keys(forward=True, sneak=True)
+_REST = 12  # Ticks, at most, until one who lets go stands.
+
+
+def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
+    """Return the keys, a tick each, that lead so many blocks ahead and leave one at rest.
+
+    Example:
+        >>> keys = forward_keys(1.0, 90.0)
+        >>> len(keys), sum(one.sneak for one in keys), keys[-1].forward
+        (17, 9, False)
+    """
+    walking, sneaking = _ticks(min(max(length, 0.0), MOST_BLOCKS))
+    held = [_WALK] * walking + [_SNEAK] * sneaking
+    rest = _way(walking, sneaking)[1]
+    return [one._replace(yaw_deg=yaw_deg) for one in [*held, *[Keys()] * rest]]
+
+
+@lru_cache(maxsize=256)
+def _ticks(length: float) -> tuple[int, int]:
+    """Return ticks of walking and sneaking that come nearest to a length, few of the latter."""
+    best, error = (0, 0), length
+    for sneaking in range(MOST_SNEAKING + 1):
+        walking = 0
+        while _way(walking + 1, sneaking)[0] <= length:
+            walking += 1
+        for count in (walking, walking + 1):
+            away = abs(_way(count, sneaking)[0] - length)
+            if away < error - 1e-3:
+                best, error = (count, sneaking), away
+    return best
+
+
+@lru_cache(maxsize=4096)
+def _way(walking: int, sneaking: int) -> tuple[float, int]:
+    """Return how far ticks of walking and sneaking lead, blocks, and the ticks until rest."""
+    body = Body((0.0, 0.0, 0.0), on_ground=True)
+    for keys in [_WALK] * walking + [_SNEAK] * sneaking:
+        body = step(_FLAT, body, keys)
+    for tick in range(_REST):
+        before = body.position
+        body = step(_FLAT, body, Keys())
+        if body.position == before:
+            return body.position[2], tick + 1
+    return body.position[2], _REST
+
+
+SHORT = 0.9  # Of a step: who came less far met something.
+
+
+class MovesOnServer(Discrete):
+    """One move an action. The game knows no whole steps: one goes as far as the way is free."""
+
+    def __init__(self, scene: VlnScene, move_set: MoveSet, server: ServerBody):
+        super().__init__(scene, move_set, sliding=True)
+        self.server = server
+
+    def begin(self, stance: Stance) -> None:
+        """Stand somewhere."""
+        body = self.server.place(stance.feet, stance.yaw_deg)
+        self.stance = Stance(*body.position, stance.yaw_deg, stance.pitch_deg)
+
+    def made(self, move: Move) -> tuple[Stance, bool]:
+        """Turn in a tick, or walk by holding keys until the step is done."""
+        here, turn = self.stance, self.move_set.turn_deg
+        if move == Move.FORWARD:
+            length = forward_blocks(self.scene, self.move_set)
+            self.server.hold(forward_keys(length, here.yaw_deg), here.pitch_deg)
+            body = self.server.settle(here.yaw_deg)
+            x, z = heading(here.yaw_deg)
+            gone = (body.position[0] - here.x) * x + (body.position[2] - here.z) * z
+            stance = Stance(*body.position, here.yaw_deg, here.pitch_deg)
+            return stance, gone < SHORT * length
+        yaw_deg = wrapped_yaw(here.yaw_deg + (turn if move == Move.RIGHT else -turn))
+        body = self.server.hold([Keys(yaw_deg=yaw_deg)], here.pitch_deg)[-1]
+        return Stance(*body.position, yaw_deg, here.pitch_deg), False
+
+
+class KeysOnServer(Continuous):
+    """A tick of the game an action: keys held and the mouse moved, or STOP said."""
+
+    def __init__(self, scene: VlnScene, server: ServerBody):
+        super().__init__(scene)
+        self.server = server
+
+    def begin(self, stance: Stance) -> None:
+        """Stand somewhere, at rest."""
+        self.body = self.server.place(stance.feet, stance.yaw_deg)
+        self.stance = Stance(*self.body.position, stance.yaw_deg, stance.pitch_deg)
+
+    def ticked(self, keys: Keys, pitch_deg: float) -> Body:
+        """Return the player after a tick of keys."""
+        return self.server.hold([keys], pitch_deg)[-1]

@@ -1,0 +1,204 @@
+"""A recorded walk as moves: turns and steps of one size that end where the walk ended.
+
+The walk's corners are aimed at one after the other from where the moves so far have led, so that
+what a turn or a step is off is made good by the next ones, never dropped. Each move is made by the
+world's physics (``Walker``): a way that meets a wall, or that ends elsewhere, is refused.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrapped_deg
+
+# A path with the corners that matter alone: Ramer, Douglas and Peucker.
+
+EPSILON_M = 0.25  # A move: what lies nearer to a line cannot be walked otherwise.
+
+
+def corners_of(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
+    """Return the indices, rising, of the points that keep a path within ``epsilon`` of itself.
+
+    Args:
+        path: float64 [N, 2], N at least 1.
+        epsilon: how far a left out point may lie from the line that stays.
+
+    Example:
+        >>> corners_of(np.array([[0, 0], [1, 0.01], [2, 0], [2, 3]]), 0.25).tolist()
+        [0, 2, 3]
+    """
+    kept = np.zeros(len(path), bool)
+    kept[[0, -1]] = True
+    open_spans = [(0, len(path) - 1)]
+    while open_spans:
+        first, last = open_spans.pop()
+        if last - first < 2:
+            continue
+        away = _from_line(path[first + 1 : last], path[first], path[last])
+        farthest = int(away.argmax())
+        if away[farthest] > epsilon:
+            middle = first + 1 + farthest
+            kept[middle] = True
+            open_spans += [(first, middle), (middle, last)]
+    return np.flatnonzero(kept)
+
+
+def _from_line(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Return how far points lie from the line between two others, its ends included."""
+    along = end - begin
+    length2 = float(along @ along)
+    if length2 == 0:
+        return np.linalg.norm(points - begin, axis=1)
+    share = np.clip((points - begin) @ along / length2, 0, 1)
+    return np.linalg.norm(points - begin - share[:, None] * along, axis=1)
+
+
+Walker = Callable[[Stance, Move], tuple[Stance, bool]]
+"""Where a move leads, and whether it met something."""
+
+Guide = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
+"""Moves from a stance to feet in world blocks; none where it knows no way."""
+
+VERSION = "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
+SLACK_M = 0.1  # Of the end, beside half a step.
+CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
+MEETING_M = 0.15  # nor does an end that is met so near.
+MOST_MOVES = 500
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Moves with the stances before each and after the last; ``refusal`` says why it is none."""
+
+    moves: tuple[Move, ...] = ()
+    stances: tuple[Stance, ...] = ()
+    refusal: str = ""
+
+
+def discretise(
+    segment: Sequence[StreamFrame],
+    move_set: MoveSet,
+    blocks_per_metre: float,
+    walker: Walker,
+    guide: Guide | None = None,
+) -> Walk:
+    """Return a segment as moves, STOP last, or with the reason why it is none.
+
+    It ends within half a step and 0.1 m of the recorded end and within half a turn of its heading.
+    Where moves along the corners meet something, corners are followed closer; where that fails
+    too, and a guide knows the world, it says another way to the same end.
+
+    Args:
+        segment: a walk of ``segments_of``.
+        move_set: how far a move goes; where ``forward_m`` is 0, a block.
+        blocks_per_metre: of the world.
+        walker: the world's physics.
+        guide: moves from a stance to a place.
+    """
+    path = feet_m(segment, blocks_per_metre)[:, [0, 2]]
+    refusal = ""
+    for closeness_m in CLOSENESS_M:
+        follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
+        corners = path[corners_of(path, closeness_m)]
+        for number, corner in enumerate(corners[1:], 2):
+            is_last = number == len(corners)
+            follower.go_to(corner, min(closeness_m, MEETING_M) if is_last else closeness_m, is_last)
+        walk = _finished(follower, segment, path[-1])
+        if not walk.refusal:
+            return walk
+        refusal = refusal or walk.refusal
+    if guide is None:
+        return Walk(refusal=refusal)
+    follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
+    follower.make(guide(follower.stance, segment[-1].stance.feet))
+    walk = _finished(follower, segment, path[-1])
+    return walk if not walk.refusal else Walk(refusal=refusal)
+
+
+def _finished(follower: "_Follower", segment: Sequence[StreamFrame], end_m: np.ndarray) -> Walk:
+    yaw_deg = segment[-1].stance.yaw_deg
+    follower.face(yaw_deg)
+    refusal = follower.refusal or _off(follower, end_m, yaw_deg)
+    if refusal:
+        return Walk(refusal=refusal)
+    return Walk((*follower.moves, Move.STOP), tuple(follower.stances))
+
+
+def _off(follower: "_Follower", end_m: np.ndarray, yaw_deg: float) -> str:
+    """Return how the end differs from the recorded one; nothing where it does not."""
+    away_m = float(np.linalg.norm(follower.place_m - end_m))
+    turn_deg = abs(float(wrapped_deg(yaw_deg - follower.stance.yaw_deg)))
+    if away_m > follower.step_m / 2 + SLACK_M:
+        return "ends elsewhere"
+    return "looks elsewhere" if turn_deg > follower.turn_deg / 2 + 1e-6 else ""
+
+
+class _Follower:
+    """Someone who walks to corners by moves."""
+
+    def __init__(
+        self,
+        start: Stance,
+        move_set: MoveSet,
+        blocks_per_metre: float,
+        walker: Walker,
+    ):
+        level = Stance(start.x, start.y, start.z, start.yaw_deg)
+        self.stances, self.moves, self.refusal = [level], [], ""
+        self.step_m = move_set.forward_m or 1 / blocks_per_metre
+        self.turn_deg = move_set.turn_deg
+        self._blocks_per_metre, self._walker = blocks_per_metre, walker
+
+    @property
+    def stance(self) -> Stance:
+        return self.stances[-1]
+
+    @property
+    def place_m(self) -> np.ndarray:
+        return np.array([self.stance.x, self.stance.z]) / self._blocks_per_metre
+
+    def go_to(self, corner_m: np.ndarray, passing_m: float, is_last: bool) -> None:
+        """Walk until no step would come nearer."""
+        near_m = self.step_m * (0.5 if is_last else 1.0)
+        while not self.refusal:
+            ahead = corner_m - self.place_m
+            if np.linalg.norm(ahead) <= near_m:
+                return
+            self._aim(ahead, passing_m)
+            yaw = np.radians(self.stance.yaw_deg)
+            forward = self.step_m * np.array([-np.sin(yaw), np.cos(yaw)])
+            if np.linalg.norm(ahead - forward) >= np.linalg.norm(ahead):
+                return
+            self._make(Move.FORWARD)
+
+    def make(self, moves: Sequence[Move]) -> None:
+        """Make moves of another, but for STOP."""
+        for move in moves:
+            if move != Move.STOP:
+                self._make(move)
+
+    def _aim(self, ahead_m: np.ndarray, passing_m: float) -> None:
+        """Turn to what lies ahead, unless the present heading passes it as near as need be."""
+        yaw_deg = float(np.degrees(np.arctan2(-ahead_m[0], ahead_m[1])))
+        off = np.radians(float(wrapped_deg(yaw_deg - self.stance.yaw_deg)))
+        if np.cos(off) < 0 or abs(np.sin(off)) * np.linalg.norm(ahead_m) > passing_m:
+            self.face(yaw_deg)
+
+    def face(self, yaw_deg: float) -> None:
+        """Turn to the heading of whole turns that is nearest."""
+        off_deg = float(wrapped_deg(yaw_deg - self.stance.yaw_deg))
+        turns = int(np.floor(abs(off_deg) / self.turn_deg + 0.5 - 1e-9))
+        for _ in range(turns):
+            self._make(Move.RIGHT if off_deg > 0 else Move.LEFT)
+
+    def _make(self, move: Move) -> None:
+        if self.refusal or len(self.moves) >= MOST_MOVES:
+            self.refusal = self.refusal or f"takes over {MOST_MOVES} moves"
+            return
+        stance, collided = self._walker(self.stance, move)
+        if collided:
+            self.refusal = "meets something"
+        self.moves.append(move)
+        self.stances.append(stance)

@@ -1,0 +1,181 @@
+"""A plan beside a scan, from file to file: its votes after fusion, its openings after labelling."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import FusedEvidence, Layout, Opening
+from world2minecraft.formats.layout import read_layouts, write_layouts
+from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, read_roomplan
+from world2minecraft.formats.run_arrays import read_evidence
+from world2minecraft.reconstruction.floorplans.furniture_categories import class_of
+from world2minecraft.reconstruction.floorplans.plan_to_scan import (
+    LaidPlan,
+    PlanMismatchError,
+    laid_plan,
+)
+from world2minecraft.reconstruction.floorplans.room_outlines import (
+    PlacedRoom,
+    layouts_of,
+    placed_rooms,
+)
+
+# What a plan says of a scan's cells, as votes; and openings that the scan did not show.
+#
+# Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
+# Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
+
+EDGE_M = 0.02
+IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.
+LEVEL_M = 0.05
+ON_WALL_M = 0.30  # An opening of the plan lies so near to a wall of the scan.
+PLAN_SHARE = 0.5  # Beside votes that are there: labels of images see edges, a plan does not.
+CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
+
+
+def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
+    """Return the evidence with a plan's votes beside its own.
+
+    Args:
+        evidence: what was fused.
+        plan: in the room frame; see ``laid_plan``.
+    """
+    cells = np.argwhere(evidence.log_odds > 0)
+    hits = np.maximum(evidence.hits[tuple(cells.T)], 1)[:, None]
+    points = cell_centers_m(cells, evidence.origin_m, evidence.voxel_m)
+    points = points + evidence.offset_sum[tuple(cells.T)] / hits
+    label, weight = np.zeros(len(points), np.int64), np.zeros(len(points))
+    for room in placed_rooms(plan):
+        _vote_for_objects(points, room, label, weight)
+        _vote_for_openings(points, room, label, weight)
+    votes = evidence.votes.astype(np.float32)
+    said = label > 0
+    at = tuple(cells[said].T)
+    own = votes[at].sum(axis=1)
+    added = np.zeros((int(said.sum()), CLASS_COUNT), np.float32)
+    added[np.arange(len(added)), label[said]] = weight[said] * (1 + PLAN_SHARE * own)
+    votes[at] += added
+    return replace(evidence, votes=np.minimum(votes, np.finfo(np.float16).max).astype(np.float16))
+
+
+def with_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> tuple[Layout, ...]:
+    """Return rooms with those openings of a plan that lie on their walls and were not found.
+
+    Args:
+        layouts: of the scan.
+        planned: of the plan, in the same frame.
+    """
+    every = [opening for room in planned for opening in room.openings]
+    result = []
+    for layout in layouts:
+        found = list(layout.openings)
+        for opening in every:
+            on_wall = _on_wall(opening, layout)
+            if on_wall is not None and not any(_meet(on_wall, other) for other in found):
+                found.append(on_wall)
+        result.append(replace(layout, openings=tuple(found)))
+    return tuple(result)
+
+
+def _vote_for_openings(
+    points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
+) -> None:
+    """Let windows and doors claim what lies in the wall, and not the curtains before it."""
+    middle = room.outline_m.mean(axis=0)
+    for opening in room.room.openings:
+        kind = CLASS_OF_KIND.get(opening.kind)
+        if kind is None:
+            continue
+        along = (opening.end_m - opening.start_m) / max(opening.length_m, 1e-9)
+        out = np.array([along[1], -along[0]])
+        out = out if (opening.start_m - middle) @ out >= 0 else -out
+        offset = points[:, :2] - opening.start_m
+        place, depth = offset @ along, offset @ out
+        high = (points[:, 2] > opening.bottom_m + EDGE_M) & (points[:, 2] < opening.top_m - EDGE_M)
+        cut = (place > EDGE_M) & (place < opening.length_m - EDGE_M) & high
+        cut &= (depth > IN_WALL_M[0]) & (depth < IN_WALL_M[1])
+        cut &= points[:, 2] > room.floor_z_m + LEVEL_M
+        label[cut], weight[cut] = kind, opening.confidence
+
+
+def _vote_for_objects(
+    points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
+) -> None:
+    """Let furniture claim what lies in its box; where boxes meet, the smaller one has it."""
+    over = points[:, 2] > room.floor_z_m + LEVEL_M
+    for item in sorted(room.room.objects, key=lambda item: -float(np.prod(item.size_m))):
+        claimed = over & _in_box(points, item)
+        label[claimed], weight[claimed] = class_of(item), item.confidence
+
+
+def _in_box(points: np.ndarray, item: PlanObject) -> np.ndarray:
+    """Return which points lie in a thing's box: right behind it the wall begins."""
+    turn = np.radians(item.yaw_deg)
+    front = np.array([np.cos(turn), np.sin(turn)])
+    offset = points - item.center_m
+    across = np.stack(
+        [offset[:, :2] @ front, offset[:, :2] @ np.array([-front[1], front[0]]), offset[:, 2]]
+    )
+    inside = np.abs(across) <= item.size_m[:, None] / 2
+    return np.asarray(inside.all(axis=0))
+
+
+def _on_wall(opening: Opening, layout: Layout) -> Opening | None:
+    """Return an opening moved onto the nearest wall of a room; None where none is near."""
+    corners = layout.floor_polygon_m
+    best, least = None, ON_WALL_M
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = end - start
+        length = float(np.linalg.norm(along))
+        if length < 0.1:
+            continue
+        along = along / length
+        places = [float((point - start) @ along) for point in (opening.start_m, opening.end_m)]
+        middle = (opening.start_m + opening.end_m) / 2 - start
+        off = abs(float(middle @ np.array([-along[1], along[0]])))
+        direction = opening.end_m - opening.start_m
+        parallel = abs(float(direction @ along)) > 0.95 * float(np.linalg.norm(direction))
+        low, high = max(min(places), 0.0), min(max(places), length)
+        if parallel and off < least and high - low > 0.5 * abs(places[1] - places[0]):
+            ends = [np.round(start + place * along, 4) for place in (low, high)]
+            best = replace(opening, start_m=ends[0], end_m=ends[1])
+            least = off
+    if best is None or best.sill_m >= layout.wall_height_m:
+        return None
+    return replace(best, head_m=min(best.head_m, layout.wall_height_m))
+
+
+def _meet(one: Opening, other: Opening) -> bool:
+    """Whether two openings lie in the same place of a wall."""
+    apart = np.linalg.norm((one.start_m + one.end_m) / 2 - (other.start_m + other.end_m) / 2)
+    reach = np.linalg.norm(one.end_m - one.start_m) + np.linalg.norm(other.end_m - other.start_m)
+    return bool(apart < reach / 2)
+
+
+def voted_by_plan(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, tuple[str, ...]]:
+    """Return evidence with a plan's votes, and sentences on where the plan was laid.
+
+    Raises:
+        InputError: the file is no plan. CaptureError: the plan is of another room.
+    """
+    laid = _laid(plan, evidence)
+    return plan_votes(evidence, laid.plan), (laid.told,)
+
+
+def add_plan_openings(folder: Path, plan: Path) -> None:
+    """Add doors and windows that only the plan knows to ``layout.json`` of a run."""
+    laid = _laid(plan, read_evidence(folder / "evidence.npz"))
+    layouts = with_plan_openings(read_layouts(folder / "layout.json"), layouts_of(laid.plan))
+    write_layouts(folder / "layout.json", layouts)
+
+
+def _laid(plan: Path, evidence: FusedEvidence) -> LaidPlan:
+    try:
+        return laid_plan(read_roomplan(plan), evidence)
+    except PlanMismatchError as error:
+        raise CaptureError(plan, str(error)) from error

@@ -1,0 +1,304 @@
+"""The inner loops of fusion: the points of one view into cells.
+
+Everything is in cell units of the room: a point at 3.7 lies in cell 3, wherever the map begins, so
+that a map that has grown holds the same bits as one that was large from the start. ``mark`` of a
+cell is ``base`` where a ray of this view crossed it, ``base + 1 + n`` where it is the n-th cell in
+which this view met a surface, and less where neither. The plain reading of the kernels is in the
+tests, which hold them against it.
+"""
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.reconstruction.fusion.voxel_blocks import (
+    BLOCK_CELLS,
+    FACE_SUMS,
+    FACES,
+    MASK,
+    SHIFT,
+)
+
+
+@njit
+def to_cells(points_m, scan_to_cells):
+    """Carry points float32 [N, 3] by a 3x4 transform; return them with their bounds."""
+    count = len(points_m)
+    cells = np.empty((count, 3), np.float32)
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for n in range(count):
+        for axis in range(3):
+            value = scan_to_cells[axis, 3]
+            for other in range(3):
+                value += scan_to_cells[axis, other] * points_m[n, other]
+            cells[n, axis] = value
+            low[axis] = min(low[axis], value)
+            high[axis] = max(high[axis], value)
+    return cells, low, high
+
+
+@njit
+def place_of(i, j, k, low, table, used):
+    """Return where cell (i, j, k) of the room lies in the flat arrays; its block is made."""
+    a, b, c = (i >> SHIFT) - low[0], (j >> SHIFT) - low[1], (k >> SHIFT) - low[2]
+    block = table[a, b, c]
+    if block == 0:
+        used[0] += 1
+        block = used[0]
+        table[a, b, c] = block
+    inner = ((i & MASK) << SHIFT | (j & MASK)) << SHIFT | (k & MASK)
+    return block * BLOCK_CELLS + inner
+
+
+@njit
+def places_of(cells, low, table, used):
+    """Return int64 [N]: where cells int64 [N, 3] lie in the flat arrays."""
+    places = np.empty(len(cells), np.int64)
+    for n in range(len(cells)):
+        places[n] = place_of(cells[n, 0], cells[n, 1], cells[n, 2], low, table, used)
+    return places
+
+
+@njit
+def face_normals(points, normals, camera, turn):
+    """Return float32 [N, 3]: unit normals in the room, against the ray where there is none."""
+    result = np.empty((len(points), 3), np.float32)
+    given = len(normals) > 0
+    for n in range(len(points)):
+        if given and (normals[n, 0] != 0 or normals[n, 1] != 0 or normals[n, 2] != 0):
+            for axis in range(3):
+                value = 0.0
+                for other in range(3):
+                    value += turn[axis, other] * normals[n, other]
+                result[n, axis] = value
+            continue
+        length = 1e-6
+        for axis in range(3):
+            length += (points[n, axis] - camera[axis]) ** 2
+        for axis in range(3):
+            result[n, axis] = (camera[axis] - points[n, axis]) / np.sqrt(length)
+    return result
+
+
+@njit
+def number_cells(points, normals, nudge, low, table, used, mark, base):
+    """Number the cells in which a view met a surface.
+
+    Args:
+        points: float32 [N, 3] in cells of the room.
+        normals: float32 [N, 3], towards the camera.
+        nudge: how far behind its point the matter lies, in cells.
+        low: int64 [3], the first block of the table.
+        table: int32 [X, Y, Z], the numbers of the blocks.
+        used: int64 [2], blocks and records in use.
+        mark: int64 [C]; see the module's text.
+        base: the view's number in ``mark``.
+
+    Returns:
+        ``owner`` int32 [N], the number of each point's cell; ``cells`` int64 [M, 3]; ``places``
+        int64 [M], where they lie in the flat arrays.
+    """
+    owner = np.empty(len(points), np.int32)
+    cells = np.empty((len(points), 3), np.int64)
+    places = np.empty(len(points), np.int64)
+    count, last = 0, -1
+    for n in range(len(points)):
+        i = int(np.floor(points[n, 0] - normals[n, 0] * nudge))
+        j = int(np.floor(points[n, 1] - normals[n, 1] * nudge))
+        k = int(np.floor(points[n, 2] - normals[n, 2] * nudge))
+        # Neighbouring pixels mostly lie in one cell.
+        if last < 0 or cells[last, 0] != i or cells[last, 1] != j or cells[last, 2] != k:
+            place = place_of(i, j, k, low, table, used)
+            if mark[place] <= base:
+                mark[place] = base + 1 + count
+                cells[count] = i, j, k
+                places[count] = place
+                count += 1
+            last = mark[place] - base - 1
+        owner[n] = last
+    return owner, cells[:count], places[:count]
+
+
+@njit
+def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
+    """Sum up the points of each cell.
+
+    Returns:
+        ``count`` int64 [M]; ``area`` float64 [M], square metres; ``target`` float64 [M, 3], sums
+        of points; ``faces`` float64 [M, 6, 8]: for each side that points face, their count, sums
+        of their offsets from the cell's centre in metres, of normals and of distances in metres;
+        ``sure`` float64 [M], the mean trust of the points, which is 1 where ``trust`` is empty.
+    """
+    count = np.zeros(len(cells), np.int64)
+    sure = np.zeros(len(cells), np.float64)
+    area = np.zeros(len(cells), np.float64)
+    target = np.zeros((len(cells), 3), np.float64)
+    faces = np.zeros((len(cells), FACES, FACE_SUMS), np.float64)
+    for n in range(len(points)):
+        s = owner[n]
+        count[s] += 1
+        sure[s] += trust[n] if len(trust) else 1.0
+        area[s] += weight[n]
+        side = 0
+        for axis in range(1, 3):
+            if abs(normals[n, axis]) > abs(normals[n, side]):
+                side = axis
+        face = faces[s, 2 * side + (1 if normals[n, side] > 0 else 0)]
+        face[0] += 1
+        square = 0.0
+        for axis in range(3):
+            target[s, axis] += points[n, axis]
+            face[1 + axis] += (points[n, axis] - cells[s, axis] - 0.5) * voxel_m
+            face[4 + axis] += normals[n, axis]
+            square += (points[n, axis] - camera[axis]) ** 2
+        face[7] += np.sqrt(square) * voxel_m
+    for s in range(len(cells)):
+        sure[s] /= max(count[s], 1)
+    return count, area, target, faces, sure
+
+
+@njit
+def add_hits(
+    places, count, area, faces, sure, rules, log_odds, record, used, hits, offset_sum, sides
+):  # fmt: skip
+    """Raise the cells that a view saw enough of; return which, bool [M].
+
+    Each face of such a cell adds one measurement of its plane, weighed by one over its variance:
+    that of the pose as seen at its distance, and of the mean of its points. Both count by trust.
+
+    Args:
+        places: int64 [M], as are the results of ``sum_cells`` that follow.
+        count: int64 [M].
+        area: float64 [M].
+        faces: float64 [M, 6, 8].
+        sure: float64 [M].
+        rules: float64; see ``EvidenceMap``.
+        log_odds: float32 [C], as is ``record`` int32.
+        record: int32 [C].
+        used: int64 [2].
+        hits: int64 [R], the records, as are the next two.
+        offset_sum: float32 [R, 3].
+        sides: float32 [R, 6, 8].
+    """
+    hit, limit, least_m2, least, face_m2 = rules[0], rules[2], rules[3], rules[4], rules[5]
+    sigma_m, growth, pose_m, pose_growth = rules[6], rules[7], rules[8], rules[9]
+    taken = np.zeros(len(places), np.bool_)
+    for s in range(len(places)):
+        if count[s] < least or area[s] < least_m2:
+            continue
+        taken[s] = True
+        place = places[s]
+        log_odds[place] = min(limit, log_odds[place] + hit * sure[s])
+        if record[place] == 0:
+            used[1] += 1
+            record[place] = used[1]
+        row = record[place]
+        hits[row] += count[s]
+        for f in range(FACES):
+            points = faces[s, f, 0]
+            if points == 0:
+                continue
+            for axis in range(3):
+                offset_sum[row, axis] += faces[s, f, 1 + axis]
+            z = faces[s, f, 7] / points
+            sigma = sigma_m + growth * (z - 0.4) ** 2
+            pose = pose_m + pose_growth * z
+            share = min(area[s] * points / count[s] / face_m2, 1.0)
+            w = sure[s] * share / (pose * pose + sigma * sigma / points)
+            sides[row, f, 0] += w
+            for m in range(1, 7):
+                sides[row, f, m] += w * faces[s, f, m] / points
+            sides[row, f, 7] += w * sigma
+    return taken
+
+
+@njit
+def add_colours(colour, owner, taken, places, record, colour_sum):
+    """Add the colours uint8 [N, 3] of the points whose cells were taken."""
+    for n in range(len(colour)):
+        if taken[owner[n]]:
+            row = record[places[owner[n]]]
+            for channel in range(3):
+                colour_sum[row, channel] += colour[n, channel]
+
+
+@njit
+def add_labels(labels, owner, taken, places, record, votes):
+    """Add one vote for each point's label, uint8 [N]; 0 and what is no class vote for nothing."""
+    for n in range(len(labels)):
+        if taken[owner[n]] and 0 < labels[n] < votes.shape[1]:
+            votes[record[places[owner[n]]], labels[n]] += 1
+
+
+@njit
+def add_votes(shares, owner, taken, places, record, votes):
+    """Add the votes float32 [N, 12] of the points whose cells were taken."""
+    for n in range(len(shares)):
+        if taken[owner[n]]:
+            row = record[places[owner[n]]]
+            for label in range(shares.shape[1]):
+                votes[row, label] += shares[n, label]
+
+
+# The free space of a view: every cell that its rays cross before they meet a surface.
+
+
+@njit
+def free_rays(camera, target, count, sure, rules, low, table, used, log_odds, mark, base):
+    """Lower the log-odds of each cell crossed, once a view.
+
+    One ray goes to the mean point of each cell with enough points that are trusted by half.
+
+    Args:
+        camera: float64 [3] in cells of the room.
+        target: float64 [M, 3], sums of points.
+        count: int64 [M], how many points.
+        sure: float64 [M], their mean trust.
+        rules: float64; see ``EvidenceMap``.
+        low: int64 [3], the first block of the table.
+        table: int32 [X, Y, Z], the numbers of the blocks.
+        used: int64 [2], blocks and records in use.
+        log_odds: float32 [C].
+        mark: int64 [C]; see kernels.py.
+        base: the view's number in ``mark``.
+    """
+    for s in range(len(target)):
+        if count[s] >= rules[4] and sure[s] >= 0.5:
+            _free_ray(
+                camera, target[s] / count[s], rules, low, table, used, log_odds, mark, base
+            )  # fmt: skip
+
+
+@njit
+def _free_ray(camera, target, rules, low, table, used, log_odds, mark, base):
+    """Walk from the camera to a surface point.
+
+    A cell counts as crossed where the middle of the ray's way through it lies nearer than the
+    clearance before the point. Cells that the view saw a surface in are left alone.
+    """
+    free, limit = rules[1], rules[2]
+    way = target - camera
+    length = np.sqrt((way * way).sum())
+    end = length - rules[10] - rules[11] * length
+    if end <= 0:
+        return
+    way /= length
+    cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
+    at, gap = np.empty(3), np.empty(3)
+    for axis in range(3):
+        cell[axis] = int(np.floor(camera[axis]))
+        step[axis] = 1 if way[axis] > 0 else -1
+        gap[axis] = np.inf if way[axis] == 0 else abs(1.0 / way[axis])
+        edge = cell[axis] + (1 if way[axis] > 0 else 0)
+        at[axis] = np.inf if way[axis] == 0 else (edge - camera[axis]) / way[axis]
+    entry = 0.0
+    while entry < end:
+        axis = 0 if at[0] <= at[1] and at[0] <= at[2] else (1 if at[1] <= at[2] else 2)
+        leave = at[axis]
+        if (entry + leave) / 2 < end:
+            place = place_of(cell[0], cell[1], cell[2], low, table, used)
+            if mark[place] < base:
+                log_odds[place] = max(-limit, log_odds[place] + free)
+                mark[place] = base
+        cell[axis] += step[axis]
+        at[axis] += gap[axis]
+        entry = leave

@@ -1,0 +1,193 @@
+"""What scans tear off: loose pieces join an object of their class near by, or become one."""
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
+
+# Bits of a lamp: its foot on the floor, a piece of its cord, join the shade over or under them.
+
+THIN_CELLS = 2  # A post or a cord is at most so wide,
+FLAT_CELLS = 1  # a foot so high.
+GAP_M = 1.4  # Between the foot of a lamp and its shade.
+
+
+def join_posts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], in which posts, cords and feet belong to their lamps.
+
+    What lies wholly within the floor and belongs to nothing is no object.
+    """
+    result = owners.copy()
+    pieces = dict(cells_by_owner(owners, grid.labels, SemanticClass.OBJS))
+    bits = {number: cells for number, cells in pieces.items() if _is_bit(cells, grid)}
+    whole = {number: cells for number, cells in pieces.items() if number not in bits}
+    for cells in bits.values():
+        gaps = {one: _gap(cells, other, grid) for one, other in whole.items()}
+        near = {one: gap for one, gap in gaps.items() if gap is not None}
+        if near:
+            result[tuple(cells.T)] = min(near, key=lambda one: (near[one], one))
+        elif int(cells[:, 2].max()) < floor_below(cells, grid):
+            result[tuple(cells.T)] = 0
+    return result
+
+
+def _is_bit(cells: np.ndarray, grid: OccupancyGrid) -> bool:
+    wide, deep, tall = np.ptp(cells, axis=0) + 1
+    if max(wide, deep) <= THIN_CELLS:
+        return True
+    low = int(cells[:, 2].min()) - floor_below(cells, grid)
+    return bool(tall <= FLAT_CELLS and low <= 0)
+
+
+def _gap(bit: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) -> int | None:
+    """Return the layers between a bit and a thing straight over or under it; None if it is not."""
+    middle = bit[:, :2].mean(axis=0)
+    inside = (middle >= whole[:, :2].min(axis=0) - 1) & (middle <= whole[:, :2].max(axis=0) + 1)
+    if not inside.all():
+        return None
+    first = min(int(bit[:, 2].max()), int(whole[:, 2].max())) + 1
+    last = max(int(bit[:, 2].min()), int(whole[:, 2].min()))
+    if last - first > GAP_M / grid.voxel_m:
+        return None
+    x, y = (int(value) for value in np.round(middle))
+    between = grid.labels[x, y, first:last]
+    blocked = (between > 0) & (between != UNKNOWN) & (between != SemanticClass.OBJS)
+    return None if blocked.any() else max(last - first, 0)
+
+
+# Parts of one object that stand on one another: a table's top on its post, a bed on a bed.
+
+OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or under the other.
+HALF_OF_26 = [
+    (dx, dy, dz)
+    for dx in (-1, 0, 1)
+    for dy in (-1, 0, 1)
+    for dz in (-1, 0, 1)
+    if (dx, dy, dz) > (0, 0, 0)
+]
+
+
+def join_stacked(owners: np.ndarray, labels: np.ndarray) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], with stacked parts of one class under one number.
+
+    A thin post is too sparse to hold candidates, so density parts a top from its foot. Two parts
+    of the same class that touch are one object where at least half of the smaller one's plan
+    lies over or under the other.
+    """
+    pairs = _touching(owners, labels)
+    parent = list(range(int(owners.max(initial=0)) + 1))
+    plans = _plans(owners, {number for pair in pairs for number in pair})
+    for first, second in pairs:
+        smaller = min(len(plans[first]), len(plans[second]))
+        if len(plans[first] & plans[second]) >= OVERLAP * smaller:
+            a, b = sorted((_root(parent, first), _root(parent, second)))
+            parent[b] = a
+    roots = np.array([_root(parent, number) for number in range(len(parent))], np.int32)
+    return roots[owners]
+
+
+def _touching(owners: np.ndarray, labels: np.ndarray) -> list[tuple[int, int]]:
+    pairs: set[tuple[int, int]] = set()
+    for shift in HALF_OF_26:
+        near = tuple(
+            slice(max(0, -s), n - max(0, s)) for s, n in zip(shift, owners.shape, strict=True)
+        )
+        far = tuple(
+            slice(max(0, s), n - max(0, -s)) for s, n in zip(shift, owners.shape, strict=True)
+        )
+        meets = (owners[near] != owners[far]) & (owners[near] > 0) & (owners[far] > 0)
+        meets &= labels[near] == labels[far]
+        both = np.stack([owners[near][meets], owners[far][meets]], axis=1)
+        pairs |= {(int(a), int(b)) for a, b in np.unique(np.sort(both, axis=1), axis=0)}
+    return sorted(pairs)
+
+
+def _plans(owners: np.ndarray, numbers: set[int]) -> dict[int, set[tuple[int, int]]]:
+    """Return the columns that each numbered part covers."""
+    plans: dict[int, set[tuple[int, int]]] = {number: set() for number in numbers}
+    cells = np.argwhere(np.isin(owners, sorted(numbers)))
+    for (x, y, _), number in zip(cells.tolist(), owners[tuple(cells.T)].tolist(), strict=True):
+        plans[number].add((x, y))
+    return plans
+
+
+def _root(parent: list[int], number: int) -> int:
+    while parent[number] != number:
+        number = parent[number]
+    return number
+
+
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+STANDING_BIT = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
+
+
+def rejoin(
+    labels: np.ndarray, owners: np.ndarray, *, min_cells: int, join_radius: float
+) -> np.ndarray:
+    """Return owners in which no object is smaller than ``min_cells``.
+
+    What stands on the floor is large: of chairs, beds, sofas and tables bits of some more cells
+    join a neighbour too, where there is one.
+
+    Loose pieces and too small objects join the nearest object of their own class within
+    ``join_radius`` cells. A loose piece that finds none becomes an object where it is large
+    enough; the rest belongs to none (owner 0).
+    """
+    result = owners.copy()
+    for class_id in np.unique(labels[(labels >= 5) & (labels <= 11)]):
+        bit = STANDING_BIT * min_cells if class_id in STANDING else min_cells
+        _rejoin_class(labels == class_id, result, (min_cells, bit), join_radius)
+    return result
+
+
+def _rejoin_class(
+    mask: np.ndarray, owners: np.ndarray, limits: tuple[int, int], join_radius: float
+) -> None:
+    min_cells, bit = limits
+    sizes = np.bincount(owners[mask])
+    small = np.flatnonzero((sizes > 0) & (sizes < bit))
+    loose = mask & ((owners == 0) | np.isin(owners, small[small > 0]))
+    if not loose.any():
+        return
+    kept = mask & ~loose
+    owners[loose] = 0
+    anchors = np.argwhere(kept)
+    tree = KDTree(anchors) if len(anchors) else None
+    fresh = int(owners.max())
+    for cells in _grouped(loose):
+        owner = _nearest(tree, anchors, owners, cells, join_radius)
+        if owner == 0 and len(cells) >= min_cells:
+            fresh += 1
+            owner = fresh
+        owners[tuple(cells.T)] = owner
+
+
+def _grouped(loose: np.ndarray) -> list[np.ndarray]:
+    """Return the cells, int64 [N, 3], of each connected piece."""
+    pieces, _ = label_components(loose)
+    cells = np.argwhere(pieces)
+    numbers = pieces[tuple(cells.T)]
+    order = np.argsort(numbers, kind="stable")
+    ends = np.cumsum(np.bincount(numbers)[1:])[:-1]
+    return np.split(cells[order], ends)
+
+
+def _nearest(
+    tree: KDTree | None,
+    anchors: np.ndarray,
+    owners: np.ndarray,
+    cells: np.ndarray,
+    join_radius: float,
+) -> int:
+    if tree is None:
+        return 0
+    distance, _ = tree.query(cells, distance_upper_bound=join_radius + 1e-9)
+    if not np.isfinite(distance.min()):
+        return 0
+    source = cells[int(np.argmin(distance))]
+    # Of equally near objects the lowest number, so that the tree's order does not matter.
+    near = tree.query_ball_point(source, float(distance.min()) + 1e-9)
+    return int(owners[tuple(anchors[near].T)].min())

@@ -1,0 +1,240 @@
+"""Depth as evidence: each pixel with depth is a point of the surface, with colour and label.
+
+Where colour and depth are two cameras, a depth point takes the colour and the label of the pixel
+that it projects to; a point that the colour camera does not see has the nearest edge pixel's.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from typing import Protocol
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera, PointEvidence, Scan, View
+from world2minecraft.geometry.unprojection import lift_depth, pixel_rays, project
+
+# Which way the surface at each pixel of a depth image faces.
+#
+# Depth is averaged in squares of pixels; a square's normal is that of the plane through the means of
+# its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
+
+SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
+REACH = 2  # Squares to either side.
+JUMP_SHARE = 0.04  # Of the depth: neighbouring squares of one surface differ by less.
+
+
+def facing_of_depth(
+    depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray, pixels: np.ndarray
+) -> np.ndarray:
+    """Return float32 [N, 3]: unit normals towards the camera, (0, 0, 0) where there is none.
+
+    Args:
+        depth_m: float32 [H, W] z-depth in metres, 0 = hole.
+        camera: the depth camera.
+        camera_to_frame: 4x4 pose of the depth camera; the normals are those of its frame.
+        pixels: int32 [N], flat indices of the pixels that are asked for.
+    """
+    side = max(1, round(camera.width_px / SQUARES_WIDE))
+    means = _square_means(depth_m, pixel_rays(camera), side)
+    turn = np.ascontiguousarray(camera_to_frame[:3, :3], np.float64)
+    return _spread(_normals(means), turn, pixels, camera.width_px, side)
+
+
+@njit
+def _square_means(depth_m, rays, side):
+    """Return float32 [h, w, 3], the mean point of each square; z is 0 where a surface jumps."""
+    high, wide = -(-depth_m.shape[0] // side), -(-depth_m.shape[1] // side)
+    means = np.zeros((high, wide, 3), np.float32)
+    for i in range(high):
+        for j in range(wide):
+            count, x, y, total, near, far = 0, 0.0, 0.0, 0.0, np.inf, 0.0
+            for v in range(i * side, min((i + 1) * side, depth_m.shape[0])):
+                for u in range(j * side, min((j + 1) * side, depth_m.shape[1])):
+                    z = depth_m[v, u]
+                    if z > 0:
+                        count += 1
+                        x += rays[v, u, 0] * z
+                        y += rays[v, u, 1] * z
+                        total += z
+                        near, far = min(near, z), max(far, z)
+            if 2 * count >= side * side and far - near < 2.5 * JUMP_SHARE * near:
+                means[i, j] = x / count, y / count, total / count
+    return means
+
+
+@njit
+def _reach(means, i, j, down, across):
+    """Return how many squares the surface goes on from (i, j) in a direction, at most REACH."""
+    steps = 0
+    while steps < REACH:
+        a, b = i + (steps + 1) * down, j + (steps + 1) * across
+        if a < 0 or b < 0 or a >= means.shape[0] or b >= means.shape[1]:
+            break
+        here, there = means[a - down, b - across, 2], means[a, b, 2]
+        if there == 0 or abs(there - here) > JUMP_SHARE * here:
+            break
+        steps += 1
+    return steps
+
+
+@njit
+def _normals(means):
+    """Return float32 [h, w, 3], unit normals towards the camera."""
+    result = np.zeros(means.shape, np.float32)
+    for i in range(means.shape[0]):
+        for j in range(means.shape[1]):
+            if means[i, j, 2] == 0:
+                continue
+            up, down = _reach(means, i, j, -1, 0), _reach(means, i, j, 1, 0)
+            left, right = _reach(means, i, j, 0, -1), _reach(means, i, j, 0, 1)
+            if up + down == 0 or left + right == 0:
+                continue
+            a = means[i + down, j] - means[i - up, j]
+            b = means[i, j + right] - means[i, j - left]
+            x = a[1] * b[2] - a[2] * b[1]
+            y = a[2] * b[0] - a[0] * b[2]
+            z = a[0] * b[1] - a[1] * b[0]
+            length = np.sqrt(x * x + y * y + z * z)
+            if length < 1e-12:
+                continue
+            if x * means[i, j, 0] + y * means[i, j, 1] + z * means[i, j, 2] > 0:
+                length = -length
+            result[i, j] = x / length, y / length, z / length
+    return result
+
+
+@njit
+def _spread(normals, turn, pixels, width_px, side):
+    """Return the turned normal of the square of each pixel."""
+    turned = np.zeros(normals.shape, np.float32)
+    for i in range(normals.shape[0]):
+        for j in range(normals.shape[1]):
+            for axis in range(3):
+                value = 0.0
+                for other in range(3):
+                    value += turn[axis, other] * normals[i, j, other]
+                turned[i, j, axis] = value
+    result = np.empty((len(pixels), 3), np.float32)
+    for n in range(len(pixels)):
+        v = pixels[n] // width_px
+        result[n] = turned[v // side, (pixels[n] - v * width_px) // side]
+    return result
+
+
+MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.
+
+
+class Voter(Protocol):
+    """Something that votes for the classes of what a view's depth sees, such as a network."""
+
+    notes: tuple[str, ...]
+
+    def votes(
+        self, view: View, scan_to_room: np.ndarray, points_m: np.ndarray, colour_px: np.ndarray
+    ) -> np.ndarray:
+        """Return float32 [N, 12], at most one vote in sum for each point.
+
+        Args:
+            view: with colour.
+            scan_to_room: 4x4.
+            points_m: [N, 3], in the scan's frame.
+            colour_px: int [N], the flat pixel of the colour picture that shows each point.
+        """
+        ...
+
+
+class DepthPredictor:
+    """Gives one PointEvidence for each view that has depth; ``voters`` vote on its points."""
+
+    def __init__(self, max_depth_m: float = MAX_DEPTH_M, *, voters: Sequence[Voter] = ()):
+        self.max_depth_m = max_depth_m
+        self.voters = tuple(voters)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the voters have to tell."""
+        return tuple(note for voter in self.voters for note in voter.notes)
+
+    def predict(self, scan: Scan) -> Iterator[PointEvidence]:
+        """Yield the surface points of each view, in the scan's frame and order."""
+        for view in scan.views:
+            if view.depth_m is not None:
+                yield self.lift(view, scan.scan_to_room)
+
+    def lift(self, view: View, scan_to_room: np.ndarray | None = None) -> PointEvidence:
+        """Return the points of one view, those beyond ``max_depth_m`` left out."""
+        camera, depth_m = view.depth_camera, view.depth_m
+        if camera is None or depth_m is None:
+            raise ValueError(f"view {view.name} has no depth")
+        near_m = np.where(depth_m <= self.max_depth_m, depth_m, np.float32(0))
+        camera_to_scan = view.depth_camera_to_scan
+        points_m, pixels = lift_depth(near_m, camera, camera_to_scan)
+        depths = near_m.reshape(-1)[pixels]
+        colour_px = _colour_pixels(view, points_m, pixels)
+        colour, labels = _look_up(view, colour_px)
+        return PointEvidence(
+            view=view.name,
+            camera_m=camera_to_scan[:3, 3],
+            points_m=points_m,
+            weight=depths * depths / np.float32(camera.fx_px * camera.fy_px),
+            colour=colour,
+            normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
+            labels=labels,
+            trust=_trust(view, pixels),
+            votes=self._votes(view, scan_to_room, points_m, colour_px),
+        )
+
+    def _votes(self, view: View, scan_to_room, points_m, colour_px) -> np.ndarray | None:
+        if not self.voters or colour_px is None:
+            return None
+        to_room = np.eye(4) if scan_to_room is None else scan_to_room
+        total = np.zeros((len(points_m), CLASS_COUNT), np.float32)
+        for voter in self.voters:
+            total += voter.votes(view, to_room, points_m, colour_px)
+        return total.astype(np.float16)
+
+
+def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:
+    """Return how far each point is to be trusted, 0 to 1; None where all are wholly."""
+    if view.trust is None:
+        return None
+    return view.trust.reshape(-1)[pixels].astype(np.float32) / np.float32(255)
+
+
+def _colour_pixels(view: View, points_m: np.ndarray, pixels: np.ndarray) -> np.ndarray | None:
+    """Return the flat colour pixel of each of a view's points; None where it has no colour."""
+    if view.colour is None or view.colour_camera is None or view.depth_camera is None:
+        return None
+    if np.array_equal(view.depth_to_colour, np.eye(4)):
+        return _shared_place_map(view.depth_camera, view.colour_camera)[pixels]
+    in_camera_m = apply(invert_rigid(view.camera_to_scan), points_m.astype(np.float64))
+    return _nearest_pixels(project(in_camera_m, view.colour_camera), view.colour_camera)
+
+
+def _look_up(view: View, colour_px: np.ndarray | None):
+    """Return the colours and the labels of a view's points, or None for what it lacks."""
+    if colour_px is None or view.colour is None:
+        return None, None
+    colour = view.colour.reshape(-1, 3)[colour_px]
+    return colour, None if view.labels is None else view.labels.reshape(-1)[colour_px]
+
+
+@lru_cache(maxsize=8)
+def _shared_place_map(depth_camera: Camera, colour_camera: Camera) -> np.ndarray:
+    """Return int32 [H*W]: the colour pixel of each depth pixel, for cameras in one place.
+
+    Then a pixel's ray meets the other image at one place whatever its depth.
+    """
+    rays = pixel_rays(depth_camera).reshape(-1, 2)
+    ahead = np.concatenate([rays, np.ones((len(rays), 1), np.float32)], axis=1)
+    return _nearest_pixels(project(ahead, colour_camera), colour_camera)
+
+
+def _nearest_pixels(at_px: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return the flat indices of the pixels that hold [N, 2] image points, clipped to the edge."""
+    u = np.clip(np.floor(at_px[:, 0]), 0, camera.width_px - 1)
+    v = np.clip(np.floor(at_px[:, 1]), 0, camera.height_px - 1)
+    return (v * camera.width_px + u).astype(np.int32)

@@ -1,0 +1,327 @@
+"""``refine``: poses and depth scales of all frames at once, from what they see in common.
+
+In: a scan whose poses are off by some millimetres and tenths of a degree, and whose depth may be
+stretched by some per cent, each frame its own way. Out: a change for each frame. Patches of all
+frames are grouped into surfels, and all frames are moved until the patches of a surfel meet; then
+they are grouped again, more finely. How far poses and scales are off is learned on the way. A part
+of the surface takes no part and judges: where it does not fit better afterwards, nothing is moved.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Corrections, Scan, View
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
+from world2minecraft.reconstruction.registration.gauss_newton import (
+    UNKNOWNS,
+    Observations,
+    Step,
+    move_patches,
+    solve,
+    surfel_means,
+)
+from world2minecraft.reconstruction.registration.parameters import RegisterParameters
+from world2minecraft.reconstruction.registration.surfels import Surfels, find_surfels
+
+# Rounds of registration: who sees the same surface, then one joint step of all frames.
+
+# The gap that parts two surfaces and the residual beyond which a patch is no look at its surfel
+# narrow from pass to pass: a depth scale that is 10 % off moves a wall at 3 m by 30 cm.
+GAPS_M = (0.30, 0.10, 0.05, 0.04)
+WIDTHS_M = (0.12, 0.04, 0.015, 0.01)
+FIRST_CELLS = 2.0  # The first pass's cells are wider by this, for the same reason.
+SAME_WAY = 0.9  # Cosine of 26 degrees between a patch and its surfel.
+FIRST_BEND_M = 0.003  # What the depth of patches is off for other reasons than their pixels' noise.
+INDEPENDENT = 30  # Regions of an image whose depth bends by itself; patches there err together.
+LEAST_NOISE_M = 0.002
+SIGMAS_LEAST = np.array([1e-4, 3e-4, 1e-4])  # Radians, metres, log; less would freeze a frame.
+SIGMAS_MOST = np.array([0.03, 0.05, 0.15])
+GROUPS = (slice(0, 3), slice(3, 6), slice(6, 7))
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """The patches and cameras as they stand, and what was changed to get here.
+
+    ``total`` float64 [F, 7] is the sum of all steps: turn in radians, shift in metres, log of the
+    depth's scale. ``sigmas`` float64 [3] is how far off the three were, as learned so far, and
+    ``bend_m`` how far patches still are from their surfels.
+    """
+
+    surface: Surface
+    total: np.ndarray
+    sigmas: np.ndarray
+    bend_m: float
+
+
+def begin(surface: Surface, chosen: RegisterParameters) -> State:
+    """Return the state before the first pass; ``surface`` lies in a frame that walls follow."""
+    sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, chosen.scale_sigma])
+    return State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas, FIRST_BEND_M)
+
+
+def run_passes(
+    state: State, speaks: np.ndarray, chosen: RegisterParameters, first: int = 0
+) -> State:
+    """Move all frames until their patches meet.
+
+    Args:
+        state: where to begin.
+        speaks: bool [N], the patches that take part; all are moved.
+        chosen: the parameters.
+        first: the pass to begin with; later ones look more closely.
+    """
+    frames = len(state.surface.cameras)
+    together = np.sqrt(max(1.0, np.count_nonzero(speaks) / frames / INDEPENDENT))
+    for number in range(first, chosen.passes):
+        gap_m = GAPS_M[min(number, len(GAPS_M) - 1)]
+        width_m = WIDTHS_M[min(number, len(WIDTHS_M) - 1)]
+        cell_m = chosen.cell_m * (FIRST_CELLS if number == 0 else 1.0)
+        noise_m = max(LEAST_NOISE_M, state.bend_m * together)
+        seen = observe(state.surface, speaks, cell_m, gap_m, noise_m)
+        prior = np.repeat(state.sigmas, (3, 3, 1))
+        state = _stepped(state, solve(seen, state.total, prior, width_m))
+    return state
+
+
+def without_scale(before: State, after: State) -> State:
+    """Return the state ``after`` some passes with the depth as it was ``before`` them."""
+    change = after.total - before.total
+    change[:, 6] = 0.0
+    kept = Step(change, np.zeros_like(change), after.bend_m)
+    sigmas = after.sigmas * [1.0, 1.0, 0.0]
+    return replace(_stepped(before, kept), sigmas=sigmas)
+
+
+def surfels_of(surface: Surface, cell_m: float, gap_m: float) -> Surfels:
+    """Group the patches of a surface."""
+    weight = 1 / (surface.sigma_m**2 + 0.002**2)
+    return find_surfels(
+        surface.points_m, surface.normals, weight, surface.owner, cell_m=cell_m, gap_m=gap_m
+    )
+
+
+def shared(surface: Surface, surfels: Surfels, chosen: np.ndarray) -> np.ndarray:
+    """Return the indices of the chosen patches whose surfel faces as they do and is shared."""
+    facing = np.einsum("ia,ia->i", surface.normals, surfels.normals[surfels.owner])
+    return np.flatnonzero(chosen & (surfels.frames[surfels.owner] > 1) & (facing > SAME_WAY))
+
+
+def observe(
+    surface: Surface, speaks: np.ndarray, cell_m: float, gap_m: float, noise_m: float
+) -> Observations:
+    """Return what the patches that speak say of their frames' poses."""
+    surfels = surfels_of(surface, cell_m, gap_m)
+    index = shared(surface, surfels, speaks)
+    surfel, frame = surfels.owner[index], surface.owner[index]
+    normal = surfels.normals[surfel]
+    from_eye = surface.points_m[index] - surface.cameras[frame, :3, 3]
+    residual = np.einsum("ia,ia->i", normal, surface.points_m[index] - surfels.centers_m[surfel])
+    weight = 1 / (surface.sigma_m[index] ** 2 + noise_m**2)
+    count = len(surfels.frames)
+    means = surfel_means(residual, weight, surfel, count)
+    stretch = np.einsum("ia,ia->i", normal, from_eye)
+    # Residuals shrink with the whole room, so that plain least squares would shrink it. Measured
+    # in units of their frame's depth they do not; hence the second term.
+    stretch -= residual - means[surfel]
+    rows = np.column_stack([np.cross(from_eye, normal), normal, stretch])
+    return Observations(rows, residual, weight, frame, surfel, len(surface.cameras), count)
+
+
+def _stepped(state: State, step: Step) -> State:
+    """Return the state after a step, with the sigmas that all steps together tell."""
+    surface, change = state.surface, step.change
+    turns = np.array([_rotation(vector) for vector in change[:, :3]])
+    eyes = surface.cameras[:, :3, 3]
+    points_m, normals = move_patches(
+        surface.points_m, surface.normals, surface.owner,
+        np.ascontiguousarray(eyes), turns, change[:, 3:6].copy(), np.exp(change[:, 6]),
+    )  # fmt: skip
+    cameras = surface.cameras.copy()
+    cameras[:, :3, :3] = np.einsum("fab,fbc->fac", turns, cameras[:, :3, :3])
+    cameras[:, :3, 3] = eyes + change[:, 3:6]
+    total = state.total + change
+    learned = np.array([np.sqrt(np.mean(total[:, g] ** 2 + step.variance[:, g])) for g in GROUPS])
+    learned = np.clip(learned, SIGMAS_LEAST, SIGMAS_MOST)
+    moved = replace(surface, points_m=points_m, normals=normals, cameras=cameras)
+    return State(moved, total, np.where(state.sigmas > 0, learned, 0.0), step.spread_m)
+
+
+def _rotation(vector: np.ndarray) -> np.ndarray:
+    """Return the rotation [3, 3] about a vector by its length in radians."""
+    angle = float(np.sqrt(np.sum(vector * vector)))
+    x, y, z = vector
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    square = np.outer(vector, vector) - angle * angle * np.eye(3)
+    first, second = (
+        (np.sin(angle) / angle, 2 * (np.sin(angle / 2) / angle) ** 2)
+        if angle > 1e-9
+        else (1.0, 0.5)
+    )
+    return np.eye(3) + first * cross + second * square
+
+
+STAGE = "register"
+JUDGED_GAP_M = 0.10
+HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak for each other.
+MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
+CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
+CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
+MOST_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
+LEAST_EACH = 200
+LEAST_JUDGES = 50
+DECIMALS = 9
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether corrections are kept, and the held-out misfit without and with them."""
+
+    kept: bool
+    before_m: float | None
+    after_m: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Registered:
+    """Corrections, and the surface that they give, in the scan's frame."""
+
+    corrections: Corrections
+    surface: Surface
+
+
+def refine(
+    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = silent
+) -> Corrections:
+    """Return what puts a scan's poses and depth scales right; arguments as ``register``."""
+    return register(scan, parameters, progress).corrections
+
+
+def register(
+    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = silent
+) -> Registered:
+    """Return the corrections of a scan together with the corrected surface.
+
+    Args:
+        scan: an aligned scan; its views are read once, depth alone where they can be.
+        parameters: see ``RegisterParameters``.
+        progress: told of the stage ``register``.
+    """
+    total = len(scan.views) + 1
+    most_each = max(LEAST_EACH, MOST_PATCHES // max(1, len(scan.views)))
+    surface = collect_surface(_told(depth_views(scan), total, progress), most_each)
+    found = register_surface(surface, scan.scan_to_room, parameters or RegisterParameters())
+    progress(STAGE, total, total)
+    return found
+
+
+def depth_views(scan: Scan) -> Iterable[View]:
+    """Return the views of a scan, their colours undecoded where the stream can leave them so."""
+    read = getattr(scan.views, "depth_views", None)
+    return scan.views if read is None else read()
+
+
+def register_surface(
+    surface: Surface, scan_to_room: np.ndarray, chosen: RegisterParameters
+) -> Registered:
+    """Register the frames of a surface of the scan's frame; ``scan_to_room`` turns walls to axes.
+
+    The depth is touched only where scales are found to vary, and nothing where the surface that
+    took no part does not fit better.
+    """
+    room = surface.turned(scan_to_room)
+    still = begin(room, chosen)
+    if chosen.passes == 0 or len(room.cameras) < 2 or not len(room.points_m):
+        return _registered(surface, still, scan_to_room, Verdict(False, None, None))
+    held = _held_out(room, chosen.held_share)
+    before_m = _misfit_m(room, held, chosen)
+    moved = run_passes(still, ~held, chosen)
+    after_m = _misfit_m(moved.surface, held, chosen)
+    if moved.sigmas[2] < CLEAR_SPREAD:
+        rigid = without_scale(still, moved)
+        rigid = run_passes(rigid, ~held, chosen, max(1, chosen.passes - CLOSER_PASSES))
+        rigid_m = _misfit_m(rigid.surface, held, chosen)
+        if moved.sigmas[2] < chosen.least_scale_sigma or not _fell(rigid_m, after_m):
+            moved, after_m = rigid, rigid_m
+    kept = _fell(before_m, after_m)
+    return _registered(
+        surface, moved if kept else still, scan_to_room, Verdict(kept, before_m, after_m)
+    )
+
+
+def _fell(before_m: float | None, after_m: float | None) -> bool:
+    """Whether a held-out misfit fell by more than chance; where few judge, it did not."""
+    return before_m is not None and after_m is not None and after_m < MUST_FALL * before_m
+
+
+def _told(views: Iterable[View], total: int, progress: Progress) -> Iterable[View]:
+    for done, view in enumerate(views, start=1):
+        yield view
+        progress(STAGE, min(done, total - 1), total, view.name)
+
+
+def _held_out(room: Surface, share: float) -> np.ndarray:
+    """Return bool [N]: patches in a share of the blocks of space, spread by a fixed hash."""
+    block = np.floor(room.points_m / HELD_BLOCK_M).astype(np.int64)
+    code = block[:, 0] * 73856093 ^ block[:, 1] * 19349663 ^ block[:, 2] * 83492791
+    return (code * 2654435761 % 2**32) < share * 2**32
+
+
+def _misfit_m(surface: Surface, held: np.ndarray, chosen: RegisterParameters) -> float | None:
+    """Return the median distance of held-out patches from their surfels; None where few judge."""
+    judges = surface.chosen(held)
+    surfels = surfels_of(judges, chosen.cell_m, JUDGED_GAP_M)
+    index = shared(judges, surfels, np.ones(len(judges.points_m), bool))
+    if len(index) < LEAST_JUDGES:
+        return None
+    owner = surfels.owner[index]
+    off = judges.points_m[index] - surfels.centers_m[owner]
+    along = np.einsum("ia,ia->i", surfels.normals[owner], off)
+    weight = 1 / (judges.sigma_m[index] ** 2 + 0.002**2)
+    means = surfel_means(along, weight, owner, len(surfels.frames))
+    return float(np.median(np.abs(along - means[owner])))
+
+
+def _registered(
+    surface: Surface, state: State, scan_to_room: np.ndarray, verdict: Verdict
+) -> Registered:
+    room_to_scan = invert_rigid(scan_to_room)
+    cameras = room_to_scan @ state.surface.cameras
+    change = cameras @ np.array([invert_rigid(old) for old in surface.cameras]).reshape(-1, 4, 4)
+    change = np.round(change, DECIMALS)
+    scale = np.round(np.exp(state.total[:, 6]), DECIMALS)
+    facts = _facts(state, verdict)
+    return Registered(
+        Corrections(surface.names, change, scale, facts), state.surface.turned(room_to_scan)
+    )
+
+
+def _facts(state: State, verdict: Verdict) -> dict[str, Any]:
+    """Return the figures for ``scan.json``."""
+    shift_mm = 1000 * np.linalg.norm(state.total[:, 3:6], axis=1)
+    turn_deg = np.degrees(np.linalg.norm(state.total[:, :3], axis=1))
+    scaled = verdict.kept and state.sigmas[2] > 0
+    figures = {
+        "moved_median_mm": _median(shift_mm),
+        "moved_most_mm": float(shift_mm.max(initial=0)),
+        "turned_median_deg": _median(turn_deg),
+        "turned_most_deg": float(turn_deg.max(initial=0)),
+        "depth_scale_spread": float(state.sigmas[2]) if scaled else 0.0,
+        "misfit_before_mm": None if verdict.before_m is None else 1000 * verdict.before_m,
+        "misfit_after_mm": None if verdict.after_m is None else 1000 * verdict.after_m,
+    }
+    rounded = {name: None if v is None else round(v, 4) for name, v in figures.items()}
+    return {
+        "kept": verdict.kept,
+        "depth_scaled": bool(scaled),
+        "frames": len(state.total),
+    } | rounded
+
+
+def _median(values: np.ndarray) -> float:
+    return float(np.median(values)) if len(values) else 0.0

@@ -1,0 +1,275 @@
+"""Quarter turns of elements: boxes stay aligned, faces change places, textures turn or stay.
+
+All matrices carry points of the block ([0, 1] on each axis) and turn about its middle.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.rendering.block_elements import (
+    FACE_AXES,
+    FACE_NAMES,
+    Element,
+    FaceLook,
+    face_uv,
+)
+from world2minecraft.rendering.resource_packs.json_checks import (
+    mapping,
+    number,
+    numbers,
+    quarter,
+    shown,
+    text,
+)
+from world2minecraft.rendering.resource_packs.tints import Tint
+
+# Elements that fill the same box become one, their textures laid one over another.
+#
+# A grass block is a cube of earth with a second, tinted cube at the very same place. One box with
+# joined textures leaves no doubt which of the two is seen, and a full cube stays a full cube.
+
+OVER, TIMES = "+", "*"  # In names of joined textures: a*rrggbb+b; no resource's name has them.
+
+
+def merged(elements: Sequence[Element]) -> tuple[Element, ...]:
+    """Return the elements with those of one box joined where their faces can be."""
+    done: list[Element] = []
+    places: dict[tuple, int] = {}  # Of each box, the last element that fills it.
+    for element in elements:
+        at = places.get(_box_of(element))
+        if at is None or not _can_join(done[at], element):
+            places[_box_of(element)] = len(done)
+            done.append(element)
+        else:
+            faces = zip(done[at].faces, element.faces, strict=True)
+            done[at] = replace(done[at], faces=tuple(_joined(a, b) for a, b in faces))
+    return tuple(done)
+
+
+def _box_of(element: Element) -> tuple:
+    turn = None if element.turn is None else element.turn.tobytes()
+    return element.low, element.high, element.shade, element.emission, turn
+
+
+def _can_join(a: Element, b: Element) -> bool:
+    """Return whether where both have a face, their textures lie alike."""
+    return all(
+        x is None or y is None or np.allclose(x.uv, y.uv)
+        for x, y in zip(a.faces, b.faces, strict=True)
+    )
+
+
+def _joined(below: FaceLook | None, above: FaceLook | None) -> FaceLook | None:
+    if below is None or above is None:
+        return below or above
+    return FaceLook(_tinted(below) + OVER + _tinted(above), below.uv)
+
+
+def _tinted(face: FaceLook) -> str:
+    if face.tint is None:
+        return face.texture
+    return face.texture + TIMES + "".join(f"{value:02x}" for value in face.tint)
+
+
+_NORMALS = np.array([np.cross(u, v) for u, v in FACE_AXES])  # All inward, as v grows down.
+_BLOCK = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+
+
+@lru_cache(maxsize=64)
+def quarter_turn(x_deg: int, y_deg: int, z_deg: int = 0) -> np.ndarray:
+    """Return float64 [4, 4]: turn about x, then y, then z, about the block's middle.
+
+    Positive angles take up to north (x), north to east (y) and up to east (z), as in a
+    blockstates file.
+    """
+    turn = np.eye(3)
+    for axis, angle in enumerate((x_deg, y_deg, z_deg)):
+        one = np.eye(3)
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[angle // 90 % 4]
+        one[first, first] = one[second, second] = cosine
+        one[first, second], one[second, first] = sine, -sine
+        turn = one @ turn
+    return _about(turn, np.full(3, 0.5))
+
+
+def _about(turn: np.ndarray, origin: np.ndarray) -> np.ndarray:
+    """Return float64 [4, 4] of a turn or stretch, [3, 3], about a point."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn
+    matrix[:3, 3] = origin - turn @ origin
+    return matrix
+
+
+def free_turn(
+    angles_deg: tuple[float, float, float], origin: np.ndarray | list[float], rescale: bool
+) -> np.ndarray:
+    """Return float64 [4, 4] of an element's own rotation: about x, then y, then z.
+
+    Args:
+        angles_deg: right-handed, as in a model's file.
+        origin: the point that stays, blocks.
+        rescale: whether the element is stretched to span the block again.
+    """
+    turn = np.eye(3)
+    for axis, angle in enumerate(np.radians(angles_deg)):
+        one = np.eye(3)
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        one[first, first] = one[second, second] = np.cos(angle)
+        one[second, first], one[first, second] = np.sin(angle), -np.sin(angle)
+        turn = one @ turn
+    if rescale:  # Each axis until its end touches the side of the cube that the turn leaves.
+        turn = turn / np.abs(turn).max(axis=0)
+    return _about(turn, np.asarray(origin, np.float64))
+
+
+def is_quarter(matrix: np.ndarray) -> bool:
+    """Return whether a matrix maps axes onto axes."""
+    lengths = np.abs(matrix[:3, :3])  # A rescaled turn by 45 degrees has ones too, but more.
+    return bool(np.allclose(lengths, lengths.round(), atol=1e-9) and lengths.round().sum() == 3)
+
+
+def carry(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Element:
+    """Return an element moved by a quarter turn.
+
+    Args:
+        element: any element; a turned one gets the product as its turn.
+        matrix: float64 [4, 4] that maps axes onto axes.
+        uv_lock: whether textures lie as they would on an element that was made in the new place.
+    """
+    faces = element.faces
+    if uv_lock:
+        faces = tuple(_locked(side, face, matrix) for side, face in enumerate(faces))
+    if element.turn is not None:
+        return replace(element, faces=faces, turn=matrix @ element.turn)
+    ends = np.array([element.low, element.high]) @ matrix[:3, :3].T + matrix[:3, 3]
+    ends = np.where(np.abs(ends - ends.round(6)) < 1e-9, ends.round(6), ends)
+    back = np.linalg.inv(matrix)
+    moved: list[FaceLook | None] = [None] * 6
+    for side, face in enumerate(faces):
+        if face is not None:
+            moved[side_after(side, matrix)] = replace(face, uv=face.uv @ back)
+    low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
+    return replace(element, low=tuple(low), high=tuple(high), faces=tuple(moved))
+
+
+def side_after(side: int, matrix: np.ndarray) -> int:
+    """Return the side, 0 to 5 in the order of ``FACE_NAMES``, that a side is turned to."""
+    return int((_NORMALS @ (matrix[:3, :3] @ _NORMALS[side])).argmax())
+
+
+def _locked(side: int, face: FaceLook | None, matrix: np.ndarray) -> FaceLook | None:
+    """Return a face whose texture stays as the world lies while the face is turned."""
+    if face is None:
+        return None
+    lock = _lock(side, matrix.tobytes())
+    uv = lock[:, :2] @ face.uv
+    uv[:, 3] += lock[:, 2]
+    return replace(face, uv=uv)
+
+
+@lru_cache(maxsize=1024)
+def _lock(side: int, matrix_bytes: bytes) -> np.ndarray:
+    """Return float64 [2, 3] from a texture point (u, v, 1) to that of a locked texture.
+
+    A texture point goes to the place on the block's side that has it by default, with the turn to
+    another side, and there to the texture point of that place.
+    """
+    matrix = np.frombuffer(matrix_bytes, np.float64).reshape(4, 4)
+    before, after = face_uv(side, *_BLOCK), face_uv(side_after(side, matrix), *_BLOCK)
+    axes = np.array(FACE_AXES[side], np.float64)
+    to_block = np.zeros((4, 3))  # From (u, v, 1) to a point of the side.
+    to_block[:3, :2] = axes.T
+    to_block[:3, 2] = -(axes.T @ before[:, 3])
+    to_block[3, 2] = 1
+    return after @ matrix @ to_block
+
+
+# One element of a model's file becomes an ``Element``: a box, its faces, its own rotation.
+
+LOWEST, HIGHEST = -16.0, 32.0  # Sixteenths of a block; the game refuses others.
+
+
+def element_of(
+    raw: Mapping[str, Any], texture_of: Callable[[str], str], tint_of: Callable[[int], Tint]
+) -> Element:
+    """Return an element of a model's file as it stands before the block is turned.
+
+    Args:
+        raw: the object of the file.
+        texture_of: what a face names to the texture's name.
+        tint_of: a tint index to the colour that the texture is times.
+
+    Raises:
+        ValueError: it is not as the format says.
+    """
+    start = np.array(numbers(raw.get("from"), "from", 3, LOWEST, HIGHEST)) / 16
+    end = np.array(numbers(raw.get("to"), "to", 3, LOWEST, HIGHEST)) / 16
+    low, high = tuple(np.minimum(start, end).tolist()), tuple(np.maximum(start, end).tolist())
+    faces = mapping(raw.get("faces", {}), "faces")
+    element = Element(
+        low,
+        high,
+        tuple(
+            _face(side, faces[name], (low, high), texture_of, tint_of) if name in faces else None
+            for side, name in enumerate(FACE_NAMES)
+        ),
+        shade=raw.get("shade", True) is not False,
+        emission=int(number(raw.get("light_emission", 0), "light_emission", 0, 15)),
+    )
+    turn = _rotation(raw.get("rotation"))
+    if turn is None:
+        return element
+    if is_quarter(turn):
+        return carry(element, turn)
+    return Element(low, high, element.faces, turn, element.shade, element.emission)
+
+
+def _face(side: int, raw: Any, box, texture_of, tint_of) -> FaceLook:
+    face = mapping(raw, f"face {FACE_NAMES[side]}")
+    rect = None
+    if face.get("uv") is not None:
+        u0, v0, u1, v1 = numbers(face["uv"], "uv", 4, -1024, 1024)
+        rect = (u0, v0, u1, v1)
+    rotation = quarter(face.get("rotation", 0), "rotation of a face")
+    index = int(number(face.get("tintindex", -1), "tintindex"))
+    return FaceLook(
+        texture_of(text(face.get("texture"), "texture of a face")),
+        _uv(side, box[0], box[1], rect, rotation),
+        tint_of(index) if index >= 0 else None,
+    )
+
+
+@lru_cache(maxsize=1 << 14)
+def _uv(side: int, low, high, rect, rotation: int) -> np.ndarray:
+    """Return ``face_uv``; few boxes are those of thousands of blocks."""
+    uv = face_uv(side, low, high, rect, rotation)
+    uv.flags.writeable = False
+    return uv
+
+
+def _rotation(raw: Any) -> np.ndarray | None:
+    """Return float64 [4, 4] of an element's rotation, None for none.
+
+    It is one axis with its angle, or in newer files an angle for each of x, y and z.
+    """
+    if raw is None:
+        return None
+    rotation = mapping(raw, "rotation")
+    axis = rotation.get("axis")
+    if axis is not None:
+        if axis not in ("x", "y", "z"):
+            raise ValueError(f"axis of a rotation must be x, y or z, not {shown(axis)}")
+        angle = number(rotation.get("angle", 0), "angle", -3600, 3600)
+        angles = tuple(angle if name == axis else 0.0 for name in "xyz")
+    else:
+        angles = tuple(number(rotation.get(name, 0), name, -3600, 3600) for name in "xyz")
+    if not any(angles):
+        return None
+    x_deg, y_deg, z_deg = angles
+    origin = np.array(numbers(rotation.get("origin", [8, 8, 8]), "origin", 3)) / 16
+    return free_turn((x_deg, y_deg, z_deg), origin, rotation.get("rescale", False) is True)

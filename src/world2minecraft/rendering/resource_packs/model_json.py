@@ -1,0 +1,206 @@
+"""A model's file and its parents become one: elements, textures, and whether corners darken."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from world2minecraft.rendering.resource_packs.json_checks import (
+    listing,
+    mapping,
+    number,
+    quarter,
+    resource,
+    shown,
+    text,
+)
+from world2minecraft.rendering.resource_packs.pack_files import Resources
+
+# A blockstates file and a block's properties become the models that are drawn, each turned.
+#
+# Where a file leaves the choice to chance (a list with weights), the heaviest is taken, the first of
+# equals: a look belongs to a state here, not to a place, so that all blocks of a state look alike.
+
+MOST_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
+MOST_DEPTH = 16  # Of conditions within conditions.
+
+
+@dataclass(frozen=True)
+class Part:
+    """A model and how it is turned: degrees about x first, then y, then z."""
+
+    model: str
+    x_deg: int = 0
+    y_deg: int = 0
+    z_deg: int = 0
+    uv_lock: bool = False
+
+
+def parts_of(root: Mapping[str, Any], properties: Mapping[str, str]) -> tuple[Part, ...]:
+    """Return the parts that a state is drawn as; none where a multipart has none for it.
+
+    Args:
+        root: the object of ``assets/NAMESPACE/blockstates/BLOCK.json``.
+        properties: all properties of the state. One that is missing here counts as any value.
+
+    Raises:
+        ValueError: the file is not as the format says, or no variant is for these properties.
+    """
+    parts: list[Part] = []
+    if "variants" in root:
+        parts.append(_chosen(_variant(mapping(root["variants"], "variants"), properties)))
+    for one in listing(root.get("multipart", []), "multipart", MOST_CASES):
+        case = mapping(one, "a case of multipart")
+        if "when" not in case or _holds(case["when"], properties, 0):
+            parts.append(_chosen(case.get("apply")))
+    if "variants" not in root and "multipart" not in root:
+        raise ValueError("has neither variants nor multipart")
+    return tuple(parts)
+
+
+def _variant(variants: dict[str, Any], properties: Mapping[str, str]) -> Any:
+    for key, value in variants.items():
+        if all(_agrees(pair, properties) for pair in key.split(",")):
+            return value
+    said = ",".join(f"{key}={value}" for key, value in sorted(properties.items()))
+    raise ValueError(f"has no variant for {shown(said)}")
+
+
+def _agrees(pair: str, properties: Mapping[str, str]) -> bool:
+    """Return whether ``facing=east`` holds; "" and old packs' "normal" stand for all states."""
+    key, equals, value = pair.strip().partition("=")
+    return not equals or properties.get(key, value) == value
+
+
+def _holds(when: Any, properties: Mapping[str, str], depth: int) -> bool:
+    """Return whether a condition holds: properties, ``OR`` and ``AND`` lists, one in another."""
+    if depth > MOST_DEPTH:
+        raise ValueError("its conditions are nested too deep")
+    for key, wanted in mapping(when, "when").items():
+        if key in ("OR", "AND"):
+            several = [
+                _holds(one, properties, depth + 1) for one in listing(wanted, key, MOST_CASES)
+            ]
+            if not (any(several) if key == "OR" else all(several)):
+                return False
+        elif not _is_one_of(wanted, properties.get(key)):
+            return False
+    return True
+
+
+def _is_one_of(wanted: Any, value: str | None) -> bool:
+    """Return whether a value is among ``a|b``, or not among ``!a|b``."""
+    if isinstance(wanted, bool):
+        wanted = "true" if wanted else "false"
+    if isinstance(wanted, int):
+        wanted = str(wanted)
+    words = text(wanted, "a value of when")
+    if words.startswith("!"):
+        return value not in words[1:].split("|")
+    return value in words.split("|")
+
+
+def _chosen(entry: Any) -> Part:
+    """Return the heaviest entry of a list, the first of equals; or the only one."""
+    if isinstance(entry, list):
+        if not entry:
+            raise ValueError("has an empty list of models")
+        entries = [mapping(one, "a model of a list") for one in listing(entry, "models", 10_000)]
+        weights = [number(one.get("weight", 1), "weight") for one in entries]
+        entry = entries[weights.index(max(weights))]
+    entry = mapping(entry, "a variant")
+    return Part(
+        text(entry.get("model"), "model"),
+        *(quarter(entry.get(axis, 0), axis) for axis in "xyz"),
+        uv_lock=entry.get("uvlock", False) is True,
+    )
+
+
+MOST_PARENTS = 32  # The game's deepest chain has 5.
+MOST_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
+_CURE = "give the client jar of the game before the pack"
+
+
+@dataclass(frozen=True, eq=False)
+class FlatModel:
+    """A model with its parents' values: raw elements, and texture names by their keys.
+
+    ``in_code`` says that the game draws it in code, as it does chests and beds.
+    """
+
+    elements: tuple[Mapping[str, Any], ...]
+    textures: Mapping[str, Any]
+    ambient_occlusion: bool
+    in_code: bool
+
+
+def flatten(name: str, resources: Resources) -> FlatModel:
+    """Return the model of a name such as ``minecraft:block/stone`` merged with its parents.
+
+    The child's elements replace the parents'; textures merge, the child's first.
+
+    Raises:
+        ValueError: it or a parent is missing, is its own parent, or is not as the format says.
+    """
+    chain = _chain(name, resources)
+    textures: dict[str, Any] = {}
+    elements: Any = None
+    occlusion: Any = None
+    for model in chain:
+        for key, value in mapping(model.get("textures", {}), "textures").items():
+            textures.setdefault(key, value)
+        elements = model.get("elements") if elements is None else elements
+        occlusion = model.get("ambientocclusion") if occlusion is None else occlusion
+        if "loader" in model:
+            raise ValueError(f"model {name} is in a mod's own format, which is not read")
+    if not elements:
+        return FlatModel((), textures, True, in_code=True)
+    boxes = [mapping(one, "an element") for one in listing(elements, "elements", MOST_ELEMENTS)]
+    return FlatModel(tuple(boxes), textures, occlusion is not False, in_code=False)
+
+
+def _chain(name: str, resources: Resources) -> list[dict[str, Any]]:
+    """Return the objects of a model and its parents, the child first."""
+    chain: list[dict[str, Any]] = []
+    seen: set[tuple[str, str]] = set()
+    at: str | None = name
+    while at is not None:
+        space, path = resource(at, "model")
+        if path.startswith("builtin/"):  # What the game draws in code; there is no file.
+            return chain
+        if (space, path) in seen:
+            raise ValueError(f"model {name} is its own parent")
+        if len(seen) == MOST_PARENTS:
+            raise ValueError(f"model {name} has more than {MOST_PARENTS} parents")
+        seen.add((space, path))
+        model = resources.object(f"assets/{space}/models/{path}.json")
+        if model is None:
+            which = f"{name}: its parent {space}:{path}" if chain else f"{space}:{path}"
+            raise ValueError(f"model {which} is in none of the packs, or cannot be read; {_CURE}")
+        chain.append(model)
+        at = None if model.get("parent") is None else text(model["parent"], "parent")
+    return chain
+
+
+def texture_of(face: str, textures: Mapping[str, Any]) -> str:
+    """Return the name ``namespace:path`` of the texture that a face names, through its keys.
+
+    Newer files hold an object with a ``sprite`` in place of a name.
+
+    Raises:
+        ValueError: no texture is there, or the keys lead in a circle.
+    """
+    key, seen = face.removeprefix("#"), set()
+    if not face.startswith("#") and key not in textures:
+        return ":".join(resource(key, "texture"))
+    while key not in seen:
+        seen.add(key)
+        value = textures.get(key)
+        if isinstance(value, dict):
+            value = value.get("sprite")
+        if value is None:
+            raise ValueError(f"texture #{key[:40]} is not set")
+        value = text(value, f"texture {key[:40]}")
+        if not value.startswith("#"):
+            return ":".join(resource(value, "texture"))
+        key = value[1:]
+    raise ValueError(f"texture #{key[:40]} leads back to itself")

@@ -1,0 +1,109 @@
+"""What one sees around places: how far rays go, and what they end at.
+
+Rays march through cells in short strides, all at once; where they cut a corner a little short,
+no view is worse for it.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.collision_shapes import boxes_of
+from world2minecraft.minecraft.physics.walk_graph import is_door
+from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+
+# What hides the view in a volume, and which cells have something above: one truth a cell.
+#
+# Where a person may stand, and the ways between, is told by ``minecraft.physics.walk_graph``.
+
+ROOF = 0.2  # Blocks: what is lower, such as a carpet, is no roof.
+SIGHT_SHARE = 0.3  # Of a cell's side: what is narrower hides little.
+
+
+@dataclass(frozen=True, eq=False)
+class Hiding:
+    """Cells that one does not see through, and those with something above.
+
+    Both are [X, Y, Z] in block axes from ``corner``. Doors and gates hide nothing.
+    """
+
+    hides: np.ndarray  # bool [X, Y, Z]
+    roofed: np.ndarray  # bool [X, Y, Z]
+    corner: tuple[int, int, int]
+    blocks_per_metre: float
+
+
+def hiding_of(volume: BlockVolume) -> Hiding:
+    """Return what hides the view in a volume."""
+    measures = np.array([_measures(state) for state in volume.palette], np.float32)
+    top, width = measures[volume.states, 0], measures[volume.states, 1]
+    roofs = (top > ROOF)[:, ::-1]
+    return Hiding(
+        hides=width > SIGHT_SHARE,
+        roofed=np.logical_or.accumulate(roofs, axis=1)[:, ::-1],
+        corner=volume.corner,
+        blocks_per_metre=volume.blocks_per_metre,
+    )
+
+
+@lru_cache(maxsize=1 << 14)
+def _measures(state: str) -> tuple[float, float]:
+    """Return how high a state fills its cell for a body, and the width that hides the view."""
+    if is_door(state):
+        return 0.0, 0.0
+    boxes, seen = boxes_of(state), visual_boxes_of(state)
+    top = float(boxes[:, 4].max()) if len(boxes) else 0.0
+    if not len(seen):
+        return top, 0.0
+    size = seen[:, 3:].max(axis=0) - seen[:, :3].min(axis=0)
+    return top, float(np.sort(size)[1])
+
+
+FAR_M = 12.0  # Rays end there.
+STRIDE_BLOCKS = 0.35
+
+
+class Around(NamedTuple):
+    """What rays meet from N places, at P pitches and Y yaws: arrays [N, P, Y]."""
+
+    far_m: np.ndarray  # float64, FAR_M where a ray meets nothing
+    cell: np.ndarray  # int64, C-order index of the cell that it ends at, -1 for none
+
+
+def look_around(
+    hiding: Hiding, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
+) -> Around:
+    """Cast rays from eyes, float64 [N, 3] in world blocks, to all pairs of pitch and yaw.
+
+    Args:
+        hiding: what hides the view.
+        eyes: where from.
+        yaws_deg: the game's, [Y].
+        pitches_deg: the game's, down is positive, [P].
+    """
+    yaw, pitch = np.radians(yaws_deg)[None], np.radians(pitches_deg)[:, None]
+    down = np.broadcast_to(-np.sin(pitch), (len(pitches_deg), len(yaws_deg)))
+    rays = np.stack([-np.sin(yaw) * np.cos(pitch), down, np.cos(yaw) * np.cos(pitch)], axis=-1)
+    count = rays.shape[0] * rays.shape[1]
+    start = np.repeat(eyes - np.array(hiding.corner), count, axis=0)
+    ahead = np.tile(rays.reshape(-1, 3), (len(eyes), 1)) * STRIDE_BLOCKS
+    shape = np.array(hiding.hides.shape)
+    limit = FAR_M * hiding.blocks_per_metre
+    far, cell = np.full(len(start), limit), np.full(len(start), -1, np.int64)
+    going = np.arange(len(start))
+    for n in range(1, int(limit / STRIDE_BLOCKS) + 1):
+        at = np.floor(start[going] + ahead[going] * n).astype(np.int64)
+        inside = ((at >= 0) & (at < shape)).all(axis=1)
+        going, at = going[inside], at[inside]
+        met = hiding.hides[tuple(at.T)]
+        hit = going[met]
+        far[hit] = n * STRIDE_BLOCKS
+        cell[hit] = np.ravel_multi_index(tuple(at[met].T), hiding.hides.shape)
+        going = going[~met]
+        if not len(going):
+            break
+    every = (len(eyes), *rays.shape[:2])
+    return Around(far.reshape(every) / hiding.blocks_per_metre, cell.reshape(every))

@@ -1,0 +1,87 @@
+"""One array of a scene as bytes for the page: ``W2MV``.
+
+Magic, u16 version, u8 dtype (0 u8, 1 u16), u8 flags, 3 x u32 cells along x, y, z, f32 cell size
+in metres, 3 x f32 minimum corner in metres, u32 number of labels; then the values in C order, all
+little-endian. Flag 1 says that each cell has three bytes, its colour.
+"""
+
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.editing.scene import SceneDraft
+
+# Arrays for the page: a JSON header, then each array where the header says.
+#
+# ``magic`` (4 bytes), u32 length of the header, the header in UTF-8 padded with spaces, then the
+# arrays, little-endian and in C order, each at a multiple of 8 bytes after the header. The header's
+# ``arrays`` tells ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the header}}``.
+
+_ALIGN = 8
+
+
+def packed_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
+    """Return the bytes of arrays and of what is told about them."""
+    rows, parts, offset = {}, [], 0
+    for name, values in arrays.items():
+        kind = values.dtype.newbyteorder("<")
+        data = np.ascontiguousarray(values, kind).tobytes()
+        rows[name] = {"dtype": kind.str[1:], "shape": list(values.shape), "offset": offset}
+        parts += [data, bytes(-len(data) % _ALIGN)]
+        offset += len(data) + len(parts[-1])
+    text = json.dumps({**told, "arrays": rows}, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-(len(text) + len(magic) + 4) % _ALIGN)
+    return b"".join([magic, struct.pack("<I", len(text)), text, *parts])
+
+
+MAGIC, VERSION = b"W2MV", 1
+HEADER = struct.Struct("<4sHBB3If3fI")
+U8, U16 = 0, 1
+THREE_A_CELL = 1
+VOLUMES = ("labels", "instance", "confidence", "colour")
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """A copy of one array of a scene, with what its header says."""
+
+    values: np.ndarray  # [X, Y, Z], or [X, Y, Z, 3] of a colour
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+
+    def as_bytes(self) -> bytes:
+        """Return it as ``W2MV``; confidence is 0 to 255 then."""
+        is_share = self.values.dtype == np.float16
+        values = as_bytes(self.values) if is_share else self.values
+        kind = U16 if values.dtype == np.uint16 else U8
+        flags = THREE_A_CELL if values.ndim == 4 else 0
+        place = (*values.shape[:3], self.voxel_m, *map(float, self.origin_m))
+        head = HEADER.pack(MAGIC, VERSION, kind, flags, *place, CLASS_COUNT)
+        return head + values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
+
+
+def volume_of(draft: SceneDraft, what: str) -> Volume:
+    """Return a copy of the array named ``what``: labels, instance, confidence or colour.
+
+    Raises:
+        UnknownNameError: there is no array of that name.
+    """
+    if what not in VOLUMES:
+        raise UnknownNameError("volume", what, VOLUMES)
+    return Volume(getattr(draft, what).copy(), draft.voxel_m, draft.origin_m)
+
+
+def labels_bytes(draft: SceneDraft, labels: np.ndarray) -> bytes:
+    """Return labels uint8 [X, Y, Z] that lie on a scene's cells, as ``W2MV``."""
+    return Volume(labels, draft.voxel_m, draft.origin_m).as_bytes()
+
+
+def as_bytes(confidence: np.ndarray) -> np.ndarray:
+    """Return confidence, 0 to 1, as uint8 of the same shape, 0 to 255."""
+    return np.round(confidence.astype(np.float32) * 255).astype(np.uint8)
