@@ -26,7 +26,7 @@ import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene.objects_of import facts
+from world2minecraft.editing.scene.scene_objects import facts
 from world2minecraft.sceneforge.demo import demo_room
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.editor import Editor

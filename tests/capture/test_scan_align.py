@@ -19,13 +19,15 @@ from world2minecraft.capture.alignment.axis_profiles import profile
 from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.core.types import Scan
-from world2minecraft.geometry.oriented_points import collect_surface
+from world2minecraft.geometry.oriented_points import collect_oriented_points
 
 
 @pytest.fixture(scope="module")
 def surfaces(box_room):
     """The surfaces of the box room in its own frame, clean and as a depth camera sees it."""
-    found = {noise: collect_surface(box_room.views(14, noise_seed=noise)) for noise in (None, 1)}
+    found = {
+        noise: collect_oriented_points(box_room.views(14, noise_seed=noise)) for noise in (None, 1)
+    }
     return found, np.array(box_room.size_m)
 
 

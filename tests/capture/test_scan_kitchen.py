@@ -7,7 +7,7 @@ from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.capture.open_scan import ALIGNED_FRAMES
 from world2minecraft.capture.validation import spread_over
 from world2minecraft.core.coordinates import apply, rotation_about_z
-from world2minecraft.geometry.unprojection import lift_depth
+from world2minecraft.geometry.unprojection import unproject_depth
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def kitchen(shared_data):
     for view in scan.views:
         if view.name not in looked_at:
             near = np.where(view.depth_m < 4, view.depth_m, np.float32(0))
-            found, _ = lift_depth(near, view.depth_camera, view.depth_camera_to_scan)
+            found, _ = unproject_depth(near, view.depth_camera, view.depth_camera_to_scan)
             points.append(apply(scan.scan_to_room, found[::11].astype(np.float64)))
     return scan, np.concatenate(points)
 

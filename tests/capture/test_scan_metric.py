@@ -15,7 +15,7 @@ from world2minecraft.capture.scale import (
     parse_known,
     resized,
 )
-from world2minecraft.capture.scale.posterior import Posterior, summed
+from world2minecraft.capture.scale.estimate import Posterior, summed
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View

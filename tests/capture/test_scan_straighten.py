@@ -6,16 +6,16 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.capture.alignment.align import align_surface, find_faces, straightening_turn
 from world2minecraft.capture.alignment.axis_profiles import face_place_m, looks
-from world2minecraft.geometry.oriented_points import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 
-def sheet(x: float, low: float, high: float, noise_m: float = 0.002) -> Surface:
+def sheet(x: float, low: float, high: float, noise_m: float = 0.002) -> OrientedPoints:
     """Return a surface at ``x`` that looks along +x, as wide in y as in z."""
     y, z = np.meshgrid(np.arange(low, high, 0.05), np.arange(low, high, 0.05))
     rng = np.random.default_rng(2)
     points = np.column_stack([np.full(y.size, x), y.ravel(), z.ravel()])
     points[:, 0] += noise_m * rng.standard_normal(y.size)
-    return Surface(
+    return OrientedPoints(
         points,
         np.tile([1.0, 0.0, 0.0], (y.size, 1)),
         np.eye(4)[None],
@@ -24,8 +24,8 @@ def sheet(x: float, low: float, high: float, noise_m: float = 0.002) -> Surface:
     )
 
 
-def both(one: Surface, other: Surface) -> Surface:
-    return Surface(
+def both(one: OrientedPoints, other: OrientedPoints) -> OrientedPoints:
+    return OrientedPoints(
         np.concatenate([one.points_m, other.points_m]),
         np.concatenate([one.normals, other.normals]),
         one.cameras,
@@ -36,7 +36,7 @@ def both(one: Surface, other: Surface) -> Surface:
 
 @pytest.mark.parametrize("degrees", [(0.8, 0, 0), (0, -0.8, 0), (0, 0, 0.8), (0.5, -0.4, 0.6)])
 def test_a_small_lean_is_found(box_room, degrees):
-    surface = collect_surface(box_room.views(14, noise_seed=1))
+    surface = collect_oriented_points(box_room.views(14, noise_seed=1))
     lean = np.eye(4)
     lean[:3, :3] = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
     left = straightening_turn(surface.turned(lean)) @ lean[:3, :3]
@@ -72,7 +72,7 @@ def test_looks_count_the_points_of_a_patch():
 
 def test_the_room_of_exact_depth_is_found_to_a_millimetre(box_room):
     """To 0.02 degrees and 1 mm, where each frame is right."""
-    surface = collect_surface(box_room.views(14))
+    surface = collect_oriented_points(box_room.views(14))
     found = align_surface(surface)
     tilt = np.degrees(np.arccos(min(1.0, found.scan_to_room[2, 2])))
     assert tilt < 0.02

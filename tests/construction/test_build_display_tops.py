@@ -23,13 +23,13 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.worktops import Worktop
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 BLOCKS = 4.0
 
 
 def worktop(plan: np.ndarray, top_m: float = 0.96) -> Worktop:
-    dark = oklab_of_srgb(np.array(DARK, np.uint8))
+    dark = srgb_to_oklab(np.array(DARK, np.uint8))
     return Worktop(np.zeros((3, 3), bool), 3, 1, dark, top_m, plan)
 
 
@@ -186,7 +186,7 @@ def test_a_red_front_is_red_and_its_top_dark():
     top = np.column_stack(
         [rng.uniform(-0.3, 0.3, 80), rng.uniform(-0.6, 0.6, 80), np.full(80, 0.9)]
     )
-    red, dark = (oklab_of_srgb(np.array(colour, np.uint8)) for colour in (RED, DARK))
+    red, dark = (srgb_to_oklab(np.array(colour, np.uint8)) for colour in (RED, DARK))
     colours = np.concatenate([np.tile(red, (200, 1)), np.tile(dark, (80, 1))])
     kinds = {role: material.kind for role, material in counter.materials.items()}
     found = role_colours(parts, frame, np.concatenate([front, top]), colours, VOXEL_M, kinds)
@@ -203,7 +203,7 @@ def test_a_heap_of_two_colours_is_two_boxes_in_its_own_frame():
     sketch.put((10, 14), (5, 9), (0, 4), FURN, RED, 4).put((10, 14), (5, 9), (4, 8), FURN, WHITE, 4)
     grid = sketch.grid()
     cells = np.argwhere(grid.instance == 4)
-    colours = oklab_of_srgb(grid.colour[tuple(cells.T)])
+    colours = srgb_to_oklab(grid.colour[tuple(cells.T)])
     source = (grid, FURN, load_palette("vanilla"), BuildParameters())
     pieces = pieces_of_cells(cells, colours, np.ones(len(cells), bool), *source)
     frame = frame_of_cells(cells, grid)

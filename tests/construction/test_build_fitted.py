@@ -5,7 +5,7 @@ import pytest
 from build_samples import CHAIR, FURN, RED, TABLE, WOOD, Sketch, placement
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.celled import (
+from world2minecraft.construction.cell_objects import (
     Solid,
     inner_cells,
     kinds_of_sheet,
@@ -20,7 +20,7 @@ from world2minecraft.construction.palettes import load_palette
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.furniture import template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
 
@@ -57,7 +57,7 @@ def chair_cells(sketch, x, y, number, colour=SPRUCE):
 
 def kinds_in(rgb, class_id=int(SemanticClass.FURN)):
     full = VANILLA.blocks[class_id]
-    colours = oklab_of_srgb(np.array([rgb], np.uint8))
+    colours = srgb_to_oklab(np.array([rgb], np.uint8))
     return MATERIALS.kinds_for(colours, full, np.zeros(len(full)), class_id, 0.4)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.idioms import filled_by, idiom_box
+from world2minecraft.construction.block_designs import filled_by, idiom_box
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import block_designs as idiom

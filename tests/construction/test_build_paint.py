@@ -3,16 +3,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.construction.block_designs import DYES
 from world2minecraft.construction.cell_colours import gains_of, group_medians, spread
-from world2minecraft.construction.idioms import DYES
 from world2minecraft.construction.paint import calm, choose_few, neighbour_table, paint
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.geometry.colour import (
-    linear_of_oklab,
-    linear_of_srgb,
-    oklab_of_linear,
-    oklab_of_srgb,
-    srgb_of_linear,
+    linear_to_oklab,
+    linear_to_srgb,
+    oklab_to_linear,
+    srgb_to_linear,
+    srgb_to_oklab,
 )
 from world2minecraft.minecraft.block_colours import colour_of, colours_of, nearest_block
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -31,15 +31,15 @@ def test_oklab_of_known_colours():
         (0, 0, 0): (0.0, 0.0, 0.0),
     }
     for rgb, oklab in known.items():
-        assert oklab_of_srgb(np.array(rgb, np.uint8)) == pytest.approx(oklab, abs=2e-4)
+        assert srgb_to_oklab(np.array(rgb, np.uint8)) == pytest.approx(oklab, abs=2e-4)
 
 
 @given(st.tuples(*[st.integers(0, 255)] * 3))
 def test_oklab_there_and_back(rgb):
-    oklab = oklab_of_srgb(np.array(rgb, np.uint8))
-    assert np.abs(srgb_of_linear(linear_of_oklab(oklab)).astype(int) - rgb).max() <= 1
-    linear = linear_of_srgb(np.array(rgb, np.uint8))
-    assert linear_of_oklab(oklab_of_linear(linear)) == pytest.approx(linear, abs=1e-5)
+    oklab = srgb_to_oklab(np.array(rgb, np.uint8))
+    assert np.abs(linear_to_srgb(oklab_to_linear(oklab)).astype(int) - rgb).max() <= 1
+    linear = srgb_to_linear(np.array(rgb, np.uint8))
+    assert oklab_to_linear(linear_to_oklab(linear)) == pytest.approx(linear, abs=1e-5)
 
 
 def test_each_wool_is_nearest_to_itself():
@@ -49,9 +49,9 @@ def test_each_wool_is_nearest_to_itself():
 @given(st.lists(st.tuples(*[st.integers(0, 255)] * 3), min_size=1, max_size=20))
 def test_the_nearest_block_is_the_nearest(colours):
     rgb = np.array(colours, np.uint8)
-    offered = oklab_of_srgb(colours_of(WOOLS))
+    offered = srgb_to_oklab(colours_of(WOOLS))
     chosen = nearest_block(rgb, WOOLS)
-    for colour, index in zip(oklab_of_srgb(rgb), chosen, strict=True):
+    for colour, index in zip(srgb_to_oklab(rgb), chosen, strict=True):
         apart = np.linalg.norm(offered - colour, axis=1)
         assert apart[index] == pytest.approx(apart.min(), abs=1e-6)
 
@@ -89,7 +89,7 @@ def test_a_mod_s_block_has_a_colour_of_its_own_that_stays():
 def test_a_noisy_surface_becomes_one_block():
     rng = np.random.default_rng(0)
     positions = np.argwhere(np.ones((12, 1, 12), bool))
-    base = oklab_of_srgb(np.array([170, 45, 40], np.uint8))
+    base = srgb_to_oklab(np.array([170, 45, 40], np.uint8))
     colours = (base + rng.normal(0, 0.03, (len(positions), 3))).astype(np.float32)
     index = paint(colours, positions, WOOLS, **TERMS)
     assert {WOOLS[i] for i in index} == {"minecraft:red_wool"}
@@ -98,7 +98,7 @@ def test_a_noisy_surface_becomes_one_block():
 def test_an_edge_between_colours_stays_where_it_is():
     positions = np.argwhere(np.ones((10, 1, 6), bool))
     rgb = np.where((positions[:, 2] < 4)[:, None], (161, 39, 35), (30, 30, 34)).astype(np.uint8)
-    chosen = np.array(WOOLS)[paint(oklab_of_srgb(rgb), positions, WOOLS, **TERMS)]
+    chosen = np.array(WOOLS)[paint(srgb_to_oklab(rgb), positions, WOOLS, **TERMS)]
     assert set(chosen[positions[:, 2] < 4]) == {"minecraft:red_wool"}
     assert set(chosen[positions[:, 2] >= 4]) == {"minecraft:black_wool"}
 
@@ -107,7 +107,7 @@ def test_few_means_few():
     rng = np.random.default_rng(2)
     rgb = rng.integers(0, 256, (300, 3)).astype(np.uint8)
     positions = np.argwhere(np.ones((300, 1, 1), bool))
-    index = paint(oklab_of_srgb(rgb), positions, WOOLS, **TERMS)
+    index = paint(srgb_to_oklab(rgb), positions, WOOLS, **TERMS)
     assert 1 < len(set(index.tolist())) <= 3
     costs = np.array([[0.0, 1.0, 1.0], [1.0, 0.0, 0.99]] * 20)
     assert choose_few(costs, 3, 0.1).tolist() == [0, 1]

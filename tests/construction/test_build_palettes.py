@@ -22,7 +22,7 @@ from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, Placement
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -95,8 +95,8 @@ def test_a_chair_of_the_mod_looks_where_the_chair_looks():
 
 
 def test_it_takes_the_wood_or_dye_of_the_object():
-    red = oklab_of_srgb(np.array([160, 40, 35], np.uint8))
-    dark = oklab_of_srgb(np.array([60, 40, 22], np.uint8))
+    red = srgb_to_oklab(np.array([160, 40, 35], np.uint8))
+    dark = srgb_to_oklab(np.array([60, 40, 22], np.uint8))
     (chair,) = states_of("chair", [0.48, 0.45, 0.7], colour=dark).values()
     assert chair.name == "refurbished_furniture:dark_oak_chair"
     sofa = states_of("sofa", [0.8, 1.5, 0.8], colour=red)

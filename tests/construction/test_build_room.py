@@ -17,7 +17,8 @@ from world2minecraft.construction.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.errors import UsageError
-from world2minecraft.geometry.morphology import dilate, dilate_faces, label_face_components
+from world2minecraft.geometry.connected_components import label_face_components
+from world2minecraft.geometry.morphology import dilate, dilate_faces
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable

@@ -8,7 +8,7 @@ from world2minecraft.construction.parts import design_of
 from world2minecraft.construction.seats import chair_paints, lit_colour
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 BROWN, SHADE, RED = (120, 80, 45), (35, 24, 14), (190, 30, 30)
 
@@ -31,12 +31,12 @@ def chairs(*colours: tuple[tuple[int, int, int], tuple[int, int, int]]):
         voxel_m=0.08,
         origin_m=np.zeros(3),
     )
-    return grid, oklab_of_srgb(colour), labels > 0
+    return grid, srgb_to_oklab(colour), labels > 0
 
 
 def test_the_lit_half_says_the_paint():
     paints = chair_paints(*chairs((BROWN, SHADE)), 0.4)
-    assert np.allclose(paints[1], oklab_of_srgb(np.array(BROWN, np.uint8)), atol=1e-4)
+    assert np.allclose(paints[1], srgb_to_oklab(np.array(BROWN, np.uint8)), atol=1e-4)
 
 
 def test_chairs_of_a_set_share_one_paint_and_a_red_one_keeps_its_own():
@@ -49,7 +49,7 @@ def test_chairs_of_a_set_share_one_paint_and_a_red_one_keeps_its_own():
 def test_grey_cushions_do_not_hide_a_wooden_frame():
     grey = (150, 150, 148)
     paints = chair_paints(*chairs((grey, BROWN), (grey, grey)), 0.4)
-    assert np.allclose(paints[1], oklab_of_srgb(np.array(BROWN, np.uint8)), atol=1e-4)
+    assert np.allclose(paints[1], srgb_to_oklab(np.array(BROWN, np.uint8)), atol=1e-4)
     assert np.hypot(*paints[2][1:]) < 0.01
 
 

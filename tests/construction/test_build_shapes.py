@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.cells import shape_of_cells
+from world2minecraft.construction.cell_objects import shape_of_cells
 from world2minecraft.construction.lattice import face_shares, lattice_over, memberships, overlaps
 from world2minecraft.construction.parts import design_of
 from world2minecraft.construction.tops import top_cells

@@ -9,13 +9,13 @@ from build_samples import placement
 from world2minecraft.construction.substitutes import is_green, stand_in
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Alternative
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 GREEN, BROWN, RED = ((70, 110, 40), (110, 80, 50), (160, 36, 33))
 
 
 def lab(rgb):
-    return oklab_of_srgb(np.array(rgb, np.uint8))
+    return srgb_to_oklab(np.array(rgb, np.uint8))
 
 
 def cells(class_id, size_m, **more):

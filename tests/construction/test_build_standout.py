@@ -5,14 +5,14 @@ from build_samples import WALL, WHITE, Sketch
 from world2minecraft.construction import build_volume
 from world2minecraft.construction.standout import PICTURE, RUG, standing_out
 from world2minecraft.core.coordinates import apply
-from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
+from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of
 
 PURPLE, BLUE = (92, 86, 116), (60, 90, 140)
 
 
 def hue_of(state):
-    return oklab_of_srgb(np.array(colour_of(state), np.uint8))[1:]
+    return srgb_to_oklab(np.array(colour_of(state), np.uint8))[1:]
 
 
 def state_at(volume, *point_m):
@@ -23,8 +23,8 @@ def state_at(volume, *point_m):
 
 def lit(rgb, shares):
     """Colours float32 [N, 3] of one paint under different light."""
-    linear = linear_of_srgb(np.array(rgb, np.uint8))
-    return oklab_of_linear(np.outer(shares, linear))
+    linear = srgb_to_linear(np.array(rgb, np.uint8))
+    return linear_to_oklab(np.outer(shares, linear))
 
 
 def test_a_rug_stays_and_is_of_its_hue():
@@ -60,7 +60,7 @@ def test_a_picture_on_a_plain_wall_is_a_patch_and_no_more():
     colours = lit(WHITE, shares.ravel()).reshape(16, 10, 3)
     picture = np.zeros((16, 10), bool)
     picture[5:8, 4:7] = True
-    colours[picture] = oklab_of_srgb(np.array(BLUE, np.uint8))
+    colours[picture] = srgb_to_oklab(np.array(BLUE, np.uint8))
     parts = standing_out(mask, colours.reshape(-1, 3), 0.25, PICTURE)
     assert np.array_equal(parts.reshape(16, 10) > 0, picture)
 

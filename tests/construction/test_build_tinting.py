@@ -5,15 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.idioms import filled_by
+from world2minecraft.construction.block_designs import Hue, filled_by, tinted
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.tinting import Hue, tinted
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import block_designs as idiom
 from world2minecraft.furniture import template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 RED, BLUE, WHITE, OAK, DARK = (
     (160, 36, 33),
@@ -25,7 +24,7 @@ RED, BLUE, WHITE, OAK, DARK = (
 
 
 def _lab(rgb):
-    return oklab_of_srgb(np.array(rgb, np.uint8))
+    return srgb_to_oklab(np.array(rgb, np.uint8))
 
 
 def _design(name, scale=4.0, size_m=None, quarter_turns=0):

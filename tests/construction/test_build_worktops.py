@@ -10,7 +10,7 @@ from world2minecraft.construction.palette_files import palette_of
 from world2minecraft.construction.plates import Plates
 from world2minecraft.construction.worktops import Worktop, joined
 from world2minecraft.core.coordinates import apply
-from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
+from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of
 
 
@@ -32,11 +32,11 @@ def kitchen(lying=WHITE):
 
 
 def chroma_of(state):
-    return float(np.hypot(*oklab_of_srgb(np.array(colour_of(state), np.uint8))[1:]))
+    return float(np.hypot(*srgb_to_oklab(np.array(colour_of(state), np.uint8))[1:]))
 
 
 def lightness_of(state):
-    return float(oklab_of_srgb(np.array(colour_of(state), np.uint8))[0])
+    return float(srgb_to_oklab(np.array(colour_of(state), np.uint8))[0])
 
 
 def test_a_glossy_counter_is_one_dark_plate_over_a_red_front():
@@ -62,7 +62,7 @@ def plates_over(numbers, scale, names):
     for place, number in enumerate(numbers):
         columns = np.zeros((12, 4), bool)
         columns[1 + 3 * place : 3 + 3 * place, 1:3] = True
-        dark = oklab_of_srgb(np.array(DARK, np.uint8))
+        dark = srgb_to_oklab(np.array(DARK, np.uint8))
         plates.worktops[number] = Worktop(columns, 1, LOWER, dark)
         at = (*np.nonzero(columns), np.full(4, 1))
         if scale < 1.5:
@@ -96,11 +96,11 @@ def test_a_counter_that_was_measured_takes_no_plate():
 
 def test_the_shades_and_hazes_of_a_strong_paint_are_one_colour():
     rng = np.random.default_rng(4)
-    light = linear_of_srgb(np.array(RED, np.uint8)) * rng.uniform(0.5, 1.3, (400, 1))
+    light = srgb_to_linear(np.array(RED, np.uint8)) * rng.uniform(0.5, 1.3, (400, 1))
     haze = rng.uniform(0, 0.12, (400, 1))
-    reds = oklab_of_linear(np.clip(light * (1 - haze) + 0.4 * haze, 0, 1))
-    wood = np.tile(oklab_of_srgb(np.array([162, 131, 79], np.uint8)), (300, 1))
-    grey = np.tile(oklab_of_srgb(np.array([120, 120, 124], np.uint8)), (300, 1))
+    reds = linear_to_oklab(np.clip(light * (1 - haze) + 0.4 * haze, 0, 1))
+    wood = np.tile(srgb_to_oklab(np.array([162, 131, 79], np.uint8)), (300, 1))
+    grey = np.tile(srgb_to_oklab(np.array([120, 120, 124], np.uint8)), (300, 1))
     found = one_paint(np.concatenate([reds, wood, grey]).astype(np.float32))
     assert np.array_equal(found[400:], np.concatenate([wood, grey]).astype(np.float32))
     assert len(np.unique(found[:400], axis=0)) < 0.2 * 400

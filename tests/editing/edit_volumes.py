@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
-from world2minecraft.editing.draft import Draft
+from world2minecraft.editing.volume_draft import Draft
 
 PALETTE = (
     AIR,

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.editing.cleanup.floating import floating_cells
 from world2minecraft.editing.cleanup.passes import RULES, mended
-from world2minecraft.editing.draft import Draft, applied
+from world2minecraft.editing.volume_draft import Draft, applied
 from world2minecraft.minecraft.rules.stability import unstable
 
 FLOOR, WALL, PANE = "minecraft:oak_planks", "minecraft:white_concrete", "minecraft:glass"

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import AIR
-from world2minecraft.editing.cleanup.contact import GAP, STEPS, touches, touching_parts
+from world2minecraft.editing.cleanup.floating import GAP, STEPS, touches, touching_parts
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 STONE = "minecraft:stone"

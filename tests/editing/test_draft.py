@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, LimitError
 from world2minecraft.core.types import AIR
-from world2minecraft.editing.draft import Draft, applied
-from world2minecraft.editing.packing import pack_edit, unpack_edit
+from world2minecraft.editing.journal import pack_edit, unpack_edit
+from world2minecraft.editing.volume_draft import Draft, applied
 
 seeds = st.integers(0, 10_000)
 

@@ -10,7 +10,7 @@ from test_cleanup import FURN, OBJS, RED, TABLE, Room, kinds
 from world2minecraft.editing.cleanup.floating import floating_cells
 from world2minecraft.editing.cleanup.gaps import whole_of
 from world2minecraft.editing.cleanup.passes import mended
-from world2minecraft.editing.draft import Draft, applied
+from world2minecraft.editing.volume_draft import Draft, applied
 
 FENCE = "minecraft:oak_fence[east=false,north=false,south=false,waterlogged=false,west=false]"
 

@@ -12,10 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError, UsageError
-from world2minecraft.editing.draft import applied
-from world2minecraft.editing.history import History
-from world2minecraft.editing.journal import Journal, write_journal
-from world2minecraft.editing.packing import pack_edit
+from world2minecraft.editing.journal import Journal, pack_edit, write_journal
+from world2minecraft.editing.volume_draft import History, applied
 
 
 def filled(path, count=4):

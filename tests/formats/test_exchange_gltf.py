@@ -34,7 +34,7 @@ from world2minecraft.formats.habitat import (
     write_habitat,
 )
 from world2minecraft.formats.volume_formats import form_named, form_names, write_forms
-from world2minecraft.geometry.colour import srgb_of_linear
+from world2minecraft.geometry.colour import linear_to_srgb
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.entities import block_display
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
@@ -335,7 +335,7 @@ def test_semantic_colours_lead_to_ids_and_classes(tmp_path):
         colours = np.frombuffer(view_bytes(tree, numbers, accessor["bufferView"], "a"), "<f4")
         linear = np.unique(colours.reshape(-1, 3), axis=0)
         assert len(linear) == 1
-        hexes = "".join(f"{value:02X}" for value in srgb_of_linear(linear)[0])
+        hexes = "".join(f"{value:02X}" for value in linear_to_srgb(linear)[0])
         number, kind = kind_of[hexes]
         assert kind == node["extras"]["class_name"] and number == node["extras"]["id"]
         assert number == node["extras"]["instance"] or not node["extras"]["instance"]

@@ -8,10 +8,10 @@ from hypothesis.extra import numpy as stn
 
 from world2minecraft.geometry.box_decomposition import (
     cover_boxes,
-    few_boxes,
-    join_pairs,
-    painted_boxes,
+    decompose_boxes,
+    join_adjacent_boxes,
     partition_boxes,
+    rasterize_boxes,
     simplify_boxes,
 )
 
@@ -51,16 +51,16 @@ def volume(boxes: np.ndarray) -> int:
 @given(SHAPES)
 def test_a_partition_is_the_shape_and_shares_no_cell(labels):
     boxes = partition_boxes(labels)
-    assert np.array_equal(painted_boxes(boxes, labels.shape), labels)
+    assert np.array_equal(rasterize_boxes(boxes, labels.shape), labels)
     assert volume(boxes) == np.count_nonzero(labels)
     assert len(boxes) <= len(slow_sweep(labels))
 
 
 @given(SHAPES)
 def test_one_sweep_is_the_slow_one(labels):
-    from world2minecraft.geometry.box_decomposition import _swept
+    from world2minecraft.geometry.box_decomposition import _sweep
 
-    boxes = _swept(labels, (0, 1, 2), (False, False, False))
+    boxes = _sweep(labels, (0, 1, 2), (False, False, False))
     assert {tuple(row) for row in boxes.tolist()} == slow_sweep(labels)
 
 
@@ -74,17 +74,17 @@ def test_a_shape_seen_from_another_side_takes_as_many_boxes(labels, axes):
 @given(SHAPES)
 def test_a_cover_is_the_shape_and_none_of_its_boxes_is_spare(labels):
     boxes = cover_boxes(labels)
-    assert np.array_equal(painted_boxes(boxes, labels.shape), labels)
+    assert np.array_equal(rasterize_boxes(boxes, labels.shape), labels)
     for n in range(len(boxes)):
         rest = np.delete(boxes, n, axis=0)
-        assert not np.array_equal(painted_boxes(rest, labels.shape), labels)
-    assert np.array_equal(painted_boxes(few_boxes(labels), labels.shape), labels)
+        assert not np.array_equal(rasterize_boxes(rest, labels.shape), labels)
+    assert np.array_equal(rasterize_boxes(decompose_boxes(labels), labels.shape), labels)
 
 
 @given(SHAPES, st.sampled_from([0.7, 0.9, 1.0]))
 def test_coarser_boxes_keep_their_bound_and_share_no_cell(labels, least):
     boxes = simplify_boxes(labels, least)
-    filled = painted_boxes(boxes, labels.shape) > 0
+    filled = rasterize_boxes(boxes, labels.shape) > 0
     assert volume(boxes) == filled.sum()
     assert len(boxes) <= len(partition_boxes(labels))
     if labels.any():
@@ -94,7 +94,9 @@ def test_coarser_boxes_keep_their_bound_and_share_no_cell(labels, least):
 
 @given(SHAPES)
 def test_at_a_bound_of_one_the_shape_stays(labels):
-    assert np.array_equal(painted_boxes(simplify_boxes(labels, 1.0), labels.shape) > 0, labels > 0)
+    assert np.array_equal(
+        rasterize_boxes(simplify_boxes(labels, 1.0), labels.shape) > 0, labels > 0
+    )
 
 
 def test_boxes_are_joined_no_further_than_asked():
@@ -124,14 +126,14 @@ def test_chairs_tables_and_round_tops_take_few_boxes():
     top = np.zeros((50, 50, 38), np.int32)
     top[:, :, 36:] = ((across**2).sum(axis=0) <= 25**2)[:, :, None]
     top[22:28, 22:28, 2:36] = top[13:37, 13:37, :2] = 1
-    boxes = few_boxes(top)
+    boxes = decompose_boxes(top)
     assert len(boxes) <= 20 < len(partition_boxes(top))
-    assert np.array_equal(painted_boxes(boxes, top.shape), top)
+    assert np.array_equal(rasterize_boxes(boxes, top.shape), top)
 
 
 def test_pairs_that_make_one_box_are_joined():
     halves = np.array([[1, 0, 0, 0, 2, 2, 2], [1, 2, 0, 0, 5, 2, 2], [2, 5, 0, 0, 6, 2, 2]])
-    assert join_pairs(halves).tolist() == [[1, 0, 0, 0, 5, 2, 2], [2, 5, 0, 0, 6, 2, 2]]
+    assert join_adjacent_boxes(halves).tolist() == [[1, 0, 0, 0, 5, 2, 2], [2, 5, 0, 0, 6, 2, 2]]
 
 
 def test_nothing_gives_no_boxes_and_wrong_questions_are_refused():

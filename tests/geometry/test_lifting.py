@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.unprojection import lift_depth, pixel_rays, project
+from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 
 LENSES = [(0, 0, 0, 0, 0), (0.1, -0.2, 0.001, -0.002, 0.05), (-0.25, 0.08, 0, 0, 0)]
 
@@ -28,7 +28,7 @@ def test_lifted_points_have_their_depth_and_pixel(seed):
     camera = Camera(16, 12, 15.0, 14.0, 8.2, 5.9)
     depth_m = random.uniform(0.3, 5, (12, 16)).astype(np.float32)
     depth_m[random.random((12, 16)) < 0.3] = 0
-    points_m, pixels = lift_depth(depth_m, camera, np.eye(4))
+    points_m, pixels = unproject_depth(depth_m, camera, np.eye(4))
     assert np.array_equal(pixels, np.flatnonzero(depth_m))
     assert np.allclose(points_m[:, 2], depth_m.reshape(-1)[pixels])
     at_px = project(points_m.astype(np.float64), camera)
@@ -39,11 +39,13 @@ def test_a_pose_carries_the_points():
     camera = Camera(8, 6, 7.0, 7.0, 4.0, 3.0)
     depth_m = np.full((6, 8), 2.0, np.float32)
     pose = np.array([[0, 0, 1, 5], [-1, 0, 0, 6], [0, -1, 0, 7], [0, 0, 0, 1]], np.float64)
-    here, _ = lift_depth(depth_m, camera, np.eye(4))
-    there, _ = lift_depth(depth_m, camera, pose)
+    here, _ = unproject_depth(depth_m, camera, np.eye(4))
+    there, _ = unproject_depth(depth_m, camera, pose)
     assert np.allclose(there, here @ pose[:3, :3].T + pose[:3, 3], atol=1e-5)
 
 
 def test_an_image_of_holes_lifts_to_nothing():
-    points_m, pixels = lift_depth(np.zeros((6, 8), np.float32), Camera(8, 6, 7, 7, 4, 3), np.eye(4))
+    points_m, pixels = unproject_depth(
+        np.zeros((6, 8), np.float32), Camera(8, 6, 7, 7, 4, 3), np.eye(4)
+    )
     assert points_m.shape == (0, 3) and pixels.shape == (0,)

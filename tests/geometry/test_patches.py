@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.oriented_points import collect_surface
-from world2minecraft.geometry.planar_patches import patches_of_depth
+from world2minecraft.geometry.oriented_points import collect_oriented_points
+from world2minecraft.geometry.planar_patches import extract_patches
 from world2minecraft.geometry.unprojection import pixel_rays
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
@@ -25,7 +25,7 @@ def unit(*vector: float) -> np.ndarray:
 @pytest.mark.parametrize("distortion", [(0.0,) * 5, (0.1, -0.2, 0.001, 0.002, 0.0)])
 def test_a_plane_gives_its_points_and_its_normal(normal, distortion):
     camera = Camera(320, 240, 260.0, 260.0, 160.0, 120.0, distortion)
-    found = patches_of_depth(plane_depth(normal, 2.0, camera), camera)
+    found = extract_patches(plane_depth(normal, 2.0, camera), camera)
     assert len(found.points_m) > 200
     np.testing.assert_allclose(found.points_m @ normal, 2.0, atol=1e-4)
     np.testing.assert_allclose(found.normals, np.tile(-normal, (len(found.normals), 1)), atol=2e-3)
@@ -34,21 +34,21 @@ def test_a_plane_gives_its_points_and_its_normal(normal, distortion):
 def test_sigma_is_how_far_points_are_off():
     depth = plane_depth(unit(0.3, 0.2, 1), 2.0)
     noise = np.random.default_rng(0).standard_normal(depth.shape) * 0.003
-    found = patches_of_depth((depth + noise).astype(np.float32), CAMERA)
+    found = extract_patches((depth + noise).astype(np.float32), CAMERA)
     off = (found.points_m @ unit(0.3, 0.2, 1) - 2.0) / found.sigma_m
     assert 0.8 < off.std() < 1.25
     assert abs(off.mean()) < 0.3
 
 
 def test_wide_patches_stand_on_planes_and_small_ones_at_a_fold():
-    flat = patches_of_depth(np.full((240, 320), 2.0, np.float32), CAMERA)
+    flat = extract_patches(np.full((240, 320), 2.0, np.float32), CAMERA)
     left, right = plane_depth(unit(0.7, 0, 1), 1.95), plane_depth(unit(-0.7, 0, 1), 2.0)
-    fold = patches_of_depth(np.minimum(left, right), CAMERA)
+    fold = extract_patches(np.minimum(left, right), CAMERA)
     assert len(fold.points_m) > len(flat.points_m)
 
 
 def test_thinning_keeps_some_of_all_parts_of_the_image():
-    found = patches_of_depth(np.full((240, 320), 2.0, np.float32), CAMERA)
+    found = extract_patches(np.full((240, 320), 2.0, np.float32), CAMERA)
     few = found.thinned(100)
     assert len(few.points_m) == len(few.normals) == len(few.sigma_m) == 100
     np.testing.assert_allclose(
@@ -59,10 +59,10 @@ def test_thinning_keeps_some_of_all_parts_of_the_image():
 
 def test_holes_and_steps_give_none():
     depth = np.zeros((240, 320), np.float32)
-    assert len(patches_of_depth(depth, CAMERA).points_m) == 0
+    assert len(extract_patches(depth, CAMERA).points_m) == 0
     depth[:] = np.where(np.arange(320) % 2, 1.0, 3.0)
-    assert len(patches_of_depth(depth, CAMERA).points_m) == 0
-    assert len(patches_of_depth(np.full((240, 320), 9.0, np.float32), CAMERA).points_m) == 0
+    assert len(extract_patches(depth, CAMERA).points_m) == 0
+    assert len(extract_patches(np.full((240, 320), 9.0, np.float32), CAMERA).points_m) == 0
 
 
 def test_a_surface_is_gathered_in_the_scan_s_frame_and_chosen_from():
@@ -74,7 +74,7 @@ def test_a_surface_is_gathered_in_the_scan_s_frame_and_chosen_from():
         View("b", pose),
         View("c", pose, depth_m=depth, depth_camera=CAMERA),
     ]
-    surface = collect_surface(views)
+    surface = collect_oriented_points(views)
     assert surface.names == ("a", "c")
     np.testing.assert_allclose(surface.points_m[surface.owner == 0, 2], 2.0, atol=1e-6)
     np.testing.assert_allclose(surface.points_m[surface.owner == 1, 2], 5.0, atol=1e-6)

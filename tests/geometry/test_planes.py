@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.geometry.planes import level_planes
+from world2minecraft.geometry.planes import find_horizontal_planes
 
 
 def room_with_table(table_height_m: float, noise_m: float = 0.0):
@@ -33,7 +33,7 @@ def room_with_table(table_height_m: float, noise_m: float = 0.0):
 @pytest.mark.parametrize("noise_m", [0.0, 0.008])
 @pytest.mark.parametrize("height_m", [0.45, 0.68, 0.72, 0.75, 0.88])
 def test_floor_and_table_are_found_to_a_centimetre(height_m, noise_m):
-    planes = level_planes(*room_with_table(height_m, noise_m), 0.08)
+    planes = find_horizontal_planes(*room_with_table(height_m, noise_m), 0.08)
     floors = [p for p in planes if p.class_id == 2]
     tables = [p for p in planes if p.class_id == 8]
     assert len(floors) == 1 and len(tables) == 1
@@ -46,10 +46,10 @@ def test_two_tables_of_one_height_stay_two():
     labels, height_m, hits = room_with_table(0.72)
     gap = labels.copy()
     gap[17, :, 5:] = 0
-    planes = [p for p in level_planes(gap, height_m, hits, 0.08) if p.class_id == 8]
+    planes = [p for p in find_horizontal_planes(gap, height_m, hits, 0.08) if p.class_id == 8]
     assert len(planes) == 2
 
 
 def test_nothing_gives_nothing():
     empty = np.zeros((4, 4, 4), np.uint8)
-    assert level_planes(empty, np.zeros((4, 4, 4)), np.zeros((4, 4, 4), int), 0.08) == ()
+    assert find_horizontal_planes(empty, np.zeros((4, 4, 4)), np.zeros((4, 4, 4), int), 0.08) == ()

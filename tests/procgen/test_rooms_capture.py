@@ -9,7 +9,7 @@ import pytest
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import read_npz
-from world2minecraft.geometry.unprojection import lift_depth
+from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.procgen import generate_room, room_views, scan_room
 from world2minecraft.procgen.sensors.depth_camera import scale_factor
 from world2minecraft.procgen.sensors.shots import Shooting, room_shots, room_to_scan
@@ -59,7 +59,9 @@ def test_clean_depth_lifted_by_the_truth_lands_on_its_voxels():
     for view in room_views(
         room(), sensor="clean", frames=3, seed=6, with_labels=True, width=96, height=72
     ):
-        points, pixels = lift_depth(view.depth_m, view.depth_camera, to_room @ view.camera_to_scan)
+        points, pixels = unproject_depth(
+            view.depth_m, view.depth_camera, to_room @ view.camera_to_scan
+        )
         inward = points - to_room[:3, :3] @ view.camera_to_scan[:3, 3] - to_room[:3, 3]
         inward *= 0.004 / np.linalg.norm(inward, axis=1, keepdims=True)
         cells = np.floor((points + inward - room().origin_m) / room().voxel_m).astype(int)

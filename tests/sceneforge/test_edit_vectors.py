@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from world2minecraft.editing.scene.runs import cells_of_runs, runs_of_cells
+from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
 
 FOLDER = Path(__file__).parent / "vectors"
 SCRIPT = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "make_edit_vectors.py"))

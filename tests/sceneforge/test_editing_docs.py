@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from world2minecraft.editing.scene import COMMANDS
-from world2minecraft.editing.scene.voxels import CellCommand
+from world2minecraft.editing.scene.voxel_commands import CellCommand
 from world2minecraft.sceneforge.queries import CELL_QUERIES, Doubtful
 
 PAGE = (Path(__file__).parents[2] / "docs" / "forge-editing.md").read_text()

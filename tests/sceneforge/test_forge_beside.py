@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from forge_serving import client, heard, paint, served, small_editor, tab
 
-from world2minecraft.editing.scene.mending import Smooth
+from world2minecraft.editing.scene.repair import Smooth
 from world2minecraft.sceneforge import session
 from world2minecraft.sceneforge.queries import Floaters
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.editing.scene.cell_patch import cells_of_runs
 from world2minecraft.editing.scene.difference import difference, labels_in_cells
-from world2minecraft.editing.scene.runs import cells_of_runs
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor

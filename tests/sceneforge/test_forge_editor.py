@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.editing.scene import runs_of_cells
-from world2minecraft.editing.scene.voxels import SetCells
+from world2minecraft.editing.scene.voxel_commands import SetCells
 from world2minecraft.sceneforge.editor import Editor
 
 

@@ -14,7 +14,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.geometry.undistort import undistort_image
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.photos import find_capture_of, ideal_camera, read_photos
@@ -88,7 +88,7 @@ def test_an_ideal_camera_sees_each_ray_where_it_says():
     drawn[..., 0] = 100
     for u, v in at_px.reshape(-1, 2).astype(int):
         drawn[v - 1 : v + 2, u - 1 : u + 2] = 255
-    seen = undistorted(drawn, camera, ideal)
+    seen = undistort_image(drawn, camera, ideal)
     wanted = project(rays, ideal).reshape(-1, 2).astype(int)
     inside = ((wanted >= 1) & (wanted < (ideal.width_px - 1, ideal.height_px - 1))).all(axis=1)
     lit = seen[..., 1].astype(int)

@@ -14,12 +14,12 @@ from PIL import Image
 
 from world2minecraft.core.errors import ConflictError
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.sceneforge.captures import Captures, is_capture
 from world2minecraft.sceneforge.document.identity import folder_of
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.sources import DEMO_FOLDER
+from world2minecraft.sceneforge.uploads import Captures, is_capture
 from world2minecraft.sceneforge.workshop import Workshop
 
 

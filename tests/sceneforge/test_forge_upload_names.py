@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import LimitError, UsageError
-from world2minecraft.sceneforge.upload_names import (
+from world2minecraft.sceneforge.uploads import (
     MOST_FILES,
     UploadFile,
     checked_files,

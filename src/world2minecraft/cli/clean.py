@@ -10,7 +10,7 @@ from world2minecraft.core.errors import ConflictError, InputError, OutputError, 
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockEdit
-    from world2minecraft.editing.history import History
+    from world2minecraft.editing.volume_draft import History
 
 EXAMPLES = """\
 w2m clean OUT                  mend what is left to mend
@@ -119,8 +119,8 @@ def opened(build: Path) -> "History":
     Raises:
         ConflictError: the edits are those of another build. InputError: a file cannot be read.
     """
-    from world2minecraft.editing.history import History
     from world2minecraft.editing.journal import EDITS_FILE, Journal
+    from world2minecraft.editing.volume_draft import History
     from world2minecraft.evaluation.report.scene import read_built
 
     volume = read_built(build)

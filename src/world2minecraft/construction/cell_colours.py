@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
+from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.geometry.morphology import nearest_set_cells
 from world2minecraft.minecraft.block_colours import colour_of
 
@@ -44,10 +44,10 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
     if not len(colours):
         return result
     if expose:
-        linear = linear_of_srgb(colours)
-        result[seen] = oklab_of_linear(np.clip(linear * gains_of(linear), 0, 1))
+        linear = srgb_to_linear(colours)
+        result[seen] = linear_to_oklab(np.clip(linear * gains_of(linear), 0, 1))
     else:
-        result[seen] = oklab_of_srgb(colours)
+        result[seen] = srgb_to_oklab(colours)
     result[seen] = strengthened(result[seen], saturation)
     return result
 
@@ -113,7 +113,7 @@ def gains_of(linear: np.ndarray) -> np.ndarray:
     bright = np.quantile(light, BRIGHT_QUANTILE)
     exposure = np.clip(BRIGHT_LIGHT / max(bright, 1e-6), 1.0, GAIN_LIMIT)
     grey = linear[
-        (np.hypot(*oklab_of_linear(linear)[:, 1:].T) < GREY_CHROMA) & (light >= 0.5 * bright)
+        (np.hypot(*linear_to_oklab(linear)[:, 1:].T) < GREY_CHROMA) & (light >= 0.5 * bright)
     ]
     if len(grey) < LEAST_CELLS:
         return np.full(3, exposure)
@@ -123,7 +123,7 @@ def gains_of(linear: np.ndarray) -> np.ndarray:
 
 def default_colour(block: str) -> np.ndarray:
     """Return the Oklab colour, float32 [3], of a block state."""
-    return oklab_of_srgb(np.array(colour_of(block), np.uint8))
+    return srgb_to_oklab(np.array(colour_of(block), np.uint8))
 
 
 def group_medians(

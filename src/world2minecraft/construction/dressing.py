@@ -8,7 +8,7 @@ from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.surfaces import painted
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
@@ -67,7 +67,7 @@ class Dresser:
 
     def _is_near(self, block: str, other: str, colour: np.ndarray) -> bool:
         """Whether a block shows a colour nearly as well as another does."""
-        offered = oklab_of_srgb(colours_of([block, other]))
+        offered = srgb_to_oklab(colours_of([block, other]))
         light = np.sqrt(self.parameters.lightness_weight)
         apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
         return bool(apart[0] - apart[1] <= GIVEN_UP)

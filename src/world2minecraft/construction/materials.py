@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.construction.fitting.shapes import Shape
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 from world2minecraft.minecraft.blocks import block_table
 
@@ -67,7 +67,7 @@ class Materials:
         if not len(colours):
             return frozenset(("full", *offered))
         light = lightness_weight
-        every = _distances(colours, oklab_of_srgb(colours_of(full)), light, handicaps)
+        every = _distances(colours, srgb_to_oklab(colours_of(full)), light, handicaps)
         nearest, best = np.array(full, object)[every.argmin(1)], every.min(1)
         kinds = {"full"}
         for kind in offered:
@@ -85,7 +85,7 @@ class Materials:
 
     def existing(self, kind: str, full: tuple[str, ...]) -> tuple[str, ...]:
         """Return which of some full blocks exist as a kind of shape, or nearly in their colour."""
-        apart = self._apart(kind, oklab_of_srgb(colours_of(full))).min(1)
+        apart = self._apart(kind, srgb_to_oklab(colours_of(full))).min(1)
         near = {block for block, off in zip(full, apart.tolist(), strict=True) if off <= SAME}
         return tuple(block for block in full if block in near or block in self.own[kind])
 
@@ -104,7 +104,7 @@ class Materials:
             return block
         if block in self.own[shape.kind]:
             return shape.of(self.own[shape.kind][block])
-        apart = self._apart(shape.kind, oklab_of_srgb(colours_of([block])))[0]
+        apart = self._apart(shape.kind, srgb_to_oklab(colours_of([block])))[0]
         best = int(apart.argmin())
         if shape.kind != "post" and apart[best] > MARGIN:
             return None
@@ -146,7 +146,7 @@ def materials_of(palette: Palette) -> Materials:
     return Materials(
         blocks,
         {kind: known[kind] for kind in blocks},
-        {kind: oklab_of_srgb(colours_of(names)) for kind, names in blocks.items()},
+        {kind: srgb_to_oklab(colours_of(names)) for kind, names in blocks.items()},
         {
             kind: np.array([HANDICAPS.get(name.partition(":")[2], 0.0) for name in names])
             for kind, names in blocks.items()
@@ -164,7 +164,7 @@ def _alike(names: Mapping[str, str]) -> dict[str, str]:
     """Return the pairs whose blocks look alike: an oak trapdoor is darker than stripped oak."""
     if not names:
         return {}
-    colours = [oklab_of_srgb(colours_of(list(side))) for side in (names, names.values())]
+    colours = [srgb_to_oklab(colours_of(list(side))) for side in (names, names.values())]
     apart = np.linalg.norm(colours[0] - colours[1], axis=1)
     return {
         block: name for (block, name), off in zip(names.items(), apart, strict=True) if off <= OWN

@@ -5,18 +5,32 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.construction.block_designs import (
+    Hue,
+    Thing,
+    Window,
+    body_box,
+    filled_by,
+    idiom_box,
+    put_idiom,
+    window_on,
+)
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import default_colour, spread
-from world2minecraft.construction.celled import (
+from world2minecraft.construction.cell_objects import (
+    BULKY,
     CLOSED,
+    HUNG,
     CellsDesign,
     Solid,
     design_of_cells,
     inner_cells,
     kinds_of_sheet,
+    shape_of_cells,
     solid_of,
+    solids_of,
+    well_fitted,
 )
-from world2minecraft.construction.cells import shape_of_cells
 from world2minecraft.construction.colour_sources import Coats, Hues
 from world2minecraft.construction.dressing import Dresser
 from world2minecraft.construction.fitted import (
@@ -28,8 +42,6 @@ from world2minecraft.construction.fitted import (
 )
 from world2minecraft.construction.fitting import without_loose
 from world2minecraft.construction.fitting.masks import SUB
-from world2minecraft.construction.guarding import BULKY, HUNG, solids_of, well_fitted
-from world2minecraft.construction.idioms import Thing, body_box, filled_by, idiom_box, put_idiom
 from world2minecraft.construction.lattice import volume_shares
 from world2minecraft.construction.lattice_fitting import best_place, best_step
 from world2minecraft.construction.palettes import Palette
@@ -40,8 +52,6 @@ from world2minecraft.construction.plates import Plates
 from world2minecraft.construction.seats import chair_paints
 from world2minecraft.construction.substitutes import known_by_shape
 from world2minecraft.construction.surfaces import block_colours
-from world2minecraft.construction.tinting import Hue
-from world2minecraft.construction.windows import Window, window_on
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, template

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.construction.cell_colours import group_medians
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
@@ -43,7 +43,7 @@ def costs_of(
     turn a clear colour grey: a purple sofa may be another purple, but no dark stone.
     """
     wanted = colours.astype(np.float32)[:, None]
-    offered = oklab_of_srgb(colours_of(candidates))
+    offered = srgb_to_oklab(colours_of(candidates))
     square = (wanted - offered) ** 2
     own = np.hypot(wanted[..., 1], wanted[..., 2])
     chroma = own - np.hypot(offered[:, 1], offered[:, 2])
@@ -155,7 +155,7 @@ def paint(
     weight = lightness_weight if match_weight is None else match_weight
     parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
     matched = _matched(parts, colours, candidates, weight, extra, fading)
-    shown = oklab_of_srgb(colours_of([str(candidates[index]) for index in matched]))
+    shown = srgb_to_oklab(colours_of([str(candidates[index]) for index in matched]))
     parts = _joined(parts, shown[parts], len(few), lightness_weight, noticed)
     return _matched(parts, colours, candidates, weight, extra, fading)[parts]
 

@@ -17,7 +17,7 @@ from world2minecraft.construction.pieces import piece_of
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.errors import InputError, UsageError, one_line
 from world2minecraft.core.files import plain_yaml, read_bytes
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -165,8 +165,8 @@ def _defaults(raw: Any, blocks: Mapping[int, tuple[str, ...]]) -> dict[int, str]
     result = {}
     for number, choices in blocks.items():
         wanted = stated.get(number, choices)[0]
-        offered = oklab_of_srgb(colours_of(choices))
-        nearest = nearest_oklab(oklab_of_srgb(colours_of([wanted])), offered)[0]
+        offered = srgb_to_oklab(colours_of(choices))
+        nearest = nearest_oklab(srgb_to_oklab(colours_of([wanted])), offered)[0]
         result[number] = wanted if wanted in choices else choices[int(nearest)]
     return result
 

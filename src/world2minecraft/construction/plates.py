@@ -9,7 +9,7 @@ from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.worktops import Worktop, find_worktop, joined
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -44,7 +44,7 @@ class Plates:
         mask &= self.canvas.states == 0
         slabs = self.palette.slabs if top.half != FULL else {}  # A palette of few blocks has none.
         choices = list(slabs or self.palette.blocks[SemanticClass.FURN])
-        apart = np.linalg.norm(oklab_of_srgb(colours_of(choices)) - top.colour, axis=1)
+        apart = np.linalg.norm(srgb_to_oklab(colours_of(choices)) - top.colour, axis=1)
         block = choices[int(apart.argmin())]
         state = f"{slabs[block]}[type=bottom]" if slabs else block
         self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
@@ -66,7 +66,7 @@ class Plates:
             under = own[:, :, top.layer] & top.columns
             free = self.canvas.states[:, :, top.layer + 1] == 0
             if (under & free).any():
-                apart = np.linalg.norm(oklab_of_srgb(colours_of(carpets)) - top.colour, axis=1)
+                apart = np.linalg.norm(srgb_to_oklab(colours_of(carpets)) - top.colour, axis=1)
                 mask = np.zeros(self.lattice.shape, bool)
                 mask[:, :, top.layer + 1] = under & free
                 state = carpets[int(apart.argmin())]

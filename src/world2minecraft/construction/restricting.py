@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.types import AIR, Entity
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -76,7 +76,7 @@ def _replacement(state: str, only: frozenset[str]) -> str:
 
 def _nearest(state: str, choices: list[str]) -> str:
     """Return the choice whose colour is nearest to a state's."""
-    wanted, offered = oklab_of_srgb(colours_of([state])), oklab_of_srgb(colours_of(choices))
+    wanted, offered = srgb_to_oklab(colours_of([state])), srgb_to_oklab(colours_of(choices))
     return choices[int(nearest_oklab(wanted, offered)[0])]
 
 

@@ -8,9 +8,9 @@ from world2minecraft.construction.canvas import AIR, LIGHT
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.geometry.connected_components import label_face_components
 from world2minecraft.geometry.morphology import (
     erode_faces,
-    label_face_components,
     nearest_set_cells,
 )
 

@@ -21,13 +21,13 @@ from world2minecraft.construction.structure_faces import (
 )
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.connected_components import label_face_components
 from world2minecraft.geometry.morphology import (
     binary_closing,
     dilate,
     dilate_faces,
     erode_faces,
     fill_holes,
-    label_face_components,
     nearest_set_cells,
 )
 

@@ -8,7 +8,7 @@ from world2minecraft.construction.paint import FADED, paint
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import STRUCTURE_CLASSES
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
 NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
@@ -91,8 +91,8 @@ def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]
     """Return the choices that one can tell from some blocks; all where none is left."""
     if not beside:
         return choices
-    offered = oklab_of_srgb(colours_of(choices))
-    others = oklab_of_srgb(colours_of(sorted(beside)))
+    offered = srgb_to_oklab(colours_of(choices))
+    others = srgb_to_oklab(colours_of(sorted(beside)))
     apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= TOLD_APART
     return tuple(np.array(choices)[apart].tolist()) or choices
 

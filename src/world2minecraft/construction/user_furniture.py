@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from world2minecraft.construction.block_designs import idiom_box
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.idioms import idiom_box
 from world2minecraft.construction.pieces import FACINGS, Piece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
@@ -18,7 +18,7 @@ from world2minecraft.furniture import Idiom, template
 from world2minecraft.furniture.block_designs import block_size, laid
 from world2minecraft.furniture.solids import own_cells
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 
@@ -145,7 +145,7 @@ def _coloured(name: str, colour: np.ndarray | None) -> str:
             continue
         best = kinds[0]
         if colour is not None:
-            offered = oklab_of_srgb(colours_of([kind + sample for kind in kinds]))
+            offered = srgb_to_oklab(colours_of([kind + sample for kind in kinds]))
             best = kinds[int(nearest_oklab(colour[None], offered)[0])]
         name = name.replace(word, best)
     return name

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks
-from world2minecraft.editing.draft import Draft
+from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 CRUMB_M3 = 0.03  # Two blocks at 4 blocks a metre.

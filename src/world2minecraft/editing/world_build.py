@@ -22,10 +22,15 @@ from world2minecraft.editing.backups import (
     recover,
     steps_of,
 )
-from world2minecraft.editing.draft import data_keys
 from world2minecraft.editing.journal import Journal
-from world2minecraft.editing.world_box import WorldBox, is_void, read_world_box
-from world2minecraft.editing.world_entities import WorldEntities, marked
+from world2minecraft.editing.volume_draft import data_keys
+from world2minecraft.editing.world_region import (
+    WorldBox,
+    WorldEntities,
+    is_void,
+    marked,
+    read_world_box,
+)
 from world2minecraft.minecraft.block_entities import block_entity_in_game, entity_in_game
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.versions import name_in_version

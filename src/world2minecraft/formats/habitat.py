@@ -38,7 +38,7 @@ from world2minecraft.formats.gltf import (
     triangles_of,
     vertices_of,
 )
-from world2minecraft.geometry.colour import linear_of_srgb
+from world2minecraft.geometry.colour import srgb_to_linear
 
 HEADER = "HM3D Semantic Annotations"
 MAX_ID = 10_000  # Habitat's own limit.
@@ -180,7 +180,7 @@ def _semantic_glb(bodies: Sequence[Body], ids: Sequence[int]) -> bytes:
     nodes = []
     for number, body in zip(ids, bodies, strict=True):
         rows = np.arange(len(body.looks))
-        colour = linear_of_srgb(np.array(semantic_colour(number), np.uint8))
+        colour = srgb_to_linear(np.array(semantic_colour(number), np.uint8))
         attributes = vertices_of(writer, body, rows)
         painted = np.tile(colour.astype(np.float32), (4 * len(rows), 1))
         attributes["COLOR_0"] = writer.accessor(painted, "vertices")

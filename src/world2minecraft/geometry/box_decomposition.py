@@ -33,20 +33,20 @@ def partition_boxes(labels: np.ndarray) -> np.ndarray:
     """
     if labels.ndim != 3:
         raise ValueError(f"labels must have shape [X, Y, Z], not {labels.shape}")
-    low, inner = _cropped(labels)
+    low, inner = _crop(labels)
     if not inner.size:
         return np.empty((0, 7), np.int32)
     orders = list(product(permutations(range(3)), product((False, True), repeat=3)))
     best: np.ndarray | None = None
     for axes, flips in orders[: 1 if inner.size > MAX_PARTITION_SEARCH_CELLS else None]:
-        found = _swept(inner, axes, flips)
+        found = _sweep(inner, axes, flips)
         if best is None or len(found) < len(best):
             best = found
-    joined = join_pairs(best)  # type: ignore[arg-type]  # There is one order at least.
+    joined = join_adjacent_boxes(best)  # type: ignore[arg-type]  # There is one order at least.
     return _sorted(joined + np.array([0, *low, *low], np.int32))
 
 
-def _cropped(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _crop(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the first cell that holds something, and the labels of the box around all."""
     held = np.argwhere(labels)
     if not len(held):
@@ -56,7 +56,7 @@ def _cropped(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return low.astype(np.int32), labels[window].astype(np.int32)
 
 
-def _swept(labels: np.ndarray, axes: tuple[int, ...], flips: tuple[bool, ...]) -> np.ndarray:
+def _sweep(labels: np.ndarray, axes: tuple[int, ...], flips: tuple[bool, ...]) -> np.ndarray:
     """Return the boxes of one sweep: the axes in an order, some of them backwards."""
     turned = labels.transpose(axes)
     turned = turned[tuple(slice(None, None, -1 if flip else 1) for flip in flips)]
@@ -111,7 +111,7 @@ def _is_free(labels, done, label, x0, x1, y0, y1, z0, z1):  # pragma: no cover
     return True
 
 
-def join_pairs(boxes: np.ndarray) -> np.ndarray:
+def join_adjacent_boxes(boxes: np.ndarray) -> np.ndarray:
     """Return boxes, int32 [N, 7], with every two of one label that make one box joined."""
     held = [tuple(row) for row in _sorted(boxes).tolist()]
     for axis in (3, 2, 1):
@@ -132,7 +132,7 @@ def join_pairs(boxes: np.ndarray) -> np.ndarray:
     return _sorted(np.array(held, np.int32).reshape(-1, 7))
 
 
-def painted_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def rasterize_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """Return the labels, int32 of a shape, that boxes int [N, 7] are; later ones cover earlier."""
     labels = np.zeros(shape, np.int32)
     for label, x0, y0, z0, x1, y1, z1 in boxes.tolist():
@@ -188,7 +188,7 @@ def simplify_boxes(
     empty = np.zeros(np.add(labels.shape, 1), np.int64)
     empty[1:, 1:, 1:] = costly.cumsum(0).cumsum(1).cumsum(2)
     alive = _coarsen(boxes, empty, float(np.count_nonzero(labels)), float(least_iou), enough)
-    return join_pairs(boxes[alive].astype(np.int32))
+    return join_adjacent_boxes(boxes[alive].astype(np.int32))
 
 
 @njit
@@ -205,13 +205,13 @@ def _coarsen(boxes, empty, size, least, enough):  # pragma: no cover
         for i in range(len(boxes)):
             if not alive[i]:
                 continue
-            own = _size(boxes[i])
+            own = _volume(boxes[i])
             if alive.sum() > 1 and (met - own) / union >= least and own < best:
                 best, first, second = own, i, i
             for j in range(i + 1, len(boxes)):
                 if not alive[j] or not _is_near(boxes[i], boxes[j]):
                     continue
-                added, recoloured, saved = _joined(boxes, alive, empty, i, j)
+                added, recoloured, saved = _join_cost(boxes, alive, empty, i, j)
                 if saved == 0 or (met - recoloured) / (union + added) < least:
                     continue
                 if (added + recoloured) / saved < best:
@@ -219,17 +219,17 @@ def _coarsen(boxes, empty, size, least, enough):  # pragma: no cover
         if first < 0:
             return alive
         if first == second:
-            met -= _size(boxes[first])
+            met -= _volume(boxes[first])
             alive[first] = False
             continue
-        added, recoloured, _ = _joined(boxes, alive, empty, first, second)
+        added, recoloured, _ = _join_cost(boxes, alive, empty, first, second)
         met, union = met - recoloured, union + added
         _join(boxes, alive, first, second)
     return alive
 
 
 @njit
-def _size(box):  # pragma: no cover
+def _volume(box):  # pragma: no cover
     return float((box[4] - box[1]) * (box[5] - box[2]) * (box[6] - box[3]))
 
 
@@ -242,9 +242,9 @@ def _is_near(one, other):  # pragma: no cover
 
 
 @njit
-def _around(one, other):  # pragma: no cover
+def _bounding_box(one, other):  # pragma: no cover
     """Return the box around two, labelled as the larger of them."""
-    box = one.copy() if _size(one) >= _size(other) else other.copy()
+    box = one.copy() if _volume(one) >= _volume(other) else other.copy()
     for axis in range(1, 4):
         box[axis] = min(one[axis], other[axis])
         box[axis + 3] = max(one[axis + 3], other[axis + 3])
@@ -252,12 +252,12 @@ def _around(one, other):  # pragma: no cover
 
 
 @njit
-def _joined(boxes, alive, empty, i, j):  # pragma: no cover
+def _join_cost(boxes, alive, empty, i, j):  # pragma: no cover
     """Return the cells that a join adds, what it relabels by cost, and how many boxes it saves.
 
     It saves none where another box lies partly in the box around both.
     """
-    box = _around(boxes[i], boxes[j])
+    box = _bounding_box(boxes[i], boxes[j])
     recoloured, inside = 0.0, 0
     for n in range(len(boxes)):
         if not alive[n]:
@@ -269,7 +269,7 @@ def _joined(boxes, alive, empty, i, j):  # pragma: no cover
         if within:
             inside += 1
             if boxes[n, 0] != box[0]:
-                recoloured += RECOLOUR * _size(boxes[n])
+                recoloured += RECOLOUR * _volume(boxes[n])
         elif meets:
             return 0.0, 0.0, 0
     return float(_sum_in_box(empty, box)), recoloured, inside - 1
@@ -290,7 +290,7 @@ def _sum_in_box(sums, box):  # pragma: no cover
 @njit
 def _join(boxes, alive, first, second):  # pragma: no cover
     """Put the box around two in the place of the first; what lies in it goes."""
-    box = _around(boxes[first], boxes[second])
+    box = _bounding_box(boxes[first], boxes[second])
     for n in range(len(boxes)):
         within = True
         for axis in range(1, 4):
@@ -314,7 +314,7 @@ MAX_COVER_SEARCH_CELLS = 1_000_000
 _ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
 
 
-def few_boxes(labels: np.ndarray) -> np.ndarray:
+def decompose_boxes(labels: np.ndarray) -> np.ndarray:
     """Return few boxes of one label whose union is a shape exactly.
 
     They share no cell, except where boxes that overlap within one label are far fewer.
@@ -349,7 +349,7 @@ def cover_boxes(labels: np.ndarray) -> np.ndarray:
     inner = labels[window].astype(np.int32)
     best: np.ndarray | None = None
     for flips in product((False, True), repeat=3):
-        found = _covered(inner, flips)
+        found = _cover_from_corner(inner, flips)
         if best is None or len(found) < len(best):
             best = found
     boxes = best + np.array([0, *low, *low])  # type: ignore[operator]  # Eight were tried.
@@ -357,7 +357,7 @@ def cover_boxes(labels: np.ndarray) -> np.ndarray:
     return boxes[np.lexsort((*boxes.T[::-1], -volume))].astype(np.int32)
 
 
-def _covered(labels: np.ndarray, flips: tuple[bool, ...]) -> np.ndarray:
+def _cover_from_corner(labels: np.ndarray, flips: tuple[bool, ...]) -> np.ndarray:
     ways = tuple(slice(None, None, -1 if flip else 1) for flip in flips)
     boxes = np.empty((int(np.count_nonzero(labels)), 7), np.int64)
     boxes = boxes[: _cover(np.ascontiguousarray(labels[ways]), _ORDERS, boxes)]
@@ -381,19 +381,19 @@ def _cover(labels, orders, boxes):  # pragma: no cover
                     continue
                 most = -1
                 for n in range(len(orders)):
-                    box = _grown(labels, orders[n], x, y, z)
-                    new = _fresh(times, box)
+                    box = _grow_from_cell(labels, orders[n], x, y, z)
+                    new = _count_uncovered(times, box)
                     if new > most:
                         most = new
                         boxes[count, 0] = labels[x, y, z]
                         boxes[count, 1:] = box
                 _add_in_box(times, boxes[count, 1:], 1)
                 count += 1
-    return _pruned(times, boxes, count)
+    return _prune(times, boxes, count)
 
 
 @njit
-def _pruned(times, boxes, count):  # pragma: no cover
+def _prune(times, boxes, count):  # pragma: no cover
     """Drop, from the last to the first, the boxes whose every cell another covers too."""
     kept = 0
     needed = np.ones(count, np.bool_)
@@ -410,25 +410,25 @@ def _pruned(times, boxes, count):  # pragma: no cover
 
 
 @njit
-def _grown(labels, order, x, y, z):  # pragma: no cover
+def _grow_from_cell(labels, order, x, y, z):  # pragma: no cover
     """Return the box, int64 [6], that grows from a cell along each axis of an order in turn."""
     box = np.array([x, y, z, x + 1, y + 1, z + 1])
     label = labels[x, y, z]
     for axis in order:
         while box[axis] > 0:
             box[axis] -= 1
-            if not _is_one(labels, label, box, axis, box[axis]):
+            if not _layer_has_label(labels, label, box, axis, box[axis]):
                 box[axis] += 1
                 break
         while box[3 + axis] < labels.shape[axis]:
-            if not _is_one(labels, label, box, axis, box[3 + axis]):
+            if not _layer_has_label(labels, label, box, axis, box[3 + axis]):
                 break
             box[3 + axis] += 1
     return box
 
 
 @njit
-def _is_one(labels, label, box, axis, place):  # pragma: no cover
+def _layer_has_label(labels, label, box, axis, place):  # pragma: no cover
     """Tell whether a box's layer at a place along an axis is of one label."""
     low, high = box[:3].copy(), box[3:].copy()
     low[axis], high[axis] = place, place + 1
@@ -441,7 +441,7 @@ def _is_one(labels, label, box, axis, place):  # pragma: no cover
 
 
 @njit
-def _fresh(times, box):  # pragma: no cover
+def _count_uncovered(times, box):  # pragma: no cover
     new = 0
     for x in range(box[0], box[3]):
         for y in range(box[1], box[4]):

@@ -32,29 +32,29 @@ def _linear_of_byte() -> np.ndarray:
 _LINEAR_OF_BYTE = _linear_of_byte()
 
 
-def linear_of_srgb(rgb: np.ndarray) -> np.ndarray:
+def srgb_to_linear(rgb: np.ndarray) -> np.ndarray:
     """Return linear light, float64 [..., 3] from 0 to 1, of sRGB bytes, uint8 [..., 3]."""
     return _LINEAR_OF_BYTE[np.asarray(rgb, np.uint8)]
 
 
-def srgb_of_linear(linear: np.ndarray) -> np.ndarray:
+def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
     """Return sRGB bytes, uint8 [..., 3], of linear light; what lies outside 0 to 1 is clipped."""
     share = np.clip(linear, 0.0, 1.0)
     encoded = np.where(share <= 0.0031308, share * 12.92, 1.055 * share ** (1 / 2.4) - 0.055)
     return np.round(encoded * 255).astype(np.uint8)
 
 
-def oklab_of_linear(linear: np.ndarray) -> np.ndarray:
+def linear_to_oklab(linear: np.ndarray) -> np.ndarray:
     """Return Oklab, float32 [..., 3], of linear light, float [..., 3]."""
     return (np.cbrt(np.asarray(linear) @ _RGB_TO_LMS.T) @ _LMS_TO_OKLAB.T).astype(np.float32)
 
 
-def linear_of_oklab(oklab: np.ndarray) -> np.ndarray:
+def oklab_to_linear(oklab: np.ndarray) -> np.ndarray:
     """Return linear light, float64 [..., 3], of Oklab; it may lie outside 0 to 1."""
     return ((np.asarray(oklab, np.float64) @ _OKLAB_TO_LMS.T) ** 3) @ _LMS_TO_RGB.T
 
 
-def oklab_of_srgb(rgb: np.ndarray) -> np.ndarray:
+def srgb_to_oklab(rgb: np.ndarray) -> np.ndarray:
     """Return Oklab of sRGB bytes.
 
     Args:
@@ -65,7 +65,7 @@ def oklab_of_srgb(rgb: np.ndarray) -> np.ndarray:
         -0.4 to 0.4, 0 for greys.
 
     Example:
-        >>> oklab_of_srgb(np.array([255, 255, 255], np.uint8)).round(3).tolist()[0]
+        >>> srgb_to_oklab(np.array([255, 255, 255], np.uint8)).round(3).tolist()[0]
         1.0
     """
-    return oklab_of_linear(linear_of_srgb(rgb))
+    return linear_to_oklab(srgb_to_linear(rgb))

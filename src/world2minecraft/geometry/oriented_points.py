@@ -7,14 +7,14 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import View
-from world2minecraft.geometry.planar_patches import patches_of_depth
+from world2minecraft.geometry.planar_patches import extract_patches
 
-SURE = 128  # Of 255.
-MOST_EACH = 4096  # All of an image of any size.
+MIN_TRUST = 128  # Of 255.
+MAX_POINTS_PER_VIEW = 4096  # All of an image of any size.
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class OrientedPoints:
     """Oriented points of several frames.
 
     ``points_m`` and ``normals`` (unit, towards the camera) float64 [N, 3] and ``cameras`` float64
@@ -49,7 +49,9 @@ class Surface:
         )
 
 
-def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surface:
+def collect_oriented_points(
+    views: Iterable[View], most_each: int = MAX_POINTS_PER_VIEW
+) -> OrientedPoints:
     """Gather the flat patches of views in the scan's frame; views without depth give none.
 
     Depth that is trusted by less than half is left out.
@@ -65,8 +67,8 @@ def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surfac
             continue
         depth_m = view.depth_m
         if view.trust is not None:
-            depth_m = np.where(view.trust >= SURE, depth_m, np.float32(0))
-        found = patches_of_depth(depth_m, view.depth_camera).thinned(most_each)
+            depth_m = np.where(view.trust >= MIN_TRUST, depth_m, np.float32(0))
+        found = extract_patches(depth_m, view.depth_camera).thinned(most_each)
         pose = view.depth_camera_to_scan
         points.append(_moved(found.points_m, pose[:3, :3], pose[:3, 3]))
         normals.append(_moved(found.normals, pose[:3, :3], np.zeros(3)))
@@ -74,7 +76,7 @@ def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surfac
         cameras.append(pose)
         names.append(view.name)
         counts.append(len(found.points_m))
-    return Surface(
+    return OrientedPoints(
         np.concatenate(points),
         np.concatenate(normals),
         np.array(cameras).reshape(-1, 4, 4),

@@ -16,9 +16,9 @@ from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import pixel_rays
 
 SQUARES_ACROSS = 64  # 10 px at 640: 6 cm at 3 m.
-LEAST_SHARE = 0.5  # Of a square's pixels that must have depth.
+MIN_DEPTH_SHARE = 0.5  # Of a square's pixels that must have depth.
 ROUGH_M, ROUGH_GROWTH = 0.003, 0.0035  # rms of a flat square, 1.5 times the rgbd sensor's noise.
-LEAST_RMS_M = 0.0003  # Millimetre steps of stored depth.
+MIN_RMS_M = 0.0003  # Millimetre steps of stored depth.
 MAX_SLOPE_SIGMA = 0.12  # 7 degrees: a normal less sure than that says nothing.
 MERGE_F = 3.0  # Nine more parameters fit better by chance; over this they really do.
 MAX_DEPTH_M = 6.0
@@ -45,7 +45,7 @@ class Patches:
         return Patches(self.points_m[index], self.normals[index], self.sigma_m[index])
 
 
-def patches_of_depth(depth_m: np.ndarray, camera: Camera) -> Patches:
+def extract_patches(depth_m: np.ndarray, camera: Camera) -> Patches:
     """Return the flat patches of one image.
 
     Args:
@@ -94,7 +94,7 @@ def _fit(sums, least, row):
     b, c = (xd * yy - yd * xy) / size, (yd * xx - xd * xy) / size
     left = max(dd - b * xd - c * yd, 0.0)
     z = 1.0 / d
-    left = max(left, (n - 3) * (LEAST_RMS_M / (z * z)) ** 2)
+    left = max(left, (n - 3) * (MIN_RMS_M / (z * z)) ** 2)
     sigma_d = np.sqrt(left / (n - 3))
     rms = sigma_d * z * z
     slope_sigma = rms / (z * np.sqrt(min(xx, yy)))
@@ -115,7 +115,7 @@ def _patches(depth, rays, side):
     found = np.empty((4 * down * across, 7))
     rows, lefts = np.empty((5, 7)), np.empty(4)
     count = 0
-    least = LEAST_SHARE * side * side
+    least = MIN_DEPTH_SHARE * side * side
     for i in range(down):
         for j in range(across):
             whole = np.zeros(10)

@@ -17,7 +17,7 @@ BIN_M = 0.01
 
 
 @dataclass(frozen=True)
-class LevelPlane:
+class HorizontalPlane:
     """A level surface seen from above: its height, its area and the class of most of its cells."""
 
     class_id: int
@@ -25,9 +25,9 @@ class LevelPlane:
     area_m2: float
 
 
-def level_planes(
+def find_horizontal_planes(
     labels: np.ndarray, mean_height_m: np.ndarray, hits: np.ndarray, voxel_m: float
-) -> tuple[LevelPlane, ...]:
+) -> tuple[HorizontalPlane, ...]:
     """Find the level surfaces that face up.
 
     Args:
@@ -53,7 +53,7 @@ def level_planes(
             if area_m2 >= MIN_AREA_M2:
                 height_m = float(np.median(heights[near][inside]))
                 class_id = int(np.bincount(classes[near][inside]).argmax())
-                found.append(LevelPlane(class_id, round(height_m, 4), round(area_m2, 4)))
+                found.append(HorizontalPlane(class_id, round(height_m, 4), round(area_m2, 4)))
     return tuple(sorted(found, key=lambda p: (p.height_m, -p.area_m2, p.class_id)))
 
 

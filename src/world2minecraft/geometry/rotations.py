@@ -9,25 +9,25 @@ from scipy.spatial.transform import Rotation
 # state, which are the same bytes for the same seed from one version to the next.
 
 
-LEAST_RAD = 1e-15  # Under it an axis has no direction.
+MIN_ANGLE_RAD = 1e-15  # Under it an axis has no direction.
 
 
-def rotation_of_vector(vector: np.ndarray) -> np.ndarray:
+def rotation_from_vector(vector: np.ndarray) -> np.ndarray:
     """Return the rotation, float64 [3, 3], about a vector by its length in radians (Rodrigues).
 
     Example:
-        >>> rotation_of_vector(np.array([0, 0, np.pi / 2])).round(9)[0].tolist()
+        >>> rotation_from_vector(np.array([0, 0, np.pi / 2])).round(9)[0].tolist()
         [0.0, -1.0, 0.0]
     """
     angle = float(np.linalg.norm(vector))
-    if angle < LEAST_RAD:
+    if angle < MIN_ANGLE_RAD:
         return np.eye(3)
     x, y, z = vector / angle
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
-def rotation_of(quaternion: np.ndarray) -> np.ndarray:
+def rotation_from_quaternion(quaternion: np.ndarray) -> np.ndarray:
     """Return the 3x3 rotation of a quaternion x, y, z, w of any length; NaN where it is 0."""
     length = np.linalg.norm(quaternion)
     if not 0 < length < np.inf:  # scipy raises; captures leave out a frame whose pose is NaN.
@@ -35,9 +35,9 @@ def rotation_of(quaternion: np.ndarray) -> np.ndarray:
     return Rotation.from_quat(np.asarray(quaternion, np.float64) / length).as_matrix()
 
 
-def pose_of(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
+def pose_from_quaternion(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
     """Return the 4x4 transform of a translation and a quaternion x, y, z, w."""
     pose = np.eye(4)
-    pose[:3, :3] = rotation_of(quaternion)
+    pose[:3, :3] = rotation_from_quaternion(quaternion)
     pose[:3, 3] = translation
     return pose

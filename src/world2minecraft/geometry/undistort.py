@@ -7,7 +7,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import pixel_rays, project
 
 
-def pinhole_of(camera: Camera, width_px: int) -> Camera:
+def pinhole_camera(camera: Camera, width_px: int) -> Camera:
     """Return a camera of the same look and proportions, another width and no distortion."""
     height_px = max(1, round(camera.height_px * width_px / camera.width_px))
     across, down = width_px / camera.width_px, height_px / camera.height_px
@@ -21,7 +21,7 @@ def pinhole_of(camera: Camera, width_px: int) -> Camera:
     )
 
 
-def undistorted(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarray:
+def undistort_image(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarray:
     """Return a picture as another camera in the same place would have taken it.
 
     Args:
@@ -38,12 +38,12 @@ def undistorted(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarra
     at_px = project(ahead, camera) - 0.5
     side = max(1, round(camera.fx_px / target.fx_px))
     planes = np.ascontiguousarray(colour.reshape(*colour.shape[:2], -1))
-    read = _read_between(planes, at_px, side, camera.fx_px / target.fx_px)
+    read = _sample_bilinear(planes, at_px, side, camera.fx_px / target.fx_px)
     return read.reshape(*read.shape[:2], *colour.shape[2:])
 
 
 @njit
-def _read_between(colour, at_px, side, step):
+def _sample_bilinear(colour, at_px, side, step):
     """Read each place as the mean of side x side bilinear samples, ``step`` pixels in all."""
     high, wide, channels = colour.shape
     result = np.empty((at_px.shape[0], at_px.shape[1], channels), np.uint8)

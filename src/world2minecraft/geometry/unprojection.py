@@ -53,7 +53,7 @@ def project(points_m: np.ndarray, camera: Camera) -> np.ndarray:
     )
 
 
-def lift_depth(
+def unproject_depth(
     depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lift the pixels that have depth.
@@ -67,11 +67,11 @@ def lift_depth(
         ``points_m`` float32 [N, 3] in the frame, and ``pixels`` int32 [N], the indices of their
         pixels in the flattened image, rising.
     """
-    return _lift(depth_m, pixel_rays(camera), camera_to_frame.astype(np.float64))
+    return _unproject(depth_m, pixel_rays(camera), camera_to_frame.astype(np.float64))
 
 
 @njit
-def _lift(depth_m, rays, pose):
+def _unproject(depth_m, rays, pose):
     height, width = depth_m.shape
     points = np.empty((height * width, 3), np.float32)
     pixels = np.empty(height * width, np.int32)

@@ -20,9 +20,9 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import checks
 
-USUAL_SHAPE = (60, 60, 36)  # x right, y forward, z up: 60x36x60 as the papers write it
-USUAL_VOXEL_M = 0.08
-KINDS = ("paper", "free")
+DEFAULT_SHAPE = (60, 60, 36)  # x right, y forward, z up: 60x36x60 as the papers write it
+DEFAULT_VOXEL_M = 0.08
+REGION_KINDS = ("paper", "free")
 AXIS_OFFSET_CELLS = 0  # Both by the sweep of docs/occupancy-labels.md.
 DIAGONAL_OFFSET_CELLS = 4
 FLOOR_LAYERS = 1  # Of the box, below the floor's top face.
@@ -66,21 +66,21 @@ class RegionRule:
     """
 
     kind: str = "paper"  # or free: turned with the view, whose cells are sampled from the scene's
-    shape: tuple[int, int, int] = USUAL_SHAPE
-    voxel_m: float = USUAL_VOXEL_M
+    shape: tuple[int, int, int] = DEFAULT_SHAPE
+    voxel_m: float = DEFAULT_VOXEL_M
     axis_offset_cells: int = AXIS_OFFSET_CELLS
     diagonal_offset_cells: int = DIAGONAL_OFFSET_CELLS
 
     def __post_init__(self):
-        if self.kind not in KINDS:
-            raise UnknownNameError("kind of region", self.kind, KINDS)
+        if self.kind not in REGION_KINDS:
+            raise UnknownNameError("kind of region", self.kind, REGION_KINDS)
         if len(self.shape) != 3 or min(self.shape) < 1:
             raise UsageError(f"a region has three sides of a cell or more, not {self.shape}")
         if not self.voxel_m > 0:
             raise UsageError(f"the cells of a region are larger than 0 m, not {self.voxel_m}")
 
 
-def region_of(
+def label_region(
     camera_to_room: np.ndarray,
     rule: RegionRule | None = None,
     *,
@@ -99,7 +99,7 @@ def region_of(
     Example:
         >>> from world2minecraft.core.coordinates import look_at
         >>> pose = look_at(np.array([1.0, 2.0, 1.6]), np.array([5.0, 2.1, 1.2]))
-        >>> region_of(pose).kind
+        >>> label_region(pose).kind
         'axis'
     """
     rule = rule or RegionRule()

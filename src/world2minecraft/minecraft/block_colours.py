@@ -15,7 +15,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 # A shape and the endings that its material may have: oak_slab is made of oak_planks,
 # stone_brick_wall of stone_bricks, quartz_stairs of quartz_block, white_carpet of white_wool.
@@ -159,7 +159,7 @@ def nearest_block(rgb: np.ndarray, candidates: Sequence[str]) -> np.ndarray:
     """
     if not candidates:
         raise ValueError("nearest_block needs at least one candidate block")
-    return nearest_oklab(oklab_of_srgb(rgb), oklab_of_srgb(colours_of(candidates)))
+    return nearest_oklab(srgb_to_oklab(rgb), srgb_to_oklab(colours_of(candidates)))
 
 
 def nearest_oklab(colours: np.ndarray, candidates: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.undistort import pinhole_of
+from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames
@@ -75,7 +75,7 @@ def drawn_views(
         width_px: how wide.
         light: how it is lit.
     """
-    cameras = [pinhole_of(camera, width_px) for camera, _ in views]
+    cameras = [pinhole_camera(camera, width_px) for camera, _ in views]
     options = DrawOptions(outputs=("colour",), light=light, samples=2)
     for picture in frames(scene, cameras, [pose for _, pose in views], options):
         yield np.asarray(picture.colour)

@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.geometry.unprojection import lift_depth
+from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.values import OccSample
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
@@ -92,7 +92,9 @@ def cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np
     region = sample.occ.region
     finite = np.isfinite(depth_m) & (depth_m > 0)
     behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
-    points, pixels = lift_depth(behind.astype(np.float32), sample.camera, _camera_to_region(sample))
+    points, pixels = unproject_depth(
+        behind.astype(np.float32), sample.camera, _camera_to_region(sample)
+    )
     cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
     within = np.all((cells >= 0) & (cells < region.shape), axis=1)
     return pixels[within], cells[within]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.core.types import Camera, checks
-from world2minecraft.geometry.view_region import USUAL_SHAPE, USUAL_VOXEL_M, LabelRegion
+from world2minecraft.geometry.view_region import LabelRegion
 
 __all__ = [
     "USUAL_SHAPE",

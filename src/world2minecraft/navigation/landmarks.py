@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 
 BESIDE_M = 1.5  # What stands nearer than this is "beside".
@@ -160,8 +160,8 @@ def colour_name(rgb: np.ndarray) -> str:
         >>> colour_name(np.array([160, 39, 34]))
         'red'
     """
-    table = oklab_of_srgb(np.array(list(_COLOURS.values()), np.uint8))
-    own = oklab_of_srgb(np.asarray(rgb, np.uint8)[None])
+    table = srgb_to_oklab(np.array(list(_COLOURS.values()), np.uint8))
+    own = srgb_to_oklab(np.asarray(rgb, np.uint8)[None])
     return tuple(_COLOURS)[int(nearest_oklab(own, table)[0])]
 
 

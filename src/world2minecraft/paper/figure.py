@@ -25,7 +25,7 @@ from world2minecraft.evaluation.report.placed_frames import (
 )
 from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.navigation.running.episode_ground import SceneGround
 from world2minecraft.navigation.running.trace import (
     TRACE_FILE,
@@ -153,8 +153,8 @@ def _photos(
     found = []
     for start, end in pairwise(edges):
         path, best = max(placed[start:end], key=lambda one: _shown(scene, one[1]))
-        small = pinhole_of(best.camera, CELL_PX[0])
-        colour = undistorted(read_colour(path), best.camera, small)
+        small = pinhole_camera(best.camera, CELL_PX[0])
+        colour = undistort_image(read_colour(path), best.camera, small)
         found.append((colour, small, best.camera_to_room))
     return found
 

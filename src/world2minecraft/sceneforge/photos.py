@@ -22,7 +22,7 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.report.placed_frames import judge_capture_of, placed_frames, used_by
 from world2minecraft.evaluation.scoring.used_frames import computed
-from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.geometry.undistort import undistort_image
 
 LONGEST_PX, SMALL_PX = 1280, 200
 HELD_BYTES = 48 << 20  # Of pictures that were made: some hundred.
@@ -85,7 +85,7 @@ class RunPhotos:
             return _depth_picture(photo.frame, self.encoding, SMALL_PX if small else LONGEST_PX)
         if small:
             return read_small(place, SMALL_PX)
-        return undistorted(read_colour(place), photo.camera, photo.ideal)
+        return undistort_image(read_colour(place), photo.camera, photo.ideal)
 
     def _keep(self, key: tuple[int, bool], data: bytes) -> None:
         self._made[key] = data

@@ -16,17 +16,22 @@ from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.progress import Progress
 from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.editing.scene.cell_patch import runs_of_cells
 from world2minecraft.editing.scene.command_registry import first_fault
 from world2minecraft.editing.scene.diagnostics import Doubt, find_doubts, ordered
 from world2minecraft.editing.scene.difference import difference
-from world2minecraft.editing.scene.floaters import MAX_CELLS, find_floaters
 from world2minecraft.editing.scene.furniture_commands import ObjectClass
-from world2minecraft.editing.scene.holes import HOLE_M2, hole_cells, plane_gaps
 from world2minecraft.editing.scene.object_boxes import object_named
-from world2minecraft.editing.scene.objects import Id
-from world2minecraft.editing.scene.objects_of import instance_of, placements_of
+from world2minecraft.editing.scene.object_transforms import Id
 from world2minecraft.editing.scene.planes import find_planes
-from world2minecraft.editing.scene.runs import runs_of_cells
+from world2minecraft.editing.scene.repair import (
+    HOLE_M2,
+    MAX_CELLS,
+    find_floaters,
+    hole_cells,
+    plane_gaps,
+)
+from world2minecraft.editing.scene.scene_objects import instance_of, placements_of
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 from world2minecraft.reconstruction.instances import FindParameters

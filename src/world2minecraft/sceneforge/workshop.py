@@ -13,7 +13,6 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.sceneforge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.sceneforge.comparison import truth_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.exports import snapshot
@@ -24,6 +23,7 @@ from world2minecraft.sceneforge.photos import (
     read_photos,
 )
 from world2minecraft.sceneforge.session import NO_ROOM, Session
+from world2minecraft.sceneforge.uploads import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 
 MOST_RECENT = 12
 PLACES = "captures.json"  # Where the capture of each run lies, as the user said.

@@ -10,7 +10,8 @@ from world2minecraft.core.types import (
     Operation,
     Placement,
 )
-from world2minecraft.editing.scene import SceneDraft, objects_of
+from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.editing.scene import scene_objects as objects_of
 
 SHAPE = (7, 6, 5)
 
@@ -81,7 +82,7 @@ def random_operation(draft: SceneDraft, rng: np.random.Generator) -> Operation:
 
 def state(draft: SceneDraft) -> tuple:
     """Everything that a scene holds, in a form that compares."""
-    from world2minecraft.editing.scene.objects_of import facts
+    from world2minecraft.editing.scene.scene_objects import facts
 
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
     held = tuple(array.tobytes() for array in arrays)

@@ -10,7 +10,7 @@ from test_scene_objects import done, refusal
 
 from world2minecraft.core.types import ObjectInstance
 from world2minecraft.editing.scene import parse_command
-from world2minecraft.editing.scene.grouping import clusters_of
+from world2minecraft.editing.scene.object_grouping import clusters_of
 
 COMMANDS = (
     {"op": "relabel_objects", "ids": [CHAIR, LAMP], "class_id": 10},

@@ -10,11 +10,8 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.floaters import find_floaters
-from world2minecraft.editing.scene.holes import plane_gaps
-from world2minecraft.editing.scene.mending import pinholes
 from world2minecraft.editing.scene.planes import find_planes
-from world2minecraft.editing.scene.smoothing import smoothed
+from world2minecraft.editing.scene.repair import find_floaters, pinholes, plane_gaps, smoothed
 
 AROUND = [step for step in itertools.product((-1, 0, 1), repeat=3) if any(step)]
 FACES = [step for step in AROUND if sum(map(abs, step)) == 1]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types.edit import each_once
-from world2minecraft.editing.scene.packing import (
+from world2minecraft.editing.scene.journal import (
     pack_objects,
     pack_operation,
     unpack_objects,

@@ -8,8 +8,8 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.painting import colours_of
-from world2minecraft.editing.scene.parts import component_of, parts_of_cells
+from world2minecraft.editing.scene.scene_objects import component_of, parts_of_cells
+from world2minecraft.editing.scene.voxel_commands import colours_of
 
 STEPS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.unprojection import lift_depth, pixel_rays
+from world2minecraft.geometry.unprojection import pixel_rays, unproject_depth
 from world2minecraft.reconstruction.occupancy.depth_evidence import facing_of_depth
 
 CAMERA = Camera(320, 240, 262.0, 262.0, 160.0, 120.0)
@@ -34,7 +34,7 @@ def test_a_plane_has_its_normal_everywhere(tilt_deg, turn_deg):
 def test_normals_look_at_the_camera_and_are_told_in_its_frame():
     turn = np.array([[0, 0, 1, 5], [-1, 0, 0, 6], [0, -1, 0, 7], [0, 0, 0, 1]], np.float64)
     depth_m = np.full((240, 320), 2, np.float32)
-    points_m, pixels = lift_depth(depth_m, CAMERA, turn)
+    points_m, pixels = unproject_depth(depth_m, CAMERA, turn)
     found = facing_of_depth(depth_m, CAMERA, turn, pixels)
     assert len(found) == len(points_m)
     assert np.allclose(found, [-1, 0, 0], atol=1e-5)

@@ -11,7 +11,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
-from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_of
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
 from world2minecraft.reconstruction.fusion import fuse_views
@@ -151,7 +151,7 @@ def test_colours_are_what_the_picture_shows_of_each_cell(tmp_path):
     pose, facts = POSES[0], sized((60, 60, 36), 0.08)
     depth_m, colour = ROOM.render(pose)
     region = region_before(pose, facts)
-    points, pixels = lift_depth(depth_m, CAMERA, invert_rigid(region.region_to_room) @ pose)
+    points, pixels = unproject_depth(depth_m, CAMERA, invert_rigid(region.region_to_room) @ pose)
     cells = np.floor(points / 0.08 + 1e-4).astype(int)
     held = ((cells >= 0) & (cells < facts.grid_shape)).all(axis=1)
     bias = np.zeros((12, *facts.grid_shape))

@@ -14,7 +14,7 @@ from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
-from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.reconstruction.opening import open_prepared, prepared, preparing
 from world2minecraft.reconstruction.opening.scale import (
     clicked,
@@ -34,7 +34,7 @@ def scene_of(views, unit_m=1.0):
     for index, view in enumerate(views):
         depth = np.zeros_like(view.depth_m)
         depth[::10, ::10] = view.depth_m[::10, ::10]
-        lifted, _ = lift_depth(depth, view.depth_camera, view.camera_to_scan)
+        lifted, _ = unproject_depth(depth, view.depth_camera, view.camera_to_scan)
         points.append(lifted)
         owners.append(np.full(len(lifted), index, np.int32))
         inside = apply(invert_rigid(view.camera_to_scan), lifted.astype(np.float64))
@@ -148,7 +148,7 @@ def test_a_known_length_gives_the_scale(tmp_path, views, stood_in, height_m):
 def test_two_clicked_points_give_the_scale(tmp_path, views, stood_in):
     folder = write_photos(tmp_path / "in", views)
     view = views[0]
-    points, pixels = lift_depth(view.depth_m, view.depth_camera, view.camera_to_scan)
+    points, pixels = unproject_depth(view.depth_m, view.depth_camera, view.camera_to_scan)
     wide = view.depth_camera.width_px
     a, b = 30 * wide + 40, 90 * wide + 120
     at = {int(pixel): points[n] for n, pixel in enumerate(pixels)}

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Corrections, Scan, View
-from world2minecraft.geometry.oriented_points import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.reconstruction.registration import RegisterParameters, register, told
 from world2minecraft.reconstruction.registration import corrected_scan as corrected
 from world2minecraft.reconstruction.registration.pose_refinement import register_surface
@@ -45,7 +45,7 @@ def true_poses() -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def true_surface() -> Surface:
+def true_surface() -> OrientedPoints:
     """The patches of the walk with a depth camera's noise, where they truly are."""
     rng = np.random.default_rng(0)
     views = []
@@ -53,10 +53,10 @@ def true_surface() -> Surface:
         depth = depth_of(pose)
         depth += (rng.standard_normal(depth.shape) * 0.002 * depth).astype(np.float32)
         views.append(View(f"{index:04d}", pose, depth_m=depth, depth_camera=CAMERA))
-    return collect_surface(views)
+    return collect_oriented_points(views)
 
 
-def disturbed(surface: Surface, shift_m=0.006, turn_deg=0.25, scale=0.0, seed=1):
+def disturbed(surface: OrientedPoints, shift_m=0.006, turn_deg=0.25, scale=0.0, seed=1):
     """Return the surface as stated poses and stretched depth show it, and the stretches."""
     rng = np.random.default_rng(seed)
     frames = len(surface.cameras)
@@ -81,7 +81,7 @@ def apart(cameras: np.ndarray, true: np.ndarray) -> tuple[float, float]:
     return float(np.median(off)), float(np.degrees(np.median((common.inv() * turns).magnitude())))
 
 
-def refined(given: Surface, scan_to_room=None, **chosen):
+def refined(given: OrientedPoints, scan_to_room=None, **chosen):
     place = np.eye(4) if scan_to_room is None else scan_to_room
     return register_surface(given, place, RegisterParameters(**chosen))
 
@@ -210,7 +210,7 @@ def test_a_corrected_scan_has_moved_poses_and_stretched_depth():
 def test_the_surface_is_that_of_the_corrected_views():
     scan = scan_of(6)
     found = register(scan, RegisterParameters())
-    again = collect_surface(corrected(scan, found.corrections).views)
+    again = collect_oriented_points(corrected(scan, found.corrections).views)
     np.testing.assert_allclose(again.cameras, found.surface.cameras, atol=1e-6)
     np.testing.assert_allclose(again.points_m, found.surface.points_m, atol=1e-4)
 

@@ -11,7 +11,7 @@ from label_grids import grid_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 from world2minecraft.reconstruction.retrieval.variants import Choice, Offer, choose
@@ -24,7 +24,7 @@ def _choice(name, rgb=None, size_m=None, offered=()):
     size = np.array(size_m or one.typical_m)
     placement = Placement(1, one.class_id, name, np.zeros(3), size, 0, 0.9, one.complete())
     offers = tuple(Offer(other, 0.9, {}) for other in (name, *offered))
-    colour = None if rgb is None else oklab_of_srgb(np.array(rgb, np.uint8))
+    colour = None if rgb is None else srgb_to_oklab(np.array(rgb, np.uint8))
     return Choice(placement, offers, colour)
 
 

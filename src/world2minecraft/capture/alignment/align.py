@@ -23,8 +23,8 @@ from world2minecraft.capture.alignment.gravity import Ground, find_ground, frame
 from world2minecraft.capture.alignment.walls import Box, find_box, find_yaw
 from world2minecraft.core.coordinates import COMPASS_OF_SIDE, rotation_about_z
 from world2minecraft.core.types import Scan, View
-from world2minecraft.geometry.oriented_points import Surface, collect_surface
-from world2minecraft.geometry.rotations import rotation_of_vector
+from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
+from world2minecraft.geometry.rotations import rotation_from_vector
 
 # The last tenths of a degree: one turn that lays all large faces along the axes at once.
 #
@@ -55,7 +55,7 @@ class Faces:
     count: int
 
 
-def straightening_turn(level: Surface) -> np.ndarray:
+def straightening_turn(level: OrientedPoints) -> np.ndarray:
     """Return the small rotation [3, 3] that lays large faces along the axes.
 
     Args:
@@ -66,11 +66,11 @@ def straightening_turn(level: Surface) -> np.ndarray:
     if faces.count == 0:
         return turn
     for limit_m in LIMITS_M:
-        turn = rotation_of_vector(_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
+        turn = rotation_from_vector(_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
     return turn
 
 
-def find_faces(level: Surface) -> Faces:
+def find_faces(level: OrientedPoints) -> Faces:
     """Return the patches that lie on large faces across an axis, each in one face."""
     points, axes, owners, weights, count = [], [], [], [], 0
     for axis in range(3):
@@ -179,7 +179,7 @@ def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment
     Raises:
         ImplausibleRoomError: too little surface was seen, or the size is no room's.
     """
-    surface = collect_surface(views)
+    surface = collect_oriented_points(views)
     if len(surface.points_m) < LEAST_POINTS:
         raise ImplausibleRoomError(
             f"only {len(surface.points_m)} places of the depth images are smooth surface; "
@@ -188,7 +188,7 @@ def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment
     return align_surface(surface, up_hint)
 
 
-def align_surface(surface: Surface, up_hint: np.ndarray | None = None) -> Alignment:
+def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> Alignment:
     """Find the room in oriented points of the scan's frame; ``find_ground`` takes the hint."""
     ground = find_ground(surface, up_hint)
     scan_to_level = np.eye(4)
@@ -210,7 +210,7 @@ def align_surface(surface: Surface, up_hint: np.ndarray | None = None) -> Alignm
     return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(ground, box, size))
 
 
-def realigned(scan: Scan, surface: Surface) -> Scan:
+def realigned(scan: Scan, surface: OrientedPoints) -> Scan:
     """Return a scan whose room is found anew in a better surface of its frame.
 
     Where that is no plausible room, or nothing was seen by depth, the scan stays as it is.
@@ -230,7 +230,7 @@ def realigned(scan: Scan, surface: Surface) -> Scan:
     )
 
 
-def _turn_to_walls(level: Surface) -> np.ndarray:
+def _turn_to_walls(level: OrientedPoints) -> np.ndarray:
     """Return the turn about z that puts walls along the axes and the first camera's look to +y."""
     yaw_deg = find_yaw(level)
     look = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
@@ -239,7 +239,7 @@ def _turn_to_walls(level: Surface) -> np.ndarray:
     return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
 
 
-def _straightened(level: Surface, has_floor: bool) -> np.ndarray:
+def _straightened(level: OrientedPoints, has_floor: bool) -> np.ndarray:
     """Return the small move that lays all large faces along the axes and the floor on 0."""
     move = np.eye(4)
     move[:3, :3] = straightening_turn(level)
@@ -249,7 +249,7 @@ def _straightened(level: Surface, has_floor: bool) -> np.ndarray:
     return move
 
 
-def _with_cameras(box: Box, level: Surface) -> tuple[np.ndarray, np.ndarray]:
+def _with_cameras(box: Box, level: OrientedPoints) -> tuple[np.ndarray, np.ndarray]:
     """Return the box's corners, moved out behind the cameras at the sides where none was seen.
 
     Whoever held the camera stood in the room, even where no frame looks at the wall behind.

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.oriented_points import Surface
+from world2minecraft.geometry.oriented_points import OrientedPoints
 
 CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks at one are one.
 
@@ -77,7 +77,7 @@ LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last parts a wall from a rug or a l
 LIFT_M = 0.003  # What a face is off for other reasons than noise; no patch counts for more.
 
 
-def face_place_m(facing: Surface, axis: int, place_m: float) -> float:
+def face_place_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
     """Return where the largest face near a place lies along an axis.
 
     Args:

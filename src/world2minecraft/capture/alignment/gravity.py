@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import profile
-from world2minecraft.geometry.oriented_points import Surface
+from world2minecraft.geometry.oriented_points import OrientedPoints
 
 DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.
 VOTERS = 4000
@@ -33,7 +33,7 @@ class Ground:
     floor_area_m2: float  # 0 where no floor was seen and the lowest points stand for it.
 
 
-def find_ground(surface: Surface, up_hint: np.ndarray | None = None) -> Ground:
+def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> Ground:
     """Return up and the floor's plane; see the module's text.
 
     Args:
@@ -59,7 +59,7 @@ def _is_near(up: np.ndarray, up_hint: np.ndarray | None) -> bool:
     return up_hint is None or bool(up @ up_hint >= np.cos(np.radians(HINT_DEG)))
 
 
-def _voted_up(surface: Surface) -> np.ndarray:
+def _voted_up(surface: OrientedPoints) -> np.ndarray:
     """Return the best of many directions by support, level image rows and upright images."""
     directions = _sphere(DIRECTIONS)
     every = max(1, len(surface.normals) // VOTERS)
@@ -93,7 +93,7 @@ def _refined(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
     return up
 
 
-def _floor_height(surface: Surface, up: np.ndarray) -> tuple[float, float]:
+def _floor_height(surface: OrientedPoints, up: np.ndarray) -> tuple[float, float]:
     """Return the height of the lowest large surface that faces up, and its area in m2."""
     frame = frame_of_up(up)
     points = surface.points_m @ frame.T
@@ -114,7 +114,9 @@ def frame_of_up(up: np.ndarray) -> np.ndarray:
     return np.stack([x, np.cross(up, x), up])
 
 
-def _fit_floor(surface: Surface, up: np.ndarray, height_m: float) -> tuple[np.ndarray, float]:
+def _fit_floor(
+    surface: OrientedPoints, up: np.ndarray, height_m: float
+) -> tuple[np.ndarray, float]:
     """Fit the floor's plane by reweighted least squares (Tukey), starting from ``up``.
 
     Patches weigh alike however often they were looked at: by pixels alone, the floor nearest to

@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import face_place_m, profile
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.geometry.oriented_points import Surface
+from world2minecraft.geometry.oriented_points import OrientedPoints
 
 UPRIGHT = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
 FACING = 0.94  # Cosine of 20 degrees.
@@ -33,7 +33,7 @@ class Box:
     seen: tuple[str, ...]
 
 
-def find_yaw(surface: Surface) -> float:
+def find_yaw(surface: OrientedPoints) -> float:
     """Return the degrees, -45 up to 45, by which walls are turned from the axes.
 
     The normals of upright surfaces vote modulo a quarter turn; the large walls' own lines then
@@ -56,7 +56,7 @@ def find_yaw(surface: Surface) -> float:
     return (yaw + 45) % 90 - 45
 
 
-def _wall_slope(surface: Surface) -> float:
+def _wall_slope(surface: OrientedPoints) -> float:
     """Return the mean turn in degrees that is left in the large walls, by fitting their lines."""
     total, weights = 0.0, 0.0
     for axis in (0, 1):
@@ -89,7 +89,7 @@ def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, f
     return slope, float(np.sum(weight * (along - middle) ** 2))
 
 
-def find_box(surface: Surface) -> Box:
+def find_box(surface: OrientedPoints) -> Box:
     """Return the inner box of a room whose walls lie along x and y and whose floor is z = 0."""
     low, high, seen = np.zeros(3), np.zeros(3), []
     for axis, name in ((0, "x"), (1, "y")):
@@ -104,7 +104,7 @@ def find_box(surface: Surface) -> Box:
     return Box(low, high, tuple(seen))
 
 
-def _side(surface: Surface, axis: int, sign: int) -> tuple[float, bool]:
+def _side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bool]:
     """Return where the room ends at one side, and whether a wall holds it.
 
     ``sign`` is that of the inward normal: +1 at the low side. The outermost large surface is the
@@ -134,7 +134,7 @@ def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
     return values[np.unique(code + cells[:, 2], return_index=True)[1]]
 
 
-def _ceiling(surface: Surface) -> tuple[float, bool]:
+def _ceiling(surface: OrientedPoints) -> tuple[float, bool]:
     """Return the height of the highest large surface that faces down, or where points end."""
     points = surface.points_m
     facing = surface.chosen(surface.normals[:, 2] < -FACING)

@@ -19,7 +19,7 @@ from world2minecraft.capture.view_stream import CaptureViews
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import View
-from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.unprojection import project, unproject_depth
 
 POINTS_EACH = 60_000
 CELLS = 560  # Along the longer side of the plan.
@@ -102,7 +102,7 @@ class _Gathered:
     def _keep(self, view: View) -> None:
         if view.depth_m is None or view.depth_camera is None:
             return
-        points, _ = lift_depth(view.depth_m, view.depth_camera, np.eye(4))
+        points, _ = unproject_depth(view.depth_m, view.depth_camera, np.eye(4))
         self.holes.append(1 - len(points) / view.depth_m.size)
         if view.trust is not None:
             self.trusts.append(float(view.trust.mean()) / 255)

@@ -14,7 +14,7 @@ from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
 from world2minecraft.capture.alignment.walls import find_box, find_yaw
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import View
-from world2minecraft.geometry.oriented_points import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 # The surface of a scan whose unit nobody knows.
 #
@@ -25,7 +25,7 @@ USUAL_DEPTH_M = 1.9  # Median over the virtual walks of seeds 500 to 549, 1.4 to
 EVERY_PIXEL = 7  # Of the depth images, for their median.
 
 
-def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> Surface:
+def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> OrientedPoints:
     """Gather the flat patches of views in any unit; all lengths of the result are in that unit.
 
     Args:
@@ -34,12 +34,12 @@ def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> Surface:
     """
     middle = _median_depth(views)
     if middle <= 0:
-        return collect_surface((), most_each)
+        return collect_oriented_points((), most_each)
     factor = USUAL_DEPTH_M / middle
-    return resized(collect_surface(_resized_views(views, factor), most_each), 1 / factor)
+    return resized(collect_oriented_points(_resized_views(views, factor), most_each), 1 / factor)
 
 
-def resized(surface: Surface, factor: float) -> Surface:
+def resized(surface: OrientedPoints, factor: float) -> OrientedPoints:
     """Return the surface with all its lengths multiplied by a factor above 0."""
     cameras = surface.cameras.copy()
     cameras[:, :3, 3] *= factor
@@ -121,7 +121,7 @@ class Measures:
     width: float | None
 
 
-def measure(surface: Surface) -> Measures:
+def measure(surface: OrientedPoints) -> Measures:
     """Measure a room in a surface of any unit and tilt.
 
     Args:
@@ -151,13 +151,13 @@ def measure(surface: Surface) -> Measures:
     )
 
 
-def _rough_scale(surface: Surface) -> float:
+def _rough_scale(surface: OrientedPoints) -> float:
     """Return the scale at which what the cameras see is about as far as in a usual room."""
     away = surface.points_m - surface.cameras[surface.owner, :3, 3]
     return USUAL_RANGE_M / max(float(np.median(np.linalg.norm(away, axis=1))), 1e-12)
 
 
-def _levelled(surface: Surface) -> tuple[Surface, bool]:
+def _levelled(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
     """Return the surface with the floor at z = 0 and z up, and whether a floor was seen."""
     ground = find_ground(surface)
     to_level = np.eye(4)
@@ -173,7 +173,7 @@ def _lowest_camera(heights: np.ndarray) -> float:
     return max(float(np.median(near if len(near) else heights)), 0.05)
 
 
-def _levels(level: Surface) -> list[Level]:
+def _levels(level: OrientedPoints) -> list[Level]:
     """Return the faces that look up between a stool's height and the chest's, from low to high."""
     up = level.points_m[level.normals[:, 2] > FACING]
     found = profile(up, 2, 0.02)
@@ -190,11 +190,11 @@ def _levels(level: Surface) -> list[Level]:
     return levels
 
 
-def _top(level: Surface) -> float:
+def _top(level: OrientedPoints) -> float:
     return float(np.quantile(level.points_m[:, 2], TOP_QUANTILE))
 
 
-def _ceiling(level: Surface, camera: float) -> float | None:
+def _ceiling(level: OrientedPoints, camera: float) -> float | None:
     """Return the height of the lowest large face that looks down over the cameras."""
     down = level.points_m[level.normals[:, 2] < -FACING]
     found = profile(down, 2, 0.03)
@@ -207,7 +207,7 @@ def _ceiling(level: Surface, camera: float) -> float | None:
     return float(np.median(down[np.abs(down[:, 2] - lowest) < 0.045, 2]))
 
 
-def _sides(level: Surface) -> tuple[float | None, float | None]:
+def _sides(level: OrientedPoints) -> tuple[float | None, float | None]:
     """Return the longer and the shorter side of the room, each None where a wall is missing."""
     box = find_box(level.turned(rotation_about_z(-find_yaw(level))))
     sides = []

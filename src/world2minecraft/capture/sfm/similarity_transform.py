@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from world2minecraft.core.types import checks
-from world2minecraft.geometry.rotations import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_from_vector
 
 USUAL_TURN = 0.1  # Radians: sensors on one device look nearly the same way.
 ROUNDS = 60  # It settles to 1e-9 in about ten, with a mount in thirty.
@@ -110,8 +110,8 @@ def _turned_mount(
     sigma = max(np.radians(1.48 * float(np.median(start.off_deg))), 1e-6)
 
     def solved(values: np.ndarray):
-        rotation = rotation_of_vector(values[1:4]) @ start.rotation
-        scale, turn = start.scale * np.exp(values[0]), rotation_of_vector(values[10:13])
+        rotation = rotation_from_vector(values[1:4]) @ start.rotation
+        scale, turn = start.scale * np.exp(values[0]), rotation_from_vector(values[10:13])
         shift = start.shift_m + values[4:7] * reach_m
         return scale, rotation, shift, values[7:10] * reach_m, turn
 

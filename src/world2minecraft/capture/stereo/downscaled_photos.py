@@ -9,7 +9,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import PhotoStream, SparseScene
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import project
 
 LEAST_SIDE_PX = 16  # So that windows lie in it.
@@ -66,7 +66,7 @@ def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> Small
             f"the photo is {colour.shape[1]}x{colour.shape[0]}, "
             f"but its camera is {camera.width_px}x{camera.height_px}",
         )
-    target = pinhole_of(camera, min(width_px, camera.width_px))
+    target = pinhole_camera(camera, min(width_px, camera.width_px))
     if min(target.width_px, target.height_px) < LEAST_SIDE_PX:
         raise CaptureError(
             name, f"the photo must have sides of {LEAST_SIDE_PX} pixels or more: give larger ones"
@@ -78,7 +78,7 @@ def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> Small
     at_px = project(points_m, target)
     inside = ((at_px >= 0) & (at_px < (target.width_px, target.height_px))).all(axis=1)
     return SmallPhoto(
-        name, target, pose, undistorted(colour, camera, target),
+        name, target, pose, undistort_image(colour, camera, target),
         at_px[inside], points_m[inside, 2], seen[inside],
     )  # fmt: skip
 

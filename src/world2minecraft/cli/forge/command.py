@@ -86,11 +86,11 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.sceneforge.captures import is_capture, user_home
     from world2minecraft.sceneforge.document.identity import folder_of
     from world2minecraft.sceneforge.editor import Editor
     from world2minecraft.sceneforge.server.serve import ForgeServer
     from world2minecraft.sceneforge.sources import DEMO_OUT
+    from world2minecraft.sceneforge.uploads import is_capture, user_home
 
     if walk:
         return _walk(source, no_browser)

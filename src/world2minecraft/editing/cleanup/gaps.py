@@ -8,8 +8,8 @@ their cells.
 import numpy as np
 
 from world2minecraft.core.types import Blocks
-from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import move
+from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 

@@ -7,8 +7,8 @@ which one sees out. Doorways and open windows are larger; what hangs in a hole i
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import blocks_in, free_cells, structure_of
+from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.geometry.connected_components import label_components
 
 HOLE_M = 0.5  # A hole is no larger than a square of this side.

@@ -8,8 +8,8 @@ cubes in the plane of a wall, past which one sees out.
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import crumb_blocks, structure_of, take_away, things_of
+from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 

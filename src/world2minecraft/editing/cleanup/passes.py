@@ -20,8 +20,8 @@ from world2minecraft.core.types import BlockEdit, Blocks, BlockVolume
 from world2minecraft.editing.cleanup.floating import mend_floating
 from world2minecraft.editing.cleanup.holes import close_holes
 from world2minecraft.editing.cleanup.intrusions import close_see_through, trim_cut_off
-from world2minecraft.editing.draft import Draft
 from world2minecraft.editing.sight import take_away
+from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
 

@@ -1,11 +1,11 @@
 """Edits of a scene, its occupancy and its objects: what SceneForge, scripts and models share."""
 
+from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.command_registry import COMMANDS, parse_command
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.history import Line, MemoryLog, SceneHistory
-from world2minecraft.editing.scene.objects_of import instances_of, objects_of, placements_of
-from world2minecraft.editing.scene.runs import cells_of_runs, runs_of_cells
+from world2minecraft.editing.scene.scene_objects import instances_of, objects_of, placements_of
 
 __all__ = [
     "COMMANDS",

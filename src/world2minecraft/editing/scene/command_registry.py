@@ -6,10 +6,16 @@ from pydantic import ValidationError
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.scene.command import Command
-from world2minecraft.editing.scene.mending import FillHoles, RemoveFloaters, Smooth
-from world2minecraft.editing.scene.object_commands import OBJECT_COMMANDS
-from world2minecraft.editing.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
-from world2minecraft.editing.scene.whole_class import DeleteClass, RelabelClass
+from world2minecraft.editing.scene.object_grouping import OBJECT_COMMANDS
+from world2minecraft.editing.scene.repair import FillHoles, RemoveFloaters, Smooth
+from world2minecraft.editing.scene.voxel_commands import (
+    DeleteClass,
+    DeleteComponent,
+    FillBox,
+    Paste,
+    RelabelClass,
+    SetCells,
+)
 
 COMMANDS: dict[str, type[Command]] = {
     kind.model_fields["op"].default: kind

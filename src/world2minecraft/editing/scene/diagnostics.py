@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.editing.scene.draft import SceneDraft
-from world2minecraft.editing.scene.floaters import find_floaters
+from world2minecraft.editing.scene.repair import find_floaters
 from world2minecraft.geometry.connected_components import label_components
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.

@@ -8,7 +8,7 @@ from pydantic import Field
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, Placement, SceneObject
-from world2minecraft.editing.scene.carrying import is_free
+from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.object_boxes import (
@@ -18,10 +18,9 @@ from world2minecraft.editing.scene.object_boxes import (
     object_named,
     objects_named,
 )
-from world2minecraft.editing.scene.objects import Id, Ids, Point, QuarterTurns
-from world2minecraft.editing.scene.objects_of import instance_of, object_of
-from world2minecraft.editing.scene.patch import Patch
-from world2minecraft.editing.scene.standing import standing_box
+from world2minecraft.editing.scene.object_placement import standing_box
+from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
+from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 from world2minecraft.furniture import Template, cells_of, template, templates_of
 
 ObjectClass = Annotated[int, Field(ge=5, le=11)]

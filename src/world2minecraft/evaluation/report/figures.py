@@ -16,7 +16,7 @@ from world2minecraft.furniture.layout_checks import (
     out_of_rooms,
     overlapping_boxes,
 )
-from world2minecraft.geometry.planes import LevelPlane, level_planes
+from world2minecraft.geometry.planes import HorizontalPlane, find_horizontal_planes
 
 # The figures of the layout: what collides, lies outside, hangs in the air or got lost.
 
@@ -128,14 +128,14 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
     }
 
 
-def scene_planes(scene: FinishedScene) -> tuple[LevelPlane, ...]:
+def scene_planes(scene: FinishedScene) -> tuple[HorizontalPlane, ...]:
     """Return the level surfaces of the fused room, their heights finer than a cell."""
     evidence = scene.evidence
     layers = np.arange(evidence.hits.shape[2])
     middle_m = evidence.origin_m[2] + (layers + 0.5) * evidence.voxel_m
     mean_m = middle_m + evidence.offset_sum[..., 2] / np.maximum(evidence.hits, 1)
     observed = np.where(scene.grid.source == COMPLETED, 255, scene.grid.labels)
-    return level_planes(observed, mean_m, evidence.hits, evidence.voxel_m)
+    return find_horizontal_planes(observed, mean_m, evidence.hits, evidence.voxel_m)
 
 
 def voxel_counts(scene: FinishedScene) -> dict[str, dict[str, int]]:

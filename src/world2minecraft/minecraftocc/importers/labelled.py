@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.unprojection import lift_depth
+from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.formats.boxes import cells_in_image
 from world2minecraft.minecraftocc.values import (
     USUAL_SHAPE,
@@ -157,7 +157,7 @@ def _hits(found: Found, region: LabelRegion, camera_to_region: np.ndarray) -> np
     if found.depth_m is None:
         return np.zeros(region.shape, np.uint32)
     behind = np.where(found.depth_m > 0, found.depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
-    points, _ = lift_depth(behind.astype(np.float32), found.camera, camera_to_region)
+    points, _ = unproject_depth(behind.astype(np.float32), found.camera, camera_to_region)
     cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int32)
     inside = np.all((cells >= 0) & (cells < region.shape), axis=1)
     flat = np.ravel_multi_index(tuple(cells[inside].T), region.shape)

@@ -6,10 +6,10 @@ The rule itself is that of ``geometry/view_region.py``.
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.view_region import LabelRegion, RegionRule, region_of, view_yaw_deg
+from world2minecraft.geometry.view_region import LabelRegion, RegionRule, label_region, view_yaw_deg
 from world2minecraft.minecraftocc.values import SceneVoxels
 
-__all__ = ["RegionRule", "floor_under", "region_in", "region_of", "view_yaw_deg"]
+__all__ = ["RegionRule", "floor_under", "region_in", "label_region", "view_yaw_deg"]
 
 
 RUG_M = 0.25  # What lies so much higher than a floor that spreads wider is no floor of its own.
@@ -19,7 +19,7 @@ def region_in(
     voxels: SceneVoxels, camera_to_room: np.ndarray, rule: RegionRule | None = None
 ) -> LabelRegion:
     """Return the region of a view of a scene: on its cells, from the floor under the camera on."""
-    return region_of(
+    return label_region(
         camera_to_room,
         rule,
         floor_m=floor_under(voxels, camera_to_room),

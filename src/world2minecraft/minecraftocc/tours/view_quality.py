@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.undistort import pinhole_of
+from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.minecraftocc.tours.values import TourRule
 from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
@@ -58,7 +58,7 @@ def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourR
     """
     outputs = ("colour", "depth", "semantic", "block", "face")
     seen = render_batch(
-        scene, pinhole_of(rule.camera, WIDE_PX), poses, outputs=outputs, light=rule.light
+        scene, pinhole_camera(rule.camera, WIDE_PX), poses, outputs=outputs, light=rule.light
     )
     count = len(poses)
     depth, semantic, block, face = (

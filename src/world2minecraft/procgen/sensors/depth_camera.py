@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.geometry.rotations import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_from_vector
 
 BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.
 NATIVE_WIDTH_PX = 640  # Disparity is counted in pixels of the sensor, whatever size is handed out.
@@ -132,7 +132,7 @@ def jittered_pose(
     shift = rng.standard_normal(3) * model.jitter_m
     angles = np.radians(rng.standard_normal(3) * model.jitter_deg)
     stated = camera_to_room.copy()
-    stated[:3, :3] = camera_to_room[:3, :3] @ rotation_of_vector(angles)
+    stated[:3, :3] = camera_to_room[:3, :3] @ rotation_from_vector(angles)
     stated[:3, 3] += shift
     return stated
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.rotations import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_from_vector
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import (
     PHONES,
@@ -123,7 +123,9 @@ def room_to_scan(seed: int) -> np.ndarray:
     tilt = np.radians(rng.uniform(0.2, 1.0) * MAX_TILT_DEG)
     axis = np.array([np.cos(direction), np.sin(direction), 0.0])
     transform = np.eye(4)
-    transform[:3, :3] = rotation_of_vector(axis * tilt) @ rotation_of_vector(np.array([0, 0, yaw]))
+    transform[:3, :3] = rotation_from_vector(axis * tilt) @ rotation_from_vector(
+        np.array([0, 0, yaw])
+    )
     transform[:3, 3] = rng.uniform(-2, 2, 3)
     return transform
 

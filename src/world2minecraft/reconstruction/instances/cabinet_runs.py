@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.object_voxels import Heap, cells_by_owner, heap_of
 
@@ -285,7 +285,7 @@ def _look(heap: Heap, axis: int) -> np.ndarray:
     across = 1 - axis
     own = np.moveaxis(heap.own, (axis, across, 2), (0, 1, 2))
     free = np.moveaxis(heap.free, (axis, across, 2), (0, 1, 2))
-    colour = oklab_of_srgb(np.moveaxis(heap.colour, (axis, across, 2), (0, 1, 2)))
+    colour = srgb_to_oklab(np.moveaxis(heap.colour, (axis, across, 2), (0, 1, 2)))
     if _fronts(own[:, ::-1], free[:, ::-1]) > _fronts(own, free):
         own, colour = own[:, ::-1], colour[:, ::-1]
     # The front is the first own cell from the free side, layer by layer; tops are left out.

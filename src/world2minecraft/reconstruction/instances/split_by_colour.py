@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner
 
@@ -41,7 +41,7 @@ def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     at = tuple((cells - low).T)
     own[at] = True
     colour = np.zeros((*shape, 3))
-    colour[at] = oklab_of_srgb(grid.colour[tuple(cells.T)])
+    colour[at] = srgb_to_oklab(grid.colour[tuple(cells.T)])
     patches = _patches(own, colour)
     joined = _over_one_another(patches)
     if joined.max(initial=0) < 2:

@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
@@ -129,7 +129,7 @@ def _parts(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.nda
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     labels, own = grid.labels[box], np.zeros(grid.labels[box].shape, np.bool_)
     own[tuple((cells - low).T)] = True
-    scene = Scene(oklab_of_srgb(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
+    scene = Scene(srgb_to_oklab(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
     seeds = _seeds(own, labels, owners[box], scene)
     count = int(seeds.max(initial=0))
     if count < 2:

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
     points = np.zeros((*grid.shape, 3), np.float32)
     points[at] = cell_centers_m(cells, grid.origin_m, grid.voxel_m) + evidence.offset_sum[at] / hits
     oklab = np.zeros((*grid.shape, 3), np.float32)
-    oklab[at] = oklab_of_srgb(grid.colour[at])
+    oklab[at] = srgb_to_oklab(grid.colour[at])
     weight = np.where(occupied, np.maximum(evidence.hits, 1), 0).astype(np.float32)
     return Surface(occupied, grid.labels == 0, points, weight, oklab, grid.voxel_m, grid.origin_m)
 

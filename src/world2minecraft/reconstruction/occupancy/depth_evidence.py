@@ -14,7 +14,7 @@ from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
-from world2minecraft.geometry.unprojection import lift_depth, pixel_rays, project
+from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 
 # Which way the surface at each pixel of a depth image faces.
 #
@@ -171,7 +171,7 @@ class DepthPredictor:
             raise ValueError(f"view {view.name} has no depth")
         near_m = np.where(depth_m <= self.max_depth_m, depth_m, np.float32(0))
         camera_to_scan = view.depth_camera_to_scan
-        points_m, pixels = lift_depth(near_m, camera, camera_to_scan)
+        points_m, pixels = unproject_depth(near_m, camera, camera_to_scan)
         depths = near_m.reshape(-1)[pixels]
         colour_px = _colour_pixels(view, points_m, pixels)
         colour, labels = _look_up(view, colour_px)

@@ -17,13 +17,13 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, GridEvidence, Scan, View
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
-from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
+from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.geometry.view_region import (
-    USUAL_VOXEL_M,
+    DEFAULT_VOXEL_M,
     LabelRegion,
     RegionRule,
-    region_of,
+    label_region,
 )
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
@@ -91,9 +91,9 @@ def region_before(camera_to_room: np.ndarray, facts: NetworkFacts) -> LabelRegio
 
     The rule counts in cells of the usual size; a network of coarser cells has the same box.
     """
-    usual = tuple(max(1, round(n * facts.voxel_m / USUAL_VOXEL_M)) for n in facts.grid_shape)
+    usual = tuple(max(1, round(n * facts.voxel_m / DEFAULT_VOXEL_M)) for n in facts.grid_shape)
     rule = RegionRule(facts.region, (usual[0], usual[1], usual[2]))
-    place = region_of(camera_to_room, rule).region_to_room
+    place = label_region(camera_to_room, rule).region_to_room
     return LabelRegion(facts.grid_shape, facts.voxel_m, place, facts.region)
 
 
@@ -110,8 +110,8 @@ def fitted(view: View, size_px: tuple[int, int]) -> tuple[np.ndarray, Camera]:
     if colour is None or camera is None:
         raise ValueError(f"view {view.name} has no colour")
     if any(camera.distortion):
-        flat = pinhole_of(camera, camera.width_px)
-        colour, camera = undistorted(colour, camera, flat), flat
+        flat = pinhole_camera(camera, camera.width_px)
+        colour, camera = undistort_image(colour, camera, flat), flat
     wide, high = size_px
     side = min(camera.width_px / wide, camera.height_px / high)
     left, top = (camera.width_px - side * wide) / 2, (camera.height_px - side * high) / 2
@@ -129,7 +129,7 @@ def depth_of(view: View, camera: Camera) -> np.ndarray | None:
     """
     if view.depth_m is None or view.depth_camera is None:
         return None
-    points, _ = lift_depth(view.depth_m, view.depth_camera, view.depth_to_colour)
+    points, _ = unproject_depth(view.depth_m, view.depth_camera, view.depth_to_colour)
     points = points[points[:, 2] > NEAREST_M].astype(np.float64)
     found = np.full((camera.height_px, camera.width_px), np.inf)
     u, v = np.floor(project(points, camera)).astype(np.int64).T

@@ -17,7 +17,7 @@ import onnxruntime
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, first_line
 from world2minecraft.core.files import read_bytes
-from world2minecraft.geometry.view_region import KINDS
+from world2minecraft.geometry.view_region import REGION_KINDS
 
 CONTRACT = "occupancy-1"
 INPUTS = {"image": (1, 3, 0, 0), "intrinsics": (1, 3, 3), "camera_to_grid": (1, 4, 4)}
@@ -136,7 +136,7 @@ def _facts(session: Any) -> NetworkFacts:
         raise ValueError(f"has no grid of three sides: {stated.get(PREFIX + 'grid_shape')!r}")
     (voxel_m,), (temperature,) = _numbers(stated, "voxel_m"), _numbers(stated, "temperature", "1")
     region = stated.get(PREFIX + "region", "paper")
-    if not (0 < voxel_m < 10 and 0 < temperature < 100) or region not in KINDS:
+    if not (0 < voxel_m < 10 and 0 < temperature < 100) or region not in REGION_KINDS:
         raise ValueError("states a voxel, a temperature or a region that makes no sense")
     x, y, z = (int(n) for n in shape)
     sizes = _input_sizes(session)

@@ -20,8 +20,8 @@ from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
-from world2minecraft.geometry.view_region import USUAL_SHAPE, USUAL_VOXEL_M
+from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
+from world2minecraft.geometry.view_region import DEFAULT_SHAPE, DEFAULT_VOXEL_M
 from world2minecraft.reconstruction.parameters import Parameters
 
 DEPTH_WIDE_PX = 640
@@ -84,7 +84,7 @@ def prepare_photo(judged: JudgedCapture, folder: Path, chosen: Parameters, unit:
 
 def placed(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
     """Return ``camera_to_room`` of a photo without depth, and the size of the room before it."""
-    size_m = np.array(USUAL_SHAPE) * USUAL_VOXEL_M
+    size_m = np.array(DEFAULT_SHAPE) * DEFAULT_VOXEL_M
     eye = np.array([size_m[0] / 2, 0.0, eye_height_m])
     pitch = np.radians(pitch_deg)
     ahead = np.array([0.0, np.cos(pitch), np.sin(pitch)])
@@ -109,14 +109,14 @@ def _straight(judged: JudgedCapture) -> tuple[str, np.ndarray, Camera]:
     camera = photo.camera
     if not any(camera.distortion):
         return photo.name, photo.colour, camera
-    flat = pinhole_of(camera, camera.width_px)
-    return photo.name, undistorted(photo.colour, camera, flat), flat
+    flat = pinhole_camera(camera, camera.width_px)
+    return photo.name, undistort_image(photo.colour, camera, flat), flat
 
 
 def _with_depth(judged: JudgedCapture, model: DepthModel) -> Iterator[View]:
     name, colour, camera = _straight(judged)
-    small = pinhole_of(camera, min(camera.width_px, DEPTH_WIDE_PX))
-    depth_m = model.predict(undistorted(colour, camera, small), small)
+    small = pinhole_camera(camera, min(camera.width_px, DEPTH_WIDE_PX))
+    depth_m = model.predict(undistort_image(colour, camera, small), small)
     depth_m = np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, 0).astype(np.float32)
     trust = np.where(depth_m > 0, TRUST, 0).astype(np.uint8)
     yield View(name, np.eye(4), colour, camera, depth_m, small, trust=trust)

@@ -12,7 +12,7 @@ from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 
 
 def stereo_views(
@@ -98,7 +98,7 @@ def _photos_of(photos: PhotoStream, scene: SparseScene) -> Iterator[tuple[Photo,
 
 def _coloured(photo: Photo, scene: SparseScene, index: int) -> View:
     camera = scene.cameras[index]
-    flat = pinhole_of(camera, camera.width_px)
-    colour = undistorted(photo.colour, camera, flat) if any(camera.distortion) else photo.colour
+    flat = pinhole_camera(camera, camera.width_px)
+    colour = undistort_image(photo.colour, camera, flat) if any(camera.distortion) else photo.colour
     pose = np.round(scene.camera_to_scan[index], 12)
     return View(photo.name, pose, np.ascontiguousarray(colour), flat)

@@ -16,7 +16,7 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Corrections, Scan, View
-from world2minecraft.geometry.oriented_points import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.reconstruction.registration.gauss_newton import (
     UNKNOWNS,
     Observations,
@@ -53,13 +53,13 @@ class State:
     ``bend_m`` how far patches still are from their surfels.
     """
 
-    surface: Surface
+    surface: OrientedPoints
     total: np.ndarray
     sigmas: np.ndarray
     bend_m: float
 
 
-def begin(surface: Surface, chosen: RegisterParameters) -> State:
+def begin(surface: OrientedPoints, chosen: RegisterParameters) -> State:
     """Return the state before the first pass; ``surface`` lies in a frame that walls follow."""
     sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, chosen.scale_sigma])
     return State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas, FIRST_BEND_M)
@@ -98,7 +98,7 @@ def without_scale(before: State, after: State) -> State:
     return replace(_stepped(before, kept), sigmas=sigmas)
 
 
-def surfels_of(surface: Surface, cell_m: float, gap_m: float) -> Surfels:
+def surfels_of(surface: OrientedPoints, cell_m: float, gap_m: float) -> Surfels:
     """Group the patches of a surface."""
     weight = 1 / (surface.sigma_m**2 + 0.002**2)
     return find_surfels(
@@ -106,14 +106,14 @@ def surfels_of(surface: Surface, cell_m: float, gap_m: float) -> Surfels:
     )
 
 
-def shared(surface: Surface, surfels: Surfels, chosen: np.ndarray) -> np.ndarray:
+def shared(surface: OrientedPoints, surfels: Surfels, chosen: np.ndarray) -> np.ndarray:
     """Return the indices of the chosen patches whose surfel faces as they do and is shared."""
     facing = np.einsum("ia,ia->i", surface.normals, surfels.normals[surfels.owner])
     return np.flatnonzero(chosen & (surfels.frames[surfels.owner] > 1) & (facing > SAME_WAY))
 
 
 def observe(
-    surface: Surface, speaks: np.ndarray, cell_m: float, gap_m: float, noise_m: float
+    surface: OrientedPoints, speaks: np.ndarray, cell_m: float, gap_m: float, noise_m: float
 ) -> Observations:
     """Return what the patches that speak say of their frames' poses."""
     surfels = surfels_of(surface, cell_m, gap_m)
@@ -192,7 +192,7 @@ class Registered:
     """Corrections, and the surface that they give, in the scan's frame."""
 
     corrections: Corrections
-    surface: Surface
+    surface: OrientedPoints
 
 
 def refine(
@@ -214,7 +214,7 @@ def register(
     """
     total = len(scan.views) + 1
     most_each = max(LEAST_EACH, MOST_PATCHES // max(1, len(scan.views)))
-    surface = collect_surface(_told(depth_views(scan), total, progress), most_each)
+    surface = collect_oriented_points(_told(depth_views(scan), total, progress), most_each)
     found = register_surface(surface, scan.scan_to_room, parameters or RegisterParameters())
     progress(STAGE, total, total)
     return found
@@ -227,7 +227,7 @@ def depth_views(scan: Scan) -> Iterable[View]:
 
 
 def register_surface(
-    surface: Surface, scan_to_room: np.ndarray, chosen: RegisterParameters
+    surface: OrientedPoints, scan_to_room: np.ndarray, chosen: RegisterParameters
 ) -> Registered:
     """Register the frames of a surface of the scan's frame; ``scan_to_room`` turns walls to axes.
 
@@ -265,14 +265,16 @@ def _told(views: Iterable[View], total: int, progress: Progress) -> Iterable[Vie
         progress(STAGE, min(done, total - 1), total, view.name)
 
 
-def _held_out(room: Surface, share: float) -> np.ndarray:
+def _held_out(room: OrientedPoints, share: float) -> np.ndarray:
     """Return bool [N]: patches in a share of the blocks of space, spread by a fixed hash."""
     block = np.floor(room.points_m / HELD_BLOCK_M).astype(np.int64)
     code = block[:, 0] * 73856093 ^ block[:, 1] * 19349663 ^ block[:, 2] * 83492791
     return (code * 2654435761 % 2**32) < share * 2**32
 
 
-def _misfit_m(surface: Surface, held: np.ndarray, chosen: RegisterParameters) -> float | None:
+def _misfit_m(
+    surface: OrientedPoints, held: np.ndarray, chosen: RegisterParameters
+) -> float | None:
     """Return the median distance of held-out patches from their surfels; None where few judge."""
     judges = surface.chosen(held)
     surfels = surfels_of(judges, chosen.cell_m, JUDGED_GAP_M)
@@ -288,7 +290,7 @@ def _misfit_m(surface: Surface, held: np.ndarray, chosen: RegisterParameters) ->
 
 
 def _registered(
-    surface: Surface, state: State, scan_to_room: np.ndarray, verdict: Verdict
+    surface: OrientedPoints, state: State, scan_to_room: np.ndarray, verdict: Verdict
 ) -> Registered:
     room_to_scan = invert_rigid(scan_to_room)
     cameras = room_to_scan @ state.surface.cameras

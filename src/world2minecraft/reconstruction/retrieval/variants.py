@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Span, Template, template, variants_of
-from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence
 from world2minecraft.reconstruction.retrieval.template_matching import Bias, Scored, score_shifts
 
@@ -84,7 +84,7 @@ def colour_of_cells(grid: OccupancyGrid, evidence: Evidence) -> np.ndarray | Non
     cells = np.argwhere(evidence.code == OWN) + evidence.corner
     colours = grid.colour[tuple(cells.T)]
     colours = colours[colours.any(axis=1)]
-    return np.median(oklab_of_srgb(colours), axis=0) if len(colours) else None
+    return np.median(srgb_to_oklab(colours), axis=0) if len(colours) else None
 
 
 def choose(choices: Sequence[Choice]) -> tuple[Placement, ...]:
@@ -155,7 +155,7 @@ def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> fl
         return NEUTRAL + SIZE_COST * far
     if colour is None:
         return np.inf
-    suited = oklab_of_srgb(np.array(design.suits, np.uint8))
+    suited = srgb_to_oklab(np.array(design.suits, np.uint8))
     apart = min(_colours_apart(colour, one) + _faded(colour, one) for one in suited)
     return apart + SIZE_COST * far
 

@@ -15,7 +15,7 @@ from world2minecraft.reconstruction.layout.storeys import find_storeys
 from world2minecraft.reconstruction.layout.structure import structure_of
 from world2minecraft.reconstruction.layout.surface_cells import surface_of
 from world2minecraft.reconstruction.semantics.backrests import classes_with_backs
-from world2minecraft.reconstruction.semantics.furniture import label_furniture
+from world2minecraft.reconstruction.semantics.furniture_rules import label_furniture
 from world2minecraft.reconstruction.semantics.plane_straightening import Straightening
 from world2minecraft.reconstruction.semantics.screens import label_screens
 

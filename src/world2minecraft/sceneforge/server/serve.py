@@ -14,12 +14,12 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.sceneforge.captures import MOST_UPLOAD_BYTES, user_home
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.app import build_app
 from world2minecraft.sceneforge.server.guard import new_token
 from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES
 from world2minecraft.sceneforge.session import Session
+from world2minecraft.sceneforge.uploads import MOST_UPLOAD_BYTES, user_home
 from world2minecraft.sceneforge.workshop import Workshop
 
 LOOPBACK = "127.0.0.1"

@@ -31,13 +31,13 @@ from world2minecraft.capture.scale.known_lengths import LENGTHS_M
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.procgen import BASE_KINDS
-from world2minecraft.sceneforge.captures import PICTURE, CaptureFolder
 from world2minecraft.sceneforge.document.identity import SUFFIX
 from world2minecraft.sceneforge.jobs.jobs import JobState
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of
 from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
-from world2minecraft.sceneforge.jobs.usual import demo_s, reconstruct_s
+from world2minecraft.sceneforge.jobs.time_left import demo_s, reconstruct_s
 from world2minecraft.sceneforge.server.requests import object_of, workshop_of
+from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
 from world2minecraft.sceneforge.workshop import Workshop
 
 SCALES = (1, 2, 4, 12.5)

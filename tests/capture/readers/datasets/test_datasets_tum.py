@@ -11,7 +11,7 @@ from world2minecraft.capture.readers.datasets.time_sync import pair_times, pose_
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import rotation_of
+from world2minecraft.geometry.rotations import rotation_from_quaternion
 
 
 def write_tum(folder, views, *, calibration=True, poses=True, late_s=0.004):
@@ -106,8 +106,10 @@ def test_slerp_is_that_of_scipy(views):
             end = ends[1] * np.array([1, 1, 1, *[sign] * 4])
             pose = pose_between(ends[0], end, share)
             np.testing.assert_allclose(pose[:3, :3], turns(share).as_matrix(), atol=1e-12)
-    np.testing.assert_allclose(rotation_of(ends[1][3:] * 7), second[:3, :3], atol=1e-12)
-    assert np.isnan(rotation_of(np.zeros(4))).all()
+    np.testing.assert_allclose(
+        rotation_from_quaternion(ends[1][3:] * 7), second[:3, :3], atol=1e-12
+    )
+    assert np.isnan(rotation_from_quaternion(np.zeros(4))).all()
 
 
 def test_pairs_are_the_nearest_and_each_image_is_used_once():

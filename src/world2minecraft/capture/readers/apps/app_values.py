@@ -17,7 +17,7 @@ from world2minecraft.core.coordinates import opengl_to_opencv_pose
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
 MOST_M = 1e9
@@ -81,7 +81,7 @@ def arkit_pose(matrix: np.ndarray) -> np.ndarray:
 
 def arkit_pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:
     """Return the pose with OpenCV axes of ARKit's quaternion x, y, z, w and place in metres."""
-    return arkit_pose(pose_of(place_m, quaternion))
+    return arkit_pose(pose_from_quaternion(place_m, quaternion))
 
 
 def files_by_stem(folder: AnyPath, suffixes: Iterable[str]) -> dict[str, AnyPath]:

@@ -17,7 +17,7 @@ from world2minecraft.capture.readers.apps.app_values import camera, files_by_ste
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import rotation_of_vector
+from world2minecraft.geometry.rotations import rotation_from_vector
 
 TRAJECTORY = "lowres_wide.traj"
 SAME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.
@@ -104,14 +104,14 @@ def _trajectory(path: AnyPath) -> tuple[list[float], list[np.ndarray]]:
 
 def _camera_to_world(turn: np.ndarray, place: np.ndarray) -> np.ndarray:
     pose = np.eye(4)
-    rotation = rotation_of_vector(turn)
+    rotation = rotation_from_vector(turn)
     pose[:3, :3] = rotation.T
     pose[:3, 3] = -rotation.T @ place
     return pose
 
 
 def _turn(rotation: np.ndarray) -> np.ndarray:
-    """Undo ``rotation_of_vector`` for turns well under half a circle."""
+    """Undo ``rotation_from_vector`` for turns well under half a circle."""
     twice = np.array(
         [
             rotation[2, 1] - rotation[1, 2],
@@ -217,6 +217,6 @@ def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -
     share = (time - times[after - 1]) / span
     pose = np.eye(4)
     turn = _turn(first[:3, :3].T @ second[:3, :3])
-    pose[:3, :3] = first[:3, :3] @ rotation_of_vector(share * turn)
+    pose[:3, :3] = first[:3, :3] @ rotation_from_vector(share * turn)
     pose[:3, 3] = (1 - share) * first[:3, 3] + share * second[:3, 3]
     return pose

@@ -35,7 +35,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 # Images of single values packed with LZFSE, as Record3D keeps depth and confidence.
 #
@@ -252,7 +252,7 @@ def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
     if poses is None or not np.isfinite(poses[0]).all() or abs(poses[0, 3]) > 1 - 1e-6:
         return None
     finite = poses[np.isfinite(poses).all(axis=1)]
-    cameras = np.stack([pose_of(pose[4:], pose[:4]) for pose in finite])
+    cameras = np.stack([pose_from_quaternion(pose[4:], pose[:4]) for pose in finite])
     up = np.swapaxes(cameras[:, :3, :3], 1, 2) @ ARKIT_UP
     level = up[np.hypot(up[:, 0], up[:, 1]) > LEAST_LEAN]
     roll_deg = np.degrees(np.arctan2(level[:, 0], level[:, 1]))

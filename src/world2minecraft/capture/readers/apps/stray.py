@@ -23,7 +23,7 @@ from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 ODOMETRY = "odometry.csv"
 MATRIX = "camera_matrix.csv"
@@ -107,7 +107,7 @@ def _rows(path: AnyPath) -> Rows:
 
 def _pose(row: dict[str, float]) -> np.ndarray:
     place_m = np.array([row[name] for name in _POSE[:3]])
-    return pose_of(place_m, np.array([row[name] for name in _POSE[3:]]))
+    return pose_from_quaternion(place_m, np.array([row[name] for name in _POSE[3:]]))
 
 
 def _by_index(folder: AnyPath, suffixes: tuple[str, ...]) -> dict[int, AnyPath]:

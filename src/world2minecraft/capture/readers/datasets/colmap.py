@@ -22,7 +22,7 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 # COLMAP's ``cameras`` and ``images``, as text or binary: lenses and where each photo was taken.
 #
@@ -83,7 +83,7 @@ def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
                 images_path,
                 f"image {number} is of camera {camera}, which is not there: copy both files again",
             )
-        world_to_camera = pose_of(values[4:7], values[[1, 2, 3, 0]])
+        world_to_camera = pose_from_quaternion(values[4:7], values[[1, 2, 3, 0]])
         lost = not np.isfinite(world_to_camera).all()
         pose = np.full((4, 4), np.nan) if lost else invert_rigid(world_to_camera)
         found.append(ModelImage(name, cameras[camera], pose))

@@ -32,7 +32,7 @@ from world2minecraft.core.errors import (
     reason_of,
 )
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 # ROS 1 bags read message by message, never as a whole; hostile until checked.
 #
@@ -404,7 +404,9 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _Pair) -> np.ndarray:
     for prefix in prefixes:
         message = bag.first(f"{prefix}/tf/{groups[0]}")
         t, q = message.translation, message.rotation
-        to_stream.append(pose_of(np.array([t.x, t.y, t.z]), np.array([q.x, q.y, q.z, q.w])))
+        to_stream.append(
+            pose_from_quaternion(np.array([t.x, t.y, t.z]), np.array([q.x, q.y, q.z, q.w]))
+        )
     if not all(np.isfinite(transform).all() for transform in to_stream):
         raise CaptureError(path, "says that its lenses stand nowhere (tf is not finite)")
     return to_stream[0] @ invert_rigid(to_stream[1])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.geometry.rotations import pose_of
+from world2minecraft.geometry.rotations import pose_from_quaternion
 
 
 def pair_times(first_s: np.ndarray, second_s: np.ndarray, within_s: float) -> list[tuple[int, int]]:
@@ -54,4 +54,4 @@ def pose_between(before: np.ndarray, after: np.ndarray, share: float) -> np.ndar
         turned = (1 - share) * start + share * end
     else:
         turned = np.sin((1 - share) * angle) * start + np.sin(share * angle) * end
-    return pose_of((1 - share) * before[:3] + share * after[:3], turned)
+    return pose_from_quaternion((1 - share) * before[:3] + share * after[:3], turned)

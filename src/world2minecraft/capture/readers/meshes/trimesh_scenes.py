@@ -15,7 +15,7 @@ from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
 from world2minecraft.core.files import read_bytes
-from world2minecraft.geometry.colour import srgb_of_linear
+from world2minecraft.geometry.colour import linear_to_srgb
 
 MAX_BYTES = 2 << 30
 MAX_JSON_BYTES = 64 << 20
@@ -211,7 +211,7 @@ def _part(mesh: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, la
     if kind == "vertex":
         colour = np.asarray(visual.vertex_colors)[:, :3].astype(np.uint8)
         if "Blender" in generator:  # It stores light, as glTF asks; scanners' exporters do not.
-            colour = srgb_of_linear(colour / 255.0)
+            colour = linear_to_srgb(colour / 255.0)
         return Part(vertices, faces, colour, label=label)
     if kind == "texture":
         return _textured(visual, vertices, faces, generator, label)
@@ -235,7 +235,7 @@ def _textured(
         values = np.asarray(factor, np.float64)[:3]
         values = values / 255.0 if np.asarray(factor).dtype.kind in "ui" else values
         tint = (
-            srgb_of_linear(values) if linear else (values.clip(0, 1) * 255 + 0.5).astype(np.uint8)
+            linear_to_srgb(values) if linear else (values.clip(0, 1) * 255 + 0.5).astype(np.uint8)
         )
     uv = getattr(visual, "uv", None)
     if picture is not None and uv is not None and len(uv) == len(vertices):

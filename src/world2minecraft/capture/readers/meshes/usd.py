@@ -15,7 +15,7 @@ from world2minecraft.capture.readers.meshes.surface_model import Loaded
 from world2minecraft.capture.readers.meshes.survey_clouds import on_disk
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
-from world2minecraft.geometry.colour import srgb_of_linear
+from world2minecraft.geometry.colour import linear_to_srgb
 
 MAX_BYTES = 2 << 30
 MAX_PRIMS = 200_000
@@ -114,9 +114,9 @@ def _part(
     uv = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("st", "UVMap", "st0"), corners, owner, own, 2)
     colour = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("displayColor",), corners, owner, own, 3)
     if colour is not None:
-        colour = srgb_of_linear(colour)
+        colour = linear_to_srgb(colour)
     elif plain is not None:
-        colour = np.repeat(srgb_of_linear(plain)[None], len(own), axis=0)
+        colour = np.repeat(linear_to_srgb(plain)[None], len(own), axis=0)
     if uv is not None:
         uv = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
     label = next(

@@ -1,12 +1,13 @@
 """Objects from their own cells: filled where they are closed, fitted, and equal where equal."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.fitted import TIE, Design, standing, turned_middle
+from world2minecraft.construction.colour_sources import Coats
+from world2minecraft.construction.fitted import LAID_ON, TIE, Design, standing, turned_middle
 from world2minecraft.construction.fitting import (
     Fit,
     Rules,
@@ -19,10 +20,103 @@ from world2minecraft.construction.fitting import (
     thin_cells,
 )
 from world2minecraft.construction.fitting.masks import SUB
-from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.halves import of_half_layers
+from world2minecraft.construction.lattice import Lattice, face_shares
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.furniture.solids import OWN_CELLS
+
+# An object of full blocks from its own cells: resampled so that thin things survive.
+#
+# That is what becomes of an object in whose colours no finer shape exists.
+
+PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
+
+
+class Shape(NamedTuple):
+    """Half blocks in a box of the lattice, and the block of each cell."""
+
+    low: np.ndarray  # int [3], the lattice index of the box's first block
+    halves: np.ndarray  # uint8 [X, Y, Z]
+    blocks: np.ndarray  # int [N, 3], lattice indices, one for each cell
+
+
+def shape_of_cells(
+    cells: np.ndarray, grid: OccupancyGrid, lattice: Lattice, share: float, shift: bool
+) -> Shape:
+    """Return the half blocks that show cells.
+
+    Args:
+        cells: int [N, 3], indices into the grid, at least one.
+        grid: where the cells lie.
+        lattice: where the blocks stand.
+        share: the least share of a block's face that the cells cover.
+        shift: whether the object may move by up to half a block sideways, and a quarter up or
+            down, to fall on the lattice crisply.
+    """
+    low_cell, high_cell = cells.min(0), cells.max(0) + 1
+    mask = np.zeros(high_cell - low_cell, bool)
+    mask[tuple((cells - low_cell).T)] = True
+    edges = [
+        lattice.edges_of(grid, axis)[low_cell[axis] : high_cell[axis] + 1] for axis in range(3)
+    ]
+    if shift:
+        edges = _best_phase(mask, edges)
+        # Its bottom goes to a half block, as a template's does: so a book lies on its table.
+        edges[2] = edges[2] + np.floor(2 * edges[2][0] + 0.5) / 2 - edges[2][0]
+    edges[2] = np.maximum(
+        edges[2], lattice.ground_under(float(edges[2][0]))
+    )  # What dips into the floor stands on it.
+    low = np.array([int(np.floor(axis[0])) for axis in edges])
+    high = np.array([int(np.ceil(axis[-1])) for axis in edges])
+    high = np.maximum(high, low + 1)
+    local = [edge - start for edge, start in zip(edges, low, strict=True)]
+    halves = _halves(mask, local, high - low, share)
+    middles = [np.floor((edge[:-1] + edge[1:]) / 2).astype(int) for edge in edges]
+    blocks = np.stack([middles[axis][cells[:, axis] - low_cell[axis]] for axis in range(3)], 1)
+    return Shape(low, halves, blocks)
+
+
+def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: float):
+    """Return the half blocks whose faces are covered; upright sheets are judged whole."""
+    shape = tuple(size.tolist())
+    doubled = [edges[0], edges[1], edges[2] * 2]
+    shares = face_shares(mask, edges, shape)
+    share = min(share, float(shares.max()))  # Nothing vanishes for being small.
+    fine = face_shares(mask, doubled, (shape[0], shape[1], 2 * shape[2])) >= share
+    whole = shares >= share
+    halves = of_half_layers(fine)
+    halves[~whole] = 0
+    halves[whole & (halves == 0)] = 3
+    return halves
+
+
+def _best_phase(mask: np.ndarray, edges: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the edges shifted along x and y so that few blocks are covered by halves."""
+    best = list(edges)
+    for axis in (0, 1):
+        profile = mask.sum(tuple({0, 1, 2} - {axis})).astype(np.float64)
+        scores = []
+        for phase in range(-PHASES // 2, PHASES // 2 + 1):
+            shifted = edges[axis] + phase / PHASES
+            scores.append((_blur(profile, shifted), abs(phase), phase))
+        best[axis] = edges[axis] + min(scores)[2] / PHASES
+    return best
+
+
+def _blur(profile: np.ndarray, edges: np.ndarray) -> float:
+    """Return how far a profile of cells is from filling whole blocks; small is crisp."""
+    start = int(np.floor(edges[0]))
+    count = int(np.ceil(edges[-1])) - start
+    blocks = np.arange(start, start + count)[:, None]
+    share = np.clip(
+        np.minimum(edges[None, 1:], blocks + 1) - np.maximum(edges[None, :-1], blocks), 0, None
+    )
+    filled = share @ profile
+    # The sum of squares is greatest when the mass stands in few blocks.
+    return -round(float((filled**2).sum()), 6)
+
 
 # What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
 CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
@@ -276,3 +370,66 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
     thin = thin_cells(mask, voxel_m)
     wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
     return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)
+
+
+# Which objects are shown well by their own cells, and what their cells are fitted to.
+
+# What of these does not stand on a floor may hang on a wall.
+HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
+BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
+# Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
+# count whole; here what is one cell thick counts half.
+LEAST_IOU, LEAST_THIN = 0.25, 0.5
+
+
+def solids_of(
+    placements: Sequence[Placement], held: Mapping[int, np.ndarray], coats: Coats
+) -> dict[int, Solid]:
+    """Return what placements are fitted to, copies alike, by the id of each."""
+    solids: dict[int, Solid] = {}
+    for one in placements:
+        if len(held[id(one)]):
+            cells, _ = coats.with_tops(held[id(one)])
+            inner = inner_cells(cells, coats.grid, one.class_id)
+            solids[id(one)] = solid_of(cells, inner, one.quarter_turns)
+    return shared_solids(solids, {id(one): one.class_id for one in placements})
+
+
+def well_fitted(
+    placements: Sequence[Placement],
+    held: Mapping[int, np.ndarray],
+    solids: Mapping[int, Solid],
+    coats: Coats,
+    lattice: Lattice,
+    kinds_of: Callable[[np.ndarray, Placement], frozenset[str]],
+) -> dict[int, CellsDesign]:
+    """Return the fits of what has a template, by the id of the placement, where they are good.
+
+    The guard of reference/fit.md: an object that loses over half of its thin parts, or is
+    missed by more than the least IoU, goes to the library instead; so do all chairs of a kind
+    where one does, for they are to be equal.
+    """
+    side = coats.grid.voxel_m * lattice.blocks_per_metre
+    made: dict[int, CellsDesign] = {}
+    lost: set[str] = set()
+    for one in (one for one in placements if one.template != OWN_CELLS and id(one) in solids):
+        cells, hues = coats.with_tops(held[id(one)])
+        kinds = kinds_of_sheet(kinds_of(hues, one), solids[id(one)], side)
+        flush = one.class_id in LAID_ON
+        of_cells = (
+            cells,
+            solids[id(one)],
+            coats.grid,
+            lattice,
+            kinds,
+            True,
+            flush,
+            one.class_id in HUNG,
+        )
+        fit = design_of_cells(*of_cells) if kinds & BULKY else None
+        if fit and fit.fit.iou >= LEAST_IOU and fit.fit.thin_recall >= LEAST_THIN:
+            made[id(one)] = fit
+        elif one.class_id == SemanticClass.CHAIR:
+            lost.add(one.template)
+    kept = {id(one) for one in placements if one.template not in lost}
+    return {number: fit for number, fit in made.items() if number in kept}

@@ -1,4 +1,4 @@
-"""Commands on which cells make an object: split, merged, given another class, found anew."""
+"""All commands on objects."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -8,18 +8,34 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid, Operation, SceneObject
+from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
-from world2minecraft.editing.scene.furniture_commands import ObjectClass
+from world2minecraft.editing.scene.furniture_commands import (
+    AddObject,
+    ObjectClass,
+    Rematch,
+    SetTemplate,
+)
 from world2minecraft.editing.scene.object_boxes import (
     free_number,
     object_named,
     objects_named,
     said,
 )
-from world2minecraft.editing.scene.objects import Id, Ids, Metre
-from world2minecraft.editing.scene.objects_of import instance_of, object_of
-from world2minecraft.editing.scene.patch import Patch
+from world2minecraft.editing.scene.object_placement import SnapObject
+from world2minecraft.editing.scene.object_transforms import (
+    DeleteObjects,
+    DuplicateObject,
+    Id,
+    Ids,
+    Metre,
+    MoveObject,
+    TurnObjects,
+)
+from world2minecraft.editing.scene.scene_objects import instance_of, object_of
+
+# Commands on which cells make an object: split, merged, given another class, found anew.
 
 ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
 
@@ -252,3 +268,20 @@ def _numbers(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list
         taken.add(number or free_number(draft, taken))
         numbers.append(number or max(taken))
     return numbers
+
+
+OBJECT_COMMANDS: tuple[type[Command], ...] = (
+    AddObject,
+    DeleteObjects,
+    DuplicateObject,
+    MergeObjects,
+    MoveObject,
+    Recluster,
+    RelabelObjects,
+    Rematch,
+    SetTemplate,
+    SnapObject,
+    SplitObject,
+    SplitObjects,
+    TurnObjects,
+)

@@ -1,0 +1,409 @@
+"""Commands that mend what a scan left: floaters, holes, rough surfaces."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+from scipy import ndimage
+
+from world2minecraft.core.classes import (
+    CLASS_NAMES,
+    OBJECT_CLASSES,
+    STRUCTURE_CLASSES,
+    UNKNOWN,
+    SemanticClass,
+)
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import Operation
+from world2minecraft.editing.scene.cell_patch import cells_of_runs
+from world2minecraft.editing.scene.command import MAX_RUNS, Tools
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.planes import WALL_CLASSES, WALL_M2, Plane, find_planes
+from world2minecraft.editing.scene.voxel_commands import (
+    Cell,
+    CellCommand,
+    Runs,
+    check_cell,
+    planned_cells,
+)
+from world2minecraft.geometry.connected_components import label_components
+
+# What hangs in the air: small pieces of cells that hold to nothing.
+#
+# A piece is all occupied cells, of whatever classes, that hold together by faces, edges or corners.
+# It floats where it is small and not the largest of the scene: what holds to a wall, a floor or a
+# large piece is part of that piece. A piece with cells of structure floats only where it is smaller
+# than the smallest wall, however large one asks for: a ceiling without walls is no dirt. A lamp whose
+# cord was not seen floats by this rule too, so the list names its object.
+
+# A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
+# lost their hold: so one looks before deleting, and does not begin with large ones.
+MAX_CELLS = 30
+
+
+@dataclass(frozen=True, eq=False)
+class Floater:
+    """One piece: its cells int32 [N, 3], the class of most of them, the objects it is part of."""
+
+    cells: np.ndarray
+    class_id: int
+    object_ids: tuple[int, ...]
+
+
+def find_floaters(draft: SceneDraft, max_cells: int = MAX_CELLS) -> list[Floater]:
+    """Return the pieces of at most ``max_cells`` that hold to nothing, the largest first."""
+    occupied = (draft.labels > 0) & (draft.labels < 255)
+    parts, count = label_components(occupied)
+    sizes = np.bincount(parts.ravel(), minlength=count + 1)
+    sizes[0] = 0
+    small = (sizes > 0) & (sizes <= max_cells)
+    built = np.unique(parts[np.isin(draft.labels, STRUCTURE_CLASSES)])
+    small[built] &= sizes[built] < WALL_M2 / draft.voxel_m**2
+    small[int(sizes.argmax())] = False
+    at = np.argwhere(small[parts]).astype(np.int32)
+    numbers = parts[tuple(at.T)]
+    order = np.argsort(numbers, kind="stable")
+    pieces = np.split(at[order], np.flatnonzero(np.diff(numbers[order])) + 1) if len(at) else []
+    return sorted((_floater(draft, cells) for cells in pieces), key=_largest_first)
+
+
+def _floater(draft: SceneDraft, cells: np.ndarray) -> Floater:
+    owners = np.unique(draft.instance[tuple(cells.T)])
+    class_id = int(np.bincount(draft.labels[tuple(cells.T)]).argmax())
+    return Floater(cells, class_id, tuple(int(one) for one in owners if one))
+
+
+def _largest_first(one: Floater) -> tuple:
+    return (-len(one.cells), *map(int, one.cells[0]))
+
+
+# Holes in the planes of a room, told from doors, windows and stairwells.
+#
+# A gap is where a plane has no cell, nothing else stands in its layer, and structure bounds it to
+# three of the four sides in the plane. In a floor or a ceiling something was seen over or under it
+# too; where nothing was, it is bounded to all four sides and has at most four square metres, as the
+# floor under a wardrobe. Behind a slope or another wall a wall or a ceiling ends. What of a gap is
+# a hole:
+#
+# ==================================  =============================================================
+# hidden: neither the cell nor one    a hole: the wall behind a wardrobe, the floor under a bed
+# before or behind it was seen
+# unseen, but beside seen air         in a floor or a ceiling a hole; in a wall it may be the glass
+#                                     of a window, so as below
+# seen to be air                      a hole up to a quarter of a square metre; a larger one is a
+#                                     door, a window or a stairwell, and stays open
+# ==================================  =============================================================
+#
+# Window cells are part of their wall. Whoever names a cell of a gap fills that gap, whatever it is.
+
+HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
+HIDDEN_M2 = 4.0  # No piece of furniture is larger.
+PILLAR_CELLS = 3  # A column with so many wall cells bounds the floor.
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneGaps:
+    """What a plane lacks. Masks are bool [A, B] over the whole layer."""
+
+    plane: Plane
+    own: np.ndarray  # Where it has a cell, one layer before or behind too.
+    holes: np.ndarray  # What is to be filled.
+    openings: np.ndarray  # Doors, windows and stairwells.
+
+    @property
+    def share(self) -> float:
+        """The part of the plane that is holes, openings left out."""
+        whole = int(self.own[self.plane.window].sum() + self.holes.sum())
+        return float(self.holes.sum()) / whole if whole else 0.0
+
+
+def plane_gaps(draft: SceneDraft, plane: Plane, *, hole_m2: float = HOLE_M2) -> PlaneGaps:
+    """Return what a plane lacks; seen gaps up to ``hole_m2`` are holes."""
+    near = plane.near(draft.labels)
+    wanted = WALL_CLASSES if plane.axis != 2 else (plane.class_id,)
+    own = np.asarray(np.isin(near, wanted).any(axis=0))
+    gap = _bounded(draft, plane, near, own) & ~own & (near[1] % UNKNOWN == 0)
+    gap &= ~_behind_structure(draft, plane)
+    unseen = near[1] == UNKNOWN
+    aired = (near[0] == 0) | (near[2] == 0)
+    if plane.axis == 2:
+        aired = np.zeros_like(aired)
+    hidden = gap & unseen & ~aired
+    holes = hidden | _up_to(gap & ~hidden, hole_m2 / draft.voxel_m**2)
+    return PlaneGaps(plane, own, holes, gap & ~holes)
+
+
+def hole_cells(draft: SceneDraft, gaps: PlaneGaps, mask: np.ndarray) -> np.ndarray:
+    """Return the cells int [N, 3] that fill places bool [A, B] of a plane.
+
+    Each is in the layer in which the plane is nearest, or in the middle where that is taken.
+    """
+    plane = gaps.plane
+    near = plane.near(draft.labels)
+    wanted = WALL_CLASSES if plane.axis != 2 else (plane.class_id,)
+    has = np.isin(near, wanted)
+    offset = np.where(has[1], 0, np.where(has[0], -1, 1))
+    nearest = ndimage.distance_transform_edt(~gaps.own, return_distances=False, return_indices=True)
+    flat = np.argwhere(mask)
+    at = tuple(flat.T)
+    moved = offset[tuple(nearest[(slice(None), *at)])]  # type: ignore[index]
+    inside = (plane.layer + moved >= 0) & (plane.layer + moved < draft.shape[plane.axis])
+    taken = ~inside | (near[(1 + moved, *at)] % UNKNOWN > 0)
+    return plane.cells(flat, plane.layer + np.where(taken, 0, moved))
+
+
+def gap_at(gaps: PlaneGaps, place: tuple[int, int]) -> np.ndarray:
+    """Return the gap bool [A, B], hole or opening, that a place of the plane is in; or nothing."""
+    parts = label_components(gaps.holes | gaps.openings, corners=False)[0]
+    return (parts == parts[place]) & (parts > 0)
+
+
+def _bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Where structure bounds a place of the plane, bool [A, B]."""
+    if plane.axis != 2:
+        result = np.zeros(own.shape, bool)
+        bounds = np.asarray(np.isin(near, STRUCTURE_CLASSES).any(axis=0))[plane.window]
+        # Beyond each end that meets another plane there is a bound, were its own cells missing.
+        framed = np.pad(bounds, 1)
+        framed[0], framed[-1] = plane.meets[0]
+        framed[1:-1, 0], framed[1:-1, -1] = plane.meets[1]
+        result[plane.window] = _sides(framed)[1:-1, 1:-1] >= 3
+        return result
+    pillars = np.isin(draft.labels, WALL_CLASSES).sum(axis=2) >= PILLAR_CELLS
+    sides = _sides(own | pillars)
+    up = slice(plane.layer + 1, None)
+    room = draft.labels[:, :, up if plane.class_id == SemanticClass.FLOOR else slice(plane.layer)]
+    seen = (room != UNKNOWN).any(axis=2)
+    unseen = _up_to(~pillars & ~own & ~seen & (sides == 4), HIDDEN_M2 / draft.voxel_m**2)
+    return (~pillars & seen & (sides >= 3)) | unseen
+
+
+def _behind_structure(draft: SceneDraft, plane: Plane) -> np.ndarray:
+    """Where a plane would lie behind a slope or another wall, bool [A, B]: there it is no more.
+
+    That is where the first known cell on one side is structure, and on the other too, or nothing.
+    A floor lies under all of them.
+    """
+    if plane.class_id == SemanticClass.FLOOR:
+        return np.zeros(np.delete(draft.shape, plane.axis), bool)
+    layers = np.moveaxis(draft.labels, plane.axis, 0)
+    above = _first_known(layers[plane.layer + 1 :])
+    below = _first_known(layers[: plane.layer][::-1])
+    walls = WALL_CLASSES if plane.axis != 2 else ()
+    hiding = (*walls, SemanticClass.CEILING)
+    hidden = [np.isin(one, hiding) for one in (above, below)]
+    nothing = [one == UNKNOWN for one in (above, below)]
+    return (hidden[0] & (hidden[1] | nothing[1])) | (nothing[0] & hidden[1])
+
+
+def _first_known(layers: np.ndarray) -> np.ndarray:
+    """The first label that is known along the first axis of [N, A, B]; 255 where none is."""
+    known = layers != UNKNOWN
+    if not len(layers):
+        return np.full(layers.shape[1:], UNKNOWN, np.uint8)
+    return np.take_along_axis(layers, known.argmax(axis=0)[None], axis=0)[0]
+
+
+def _sides(bounds: np.ndarray) -> np.ndarray:
+    """To how many of the four sides there is a bound, int [A, B]."""
+    sides = np.zeros(bounds.shape, np.int64)
+    for axis in (0, 1):
+        sides += np.maximum.accumulate(bounds, axis=axis)
+        sides += np.flip(np.maximum.accumulate(np.flip(bounds, axis), axis=axis), axis)
+    return sides
+
+
+def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
+    """The parts, joined by edges, of a mask bool [A, B] that have at most so many cells."""
+    parts = label_components(mask, corners=False)[0]
+    small = np.bincount(parts.ravel()) <= most
+    small[0] = False
+    return small[parts]
+
+
+# A majority filter that never moves structure.
+#
+# Each cell looks at the 26 around it. A cell of furniture takes the class of most furniture cells
+# there, itself counted, where that is more than half of them. A cell that was seen to be empty is
+# filled with that class where 17 of its neighbours are furniture: a pit in a surface. A bump goes: a
+# cell that holds to one face alone, of a cell that holds to four others; ends of legs and rims stay.
+# Walls, floors, ceilings, windows and unseen cells stay as they are.
+
+FLAT_FACES = 4  # So many other faces has a cell within a sheet.
+PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
+
+
+def smoothed(labels: np.ndarray) -> np.ndarray:
+    """Return labels uint8 [X, Y, Z] after one pass of the filter."""
+    furniture = np.isin(labels, OBJECT_CLASSES)
+    counts = np.stack([_around(labels == one) for one in OBJECT_CLASSES])
+    total = counts.sum(axis=0)
+    most = counts.max(axis=0)
+    commonest = np.array(OBJECT_CLASSES, np.uint8)[counts.argmax(axis=0)]
+    result = labels.copy()
+    changes = furniture & (2 * most > total)
+    result[changes] = commonest[changes]
+    filled = (labels == 0) & (total >= PIT)
+    result[filled] = commonest[filled]
+    result[furniture & _bumps((labels > 0) & (labels < 255))] = 0
+    return result
+
+
+def _around(mask: np.ndarray) -> np.ndarray:
+    """How many of the 27 cells around each are of the mask, uint8 [X, Y, Z]."""
+    count = mask.astype(np.uint8)
+    for axis in range(3):
+        count = ndimage.convolve1d(count, np.ones(3, np.uint8), axis=axis, mode="constant")
+    return np.asarray(count)
+
+
+def _bumps(occupied: np.ndarray) -> np.ndarray:
+    """Which cells hold to one face alone, of a cell within a sheet; bool [X, Y, Z]."""
+    padded = np.pad(occupied, 1)
+    faces = np.zeros(padded.shape, np.uint8)
+    for axis in range(3):
+        for step in (-1, 1):
+            faces += np.roll(padded, step, axis)
+    sheet = padded & (faces > FLAT_FACES)
+    beside = np.zeros(padded.shape, bool)
+    for axis in range(3):
+        for step in (-1, 1):
+            beside |= np.roll(sheet, step, axis)
+    inner = (slice(1, -1),) * 3
+    return (padded & (faces == 1) & beside)[inner]
+
+
+class RemoveFloaters(CellCommand):
+    """Erase all pieces of at most ``max_cells`` that hold to nothing.
+
+    A piece that has one of the cells ``keep``, flat numbers, stays.
+    """
+
+    op: Literal["remove_floaters"] = "remove_floaters"
+    max_cells: Annotated[int, Field(ge=1)] = MAX_CELLS
+    keep: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=MAX_RUNS)] = ()
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the erased cells."""
+        found = [one.cells for one in find_floaters(draft, self.max_cells)]
+        numbers = [np.ravel_multi_index(tuple(cells.T), draft.shape) for cells in found]
+        gone = [
+            cells
+            for cells, flat in zip(found, numbers, strict=True)
+            if not np.isin(flat, self.keep).any() and self.free(draft, cells).all()
+        ]
+        if not gone:
+            raise UsageError(
+                f"no floaters of at most {self.max_cells} cells: all hold, or are kept"
+            )
+        return planned_cells(draft, "delete", np.concatenate(gone), 0)
+
+
+class FillHoles(CellCommand):
+    """Fill the holes of a plane, of an object's surface, or of all planes.
+
+    ``plane`` is ``floor``, ``ceiling``, ``wall:1`` and so on as the query ``holes`` lists them,
+    ``all`` of them, or ``object:7``: of an object, the empty cells that have its cells on both
+    sides along two axes. With ``cell``, only the gap of the plane that it lies in is filled,
+    be it a door; without, gaps that are no openings, the seen ones up to ``hole_m2``.
+    """
+
+    op: Literal["fill_holes"] = "fill_holes"
+    plane: Annotated[str, Field(max_length=40)]
+    cell: Cell | None = None
+    hole_m2: Annotated[float, Field(ge=0)] = HOLE_M2
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the filled cells."""
+        if self.plane.startswith("object:"):
+            return self._object(draft)
+        planes = find_planes(draft)
+        if self.plane != "all":
+            planes = [named_plane(planes, self.plane)]
+        parts = [self._cells(draft, plane) for plane in planes]
+        cells = np.concatenate([*parts, np.zeros((0, 3), np.int64)])
+        classes = np.repeat([plane.class_id for plane in planes], [len(part) for part in parts])
+        cells, first = np.unique(cells, axis=0, return_index=True)  # Two planes meet in a corner.
+        if not len(cells):
+            where = "any plane" if self.plane == "all" else self.plane
+            raise UsageError(f"{where} has no hole to fill; name a cell of an opening to close it")
+        return planned_cells(draft, "fill", cells, classes[first], 0, counts_as="add")
+
+    def _cells(self, draft: SceneDraft, plane: Plane) -> np.ndarray:
+        gaps = plane_gaps(draft, plane, hole_m2=self.hole_m2)
+        if self.cell is None:
+            return hole_cells(draft, gaps, gaps.holes)
+        check_cell(draft, self.cell)
+        place = tuple(np.delete(self.cell, plane.axis).tolist())
+        mask = gap_at(gaps, place)
+        if not mask.any():
+            raise UsageError(f"cell {list(self.cell)} is in no gap of {plane.name}")
+        return hole_cells(draft, gaps, mask)
+
+    def _object(self, draft: SceneDraft) -> Operation:
+        number = self.plane.partition(":")[2]
+        if not number.isdecimal() or int(number) not in draft.objects:
+            raise UsageError(f"no object {number}; the tree on the left lists all")
+        one = draft.objects[int(number)]
+        cells = pinholes(draft.labels, draft.instance == one.id)
+        if not len(cells):
+            raise UsageError(f"object {one.id} has no hole of one cell")
+        return planned_cells(draft, "fill", cells, one.class_id, one.id, counts_as="add")
+
+
+class Smooth(CellCommand):
+    """Smooth furniture by a majority filter; structure never moves.
+
+    Only cells of ``class_id`` are changed or made where it is given, and only those of ``runs``
+    where they are.
+    """
+
+    op: Literal["smooth"] = "smooth"
+    class_id: Annotated[int, Field(ge=min(OBJECT_CLASSES), le=max(OBJECT_CLASSES))] | None = None
+    runs: Runs | None = None
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells that change."""
+        result = smoothed(draft.labels)
+        changes = result != draft.labels
+        if self.class_id is not None:
+            changes &= (draft.labels == self.class_id) | (result == self.class_id)
+        if self.runs is not None:
+            chosen = np.zeros(draft.shape, bool)
+            chosen[tuple(cells_of_runs(self.runs, draft.shape).T)] = True
+            changes &= chosen
+        cells = np.argwhere(changes)
+        cells = cells[self.free(draft, cells)]
+        if not len(cells):
+            what = CLASS_NAMES[self.class_id] if self.class_id else "furniture"
+            raise UsageError(f"no cell changes: the {what} here is smooth already, or locked")
+        return planned_cells(draft, "smooth", cells, result[tuple(cells.T)], counts_as="other")
+
+
+def named_plane(planes: list[Plane], name: str) -> Plane:
+    """Return the plane of a name; a 1 may be left out or added.
+
+    Raises:
+        UnknownNameError: the scene has no such plane.
+    """
+    by_name = {plane.name: plane for plane in planes}
+    for spelled in (name, name.removesuffix(":1"), f"{name}:1"):
+        if spelled in by_name:
+            return by_name[spelled]
+    raise UnknownNameError("plane", name, [*by_name, "all"])
+
+
+def pinholes(labels: np.ndarray, mine: np.ndarray) -> np.ndarray:
+    """Return the cells int [N, 3], empty or unseen, with cells of a mask on both sides of two axes.
+
+    ``labels`` uint8 and ``mine`` bool are [X, Y, Z].
+    """
+    between = np.zeros(labels.shape, np.uint8)
+    for axis in range(3):
+        inner = [slice(None)] * 3
+        inner[axis] = slice(1, -1)
+        moved = np.moveaxis(mine, axis, 0)
+        both = np.moveaxis(moved[:-2] & moved[2:], 0, axis)
+        between[tuple(inner)] += both
+    return np.argwhere((between >= 2) & (labels % 255 == 0))

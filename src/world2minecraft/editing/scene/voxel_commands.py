@@ -1,0 +1,401 @@
+"""Commands on all that is of one class: given another, or erased."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+from scipy.spatial import KDTree
+
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OBSERVED, GridCells, Operation, SceneObject
+from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
+from world2minecraft.editing.scene.command import MAX_RUNS, Command, Tools
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.scene_objects import (
+    box_of,
+    component_of,
+    instance_of,
+    parts_of_cells,
+    shifted,
+)
+
+# What cells become when they are painted, erased or filled, and whose they are then.
+#
+# A painted cell is sure and observed. Its colour stays where it was occupied; where it was not, it
+# takes the colour of the nearest cell of its class within half a metre, or none (black).
+#
+# Cells of an object class belong to an object of that class: each connected part of the painted
+# cells to the one that it shares most faces with, the lowest id of a tie; to none where it touches
+# none. Cells of structure and erased cells belong to none. An object that loses its last cell goes,
+# with its furniture; one that loses or gains some keeps its box and its furniture as they are.
+
+MAX_IDS = 1 << 16
+FEW = 16
+COLOUR_REACH_M = 0.5  # Paint and wood change from one end of a room to the other.
+
+
+def planned_cells(
+    draft: SceneDraft,
+    verb: str,
+    cells: np.ndarray,
+    classes: np.ndarray | int,
+    owners: np.ndarray | int | None = None,
+    *,
+    colours: np.ndarray | None = None,
+    gone: Iterable[int] = (),
+    objects: Iterable[SceneObject] = (),
+    **told: Any,
+) -> Operation:
+    """Return the operation that gives cells their classes, and removes objects left without any.
+
+    Args:
+        draft: the scene.
+        verb: the kind of the operation.
+        cells: int [N, 3], each once.
+        classes: ids 0 to 11, one for each cell or for all.
+        owners: ids of objects, 0 for none, likewise; None finds them by the rule above.
+        colours: uint8 [N, 3]; None finds them by the rule above.
+        gone: objects that are removed beside those that lose their last cell.
+        objects: those that are new, or take the place of the ones with their ids.
+        told: ``counts_as`` and ``class_id`` of the operation; found from the cells by default.
+    """
+    labels = np.broadcast_to(np.asarray(classes, np.uint8), len(cells))
+    if owners is None:
+        owners = adjacent_owners(draft, cells, labels)
+    instance = np.where(np.isin(labels, OBJECT_CLASSES), owners, 0).astype(np.uint16)
+    after = GridCells(
+        labels,
+        np.ones(len(cells), np.float16),
+        colours_of(draft, cells, labels) if colours is None else colours,
+        np.full(len(cells), OBSERVED, np.uint8),
+        instance,
+    )
+    told = {"counts_as": counted_as(draft, cells, labels), "class_id": one_class(labels)} | told
+    gone = {*gone, *emptied(draft, cells, instance)}
+    return draft.planned(verb, cells, after, gone=gone, objects=objects, **told)
+
+
+def counted_as(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
+    """Return what the paper's table counts a change as: what most of its cells undergo."""
+    was = draft.labels[tuple(cells.T)] % UNKNOWN > 0
+    erased, kept = labels == 0, (labels > 0) & was
+    if 2 * erased.sum() > len(cells):
+        return "delete"
+    return "relabel" if 2 * kept.sum() > len(cells) else "add"
+
+
+def one_class(labels: np.ndarray) -> int | None:
+    """Return the class of all cells, None where they differ."""
+    return int(labels[0]) if len(labels) and (labels == labels[0]).all() else None
+
+
+def emptied(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) -> list[int]:
+    """Return the objects, by id, that have no cell left when cells int [N, 3] change hands."""
+    held = draft.instance[tuple(cells.T)]
+    lost = np.unique(held[(held > 0) & (held != instance)])
+    if not len(lost):
+        return []
+    total = cells_held(draft, lost)
+    total -= np.bincount(held, minlength=MAX_IDS)
+    total += np.bincount(instance, minlength=MAX_IDS)
+    return [int(one) for one in lost if total[one] == 0 and int(one) in draft.objects]
+
+
+def cells_held(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
+    """Return how many cells some objects have, int64 [65536], by id; of others it may be 0."""
+    if len(numbers) > FEW:
+        return np.bincount(draft.instance.ravel(), minlength=MAX_IDS)
+    total = np.zeros(MAX_IDS, np.int64)
+    for number in numbers:  # Counting all takes eight times the memory of the grid.
+        total[number] = np.count_nonzero(draft.instance == number)
+    return total
+
+
+def adjacent_owners(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
+    """Return the object, uint16 [N], that each painted cell belongs to by the rule above."""
+    owners = np.zeros(len(cells), np.uint16)
+    for class_id in np.intersect1d(np.unique(labels), OBJECT_CLASSES):
+        chosen = np.flatnonzero(labels == class_id)
+        for members in parts_of_cells(cells[chosen]):
+            owners[chosen[members]] = _touching(draft, cells[chosen[members]], int(class_id))
+    return owners
+
+
+def _touching(draft: SceneDraft, cells: np.ndarray, class_id: int) -> int:
+    """Return the object of a class that shares most faces with cells int [N, 3], 0 for none."""
+    found: list[np.ndarray] = []
+    for beside in _beside(draft, cells):
+        ids = draft.instance[tuple(beside.T)]
+        found.append(ids[(ids > 0) & (draft.labels[tuple(beside.T)] == class_id)])
+    faces = np.bincount(np.concatenate(found), minlength=1)
+    faces[
+        [number for number in np.flatnonzero(faces).tolist() if not _is(draft, number, class_id)]
+    ] = 0
+    return int(faces.argmax()) if faces.any() else 0
+
+
+def _is(draft: SceneDraft, number: int, class_id: int) -> bool:
+    return number in draft.objects and draft.objects[number].class_id == class_id
+
+
+def _beside(draft: SceneDraft, cells: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield the neighbours int [M, 3] of cells over each of the six faces, inside the grid."""
+    for axis in range(3):
+        for step in (-1, 1):
+            beside = shifted(cells, axis, step)
+            yield beside[(beside[:, axis] >= 0) & (beside[:, axis] < draft.shape[axis])]
+
+
+def colours_of(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
+    """Return the colour, uint8 [N, 3], that painted cells have by the rule above."""
+    at = tuple(cells.T)
+    was = draft.labels[at] % UNKNOWN > 0
+    colours = np.where((was & (labels > 0))[:, None], draft.colour[at], 0).astype(np.uint8)
+    for class_id in np.unique(labels[~was & (labels > 0)]):
+        new = np.flatnonzero(~was & (labels == class_id))
+        colours[new] = _nearest_colours(draft, cells[new], int(class_id))
+    return colours
+
+
+def _nearest_colours(draft: SceneDraft, cells: np.ndarray, class_id: int) -> np.ndarray:
+    reach = max(round(COLOUR_REACH_M / draft.voxel_m), 1)
+    low, box = box_of(cells, draft.shape, reach)
+    known = (draft.labels[box] == class_id) & draft.colour[box].any(axis=-1)
+    sources = np.argwhere(known) + low
+    if not len(sources):
+        return np.zeros((len(cells), 3), np.uint8)
+    _, nearest = KDTree(sources).query(cells, distance_upper_bound=reach + 1e-6)
+    found = np.asarray(nearest < len(sources))  # Where nothing is near, it is one past the last.
+    at = tuple(sources[np.where(found, nearest, 0)].T)
+    return np.where(found[:, None], draft.colour[at], 0).astype(np.uint8)
+
+
+# Commands on cells that a person names: painted, erased, given another class, copied.
+
+Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
+Runs = Annotated[list[Run], Field(max_length=MAX_RUNS)]
+ClassId = Annotated[int, Field(ge=0, le=11)]
+EMPTY = 0
+Cell = tuple[int, int, int]
+
+
+class CellCommand(Command):
+    """What commands on cells share: cells of ``locked`` classes stay as they are."""
+
+    locked: tuple[ClassId, ...] = ()
+
+    def free(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
+        """Return bool [N]: which cells int [N, 3] are of no locked class."""
+        return ~np.isin(draft.labels[tuple(cells.T)], self.locked)
+
+
+class SetCells(CellCommand):
+    """Give cells one class; 0 erases them.
+
+    Whose they are then: of ``instance``, of none where that is 0, and where it is not given, of
+    the object of the class that they touch.
+    """
+
+    op: Literal["set_cells"] = "set_cells"
+    cells: Runs
+    class_id: ClassId
+    instance: Annotated[int, Field(ge=0, le=65535)] | None = None
+    verb: Literal["paint", "erase", "relabel", "fill", "delete"] = "paint"
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells that change."""
+        check_owner(draft, self.instance, self.class_id)
+        cells = cells_of_runs(self.cells, draft.shape)
+        changes = draft.labels[tuple(cells.T)] != self.class_id
+        if self.instance is not None and self.class_id in OBJECT_CLASSES:
+            changes |= draft.instance[tuple(cells.T)] != self.instance
+        cells = cells[changes & self.free(draft, cells)]
+        if not len(cells):
+            raise UsageError("no cell changes: all have this class already or are locked")
+        return planned_cells(draft, self.verb, cells, self.class_id, self.instance)
+
+
+class FillBox(CellCommand):
+    """Give all cells of a box one class; 0 erases them. Both corners are in the box."""
+
+    op: Literal["fill_box"] = "fill_box"
+    low: Cell
+    high: Cell
+    class_id: ClassId
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells of the box that change."""
+        cells = box_cells(self.low, self.high, draft.shape)
+        cells = cells[(draft.labels[tuple(cells.T)] != self.class_id) & self.free(draft, cells)]
+        if not len(cells):
+            raise UsageError("no cell changes: all of the box has this class already or is locked")
+        return planned_cells(draft, "fill" if self.class_id else "erase", cells, self.class_id)
+
+
+class DeleteComponent(CellCommand):
+    """Erase a cell and all of its class that hold to it by faces."""
+
+    op: Literal["delete_component"] = "delete_component"
+    cell: Cell
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the erased cells."""
+        check_cell(draft, self.cell)
+        held = int(draft.labels[self.cell])
+        if held in (EMPTY, UNKNOWN):
+            raise UsageError(f"cell {list(self.cell)} is empty: name one that is occupied")
+        if held in self.locked:
+            raise UsageError(f"{CLASS_NAMES[held]} is locked: unlock it in the legend first")
+        cells = component_of(draft.labels, self.cell)
+        return planned_cells(draft, "delete", cells, 0, class_id=held)
+
+
+class Paste(CellCommand):
+    """Copy what cells hold to ``by`` cells farther, mirrored first where ``mirror`` names an axis.
+
+    The mirror stands in the middle of the cells' box. Only occupied cells are copied, with their
+    colour; what lands outside the grid is dropped. A copied cell belongs to the
+    object of its class that it touches, as a painted one: whoever wants a second object asks for
+    ``duplicate_object``.
+    """
+
+    op: Literal["paste"] = "paste"
+    cells: Runs
+    by: Cell
+    mirror: Literal["x", "y", "z"] | None = None
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells that are pasted over."""
+        sources = cells_of_runs(self.cells, draft.shape)
+        sources = sources[draft.labels[tuple(sources.T)] % 255 > 0]
+        if not len(sources):
+            raise UsageError("nothing to paste: none of these cells is occupied")
+        targets = self._moved(sources)
+        inside = ((targets >= 0) & (targets < draft.shape)).all(axis=1)
+        sources, targets = sources[inside], targets[inside]
+        changes = draft.labels[tuple(sources.T)] != draft.labels[tuple(targets.T)]
+        changes &= self.free(draft, targets)
+        sources, targets = sources[changes], targets[changes]
+        if not len(targets):
+            raise UsageError("no cell changes: the copy lies outside, or on cells like its own")
+        labels = draft.labels[tuple(sources.T)]
+        colours = draft.colour[tuple(sources.T)]
+        return planned_cells(draft, "paste", targets, labels, colours=colours)
+
+    def _moved(self, cells: np.ndarray) -> np.ndarray:
+        moved = cells.astype(np.int64)
+        if self.mirror is not None:
+            axis = "xyz".index(self.mirror)
+            moved[:, axis] = moved[:, axis].min() + moved[:, axis].max() - moved[:, axis]
+        limit = np.iinfo(np.int32).max
+        return moved + np.clip(np.array(self.by, object), -limit, limit).astype(np.int64)
+
+
+def check_owner(draft: SceneDraft, number: int | None, class_id: int) -> None:
+    """Look whether cells of a class may belong to an object.
+
+    Raises:
+        UsageError: there is no such object, or it is of another class.
+    """
+    if not number:
+        return
+    if number not in draft.objects:
+        raise UsageError(f"no object {number}; leave instance out and cells join what they touch")
+    held = draft.objects[number].class_id
+    if held != class_id:
+        names = f"{CLASS_NAMES[held]}, not {CLASS_NAMES[class_id]}"
+        raise UsageError(f"object {number} is a {names}: relabel it first, or give its class")
+
+
+def check_cell(draft: SceneDraft, cell: tuple[int, int, int]) -> None:
+    """Look whether a cell is in the grid.
+
+    Raises:
+        UsageError: it is not.
+    """
+    if not all(0 <= at < side for at, side in zip(cell, draft.shape, strict=True)):
+        raise UsageError(f"cell {list(cell)} lies outside the grid of {list(draft.shape)} cells")
+
+
+OccupiedId = Annotated[int, Field(ge=1, le=11)]
+
+
+class RelabelClass(CellCommand):
+    """Give all cells and all objects of one class another.
+
+    Objects take the class of their cells, and furniture of that class is found for them; where
+    the new class is structure they are none any more.
+    """
+
+    op: Literal["relabel_class"] = "relabel_class"
+    from_id: OccupiedId
+    to_id: OccupiedId
+
+    @model_validator(mode="after")
+    def _differ(self) -> "RelabelClass":
+        if self.from_id == self.to_id:
+            raise ValueError("from_id and to_id must differ")
+        return self
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return all cells of the class, and its objects with their new class."""
+        check_class(draft, self.from_id, self.locked)
+        cells = np.argwhere(draft.labels == self.from_id)
+        owners = draft.instance[tuple(cells.T)]
+        if self.to_id not in OBJECT_CLASSES:
+            gone = without_cells(draft, self.from_id)
+            return planned_cells(draft, "relabel", cells, self.to_id, owners, gone=gone)
+        changed = self._objects(draft, tools)
+        fields = {"counts_as": "relabel", "objects": changed}
+        return planned_cells(draft, "relabel", cells, self.to_id, owners, **fields)
+
+    def _objects(self, draft: SceneDraft, tools: Tools) -> list[SceneObject]:
+        """The objects of the class as they are afterwards."""
+        grid = draft.grid()
+        grid = replace(grid, labels=np.where(grid.labels == self.from_id, self.to_id, grid.labels))
+        found = []
+        for one in draft.objects.values():
+            if one.class_id == self.from_id:
+                bare = replace(one, class_id=self.to_id, placements=())
+                cells = draft.cells_of(one.id)
+                furniture = tools.match(grid, instance_of(bare, cells)) if len(cells) else ()
+                found.append(replace(bare, placements=furniture))
+        return found
+
+
+class DeleteClass(CellCommand):
+    """Erase all cells and all objects of a class."""
+
+    op: Literal["delete_class"] = "delete_class"
+    class_id: OccupiedId
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return all cells of the class."""
+        check_class(draft, self.class_id, self.locked)
+        cells = np.argwhere(draft.labels == self.class_id)
+        gone = without_cells(draft, self.class_id)
+        told = {"counts_as": "delete", "class_id": self.class_id}
+        return planned_cells(draft, "delete", cells, 0, gone=gone, **told)
+
+
+def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> None:
+    """Look whether a class may be changed.
+
+    Raises:
+        UsageError: it is locked, or the scene has nothing of it.
+    """
+    name = CLASS_NAMES[class_id]
+    if class_id in locked:
+        raise UsageError(f"{name} is locked: unlock it in the legend first")
+    if not draft.counts[class_id] and not without_cells(draft, class_id):
+        raise UsageError(f"the scene has no {name}")
+
+
+def without_cells(draft: SceneDraft, class_id: int) -> list[int]:
+    """Return the objects, by id, of a class that have no cells: centres alone."""
+    held = np.bincount(draft.instance.ravel(), minlength=65536)
+    ordered = sorted(draft.objects.values(), key=lambda one: one.id)
+    return [one.id for one in ordered if one.class_id == class_id and held[one.id] == 0]

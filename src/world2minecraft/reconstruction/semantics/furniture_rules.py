@@ -1,0 +1,408 @@
+"""Objects among what is no structure: cut at plates, then told apart piece by piece."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.geometry.morphology import dilate, erode, project_to_plan
+from world2minecraft.reconstruction.layout.parameters import (
+    GeometricParameters,
+    PieceParameters,
+    PlateParameters,
+    within,
+)
+from world2minecraft.reconstruction.layout.surface_cells import Surface
+from world2minecraft.reconstruction.semantics.horizontal_surfaces import Plate, find_plates
+from world2minecraft.reconstruction.semantics.screens import screen_share
+from world2minecraft.reconstruction.semantics.surface_pieces import Piece, find_pieces
+
+# Seats: plates at knee height with a back on one side. A chair's is compact, a sofa's is long.
+
+AROUND_CELLS = 2  # The edge between seat and back is hidden; the back is looked for this far off.
+
+
+def class_of_seat(
+    surface: Surface, plate: Plate, left: np.ndarray, closed: bool, parameters: PlateParameters
+) -> SemanticClass | None:
+    """Return whose seat a plate is, a chair's or a sofa's; None where it is no seat.
+
+    Args:
+        surface: the room.
+        plate: the plate.
+        left: bool [X, Y, Z], the cells that nothing has claimed yet.
+        closed: whether the plate is the top of a closed box, as upholstery is: then its back must
+            be of the same cloth, or a screen on a board would make a sofa of it.
+        parameters: the thresholds.
+    """
+    if not within(plate.height_m, parameters.seat_height_m) or _is_board(
+        surface, plate, parameters
+    ):
+        return None
+    share, contrast = back_of(surface, plate, left, parameters)
+    padded = contrast <= parameters.same_cloth and plate.height_m <= parameters.closed_seat_m
+    if share < parameters.back_share or (closed and not padded):
+        return None
+    if plate.length_m >= parameters.sofa_length_m:
+        return SemanticClass.SOFA if within(plate.width_m, parameters.sofa_width_m) else None
+    compact = plate.length_m <= parameters.chair_length_m
+    return SemanticClass.CHAIR if compact and plate.width_m >= parameters.chair_width_m else None
+
+
+def back_of(
+    surface: Surface, plate: Plate, left: np.ndarray, parameters: PlateParameters
+) -> tuple[float, float]:
+    """Return how much of one side of a plate a back takes, and how its colour differs.
+
+    Only long sides count; the difference is that of the median colours in Oklab, 1 for no back.
+    """
+    first, last = (surface.layers_below(plate.height_m + rise) for rise in parameters.back_rise_m)
+    rows, columns = np.nonzero(plate.footprint)
+    x = slice(max(int(rows.min()) - AROUND_CELLS, 0), int(rows.max()) + 1 + AROUND_CELLS)
+    y = slice(max(int(columns.min()) - AROUND_CELLS, 0), int(columns.max()) + 1 + AROUND_CELLS)
+    risen = left[x, y, first:last]
+    if not risen.any():
+        return 0.0, 1.0
+    around, depth = project_to_plan(risen), 2 * AROUND_CELLS
+    strips = (around[:depth], around[-depth:], around[:, :depth].T, around[:, -depth:].T)
+    sides = [np.atleast_1d(strip.any(axis=0)) for strip in strips]
+    longest = max(len(side) for side in sides)
+    inner = slice(AROUND_CELLS, -AROUND_CELLS)
+    wide = [side for side in sides if len(side) >= max(0.7 * longest, 2 * AROUND_CELLS + 1)]
+    share = max((float(side[inner].mean()) for side in wide), default=0.0)  # At the grid's edge.
+    back = np.median(surface.oklab[x, y, first:last][risen], axis=0)
+    seat = np.median(surface.oklab[plate.mask], axis=0)
+    return share, float(np.linalg.norm(back - seat))
+
+
+def _is_board(surface: Surface, plate: Plate, parameters: PlateParameters) -> bool:
+    """Return whether much stands over a plate higher than any chair: then it is a shelf's board."""
+    first, last = (surface.layers_below(height) for height in parameters.shelf_m)
+    over = project_to_plan(surface.occupied[:, :, first:last])
+    return bool(over[plate.footprint].mean() >= parameters.shelf_share)
+
+
+# What a plate and a piece are: rules of size, height, shape and colour, the first that fits.
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A table that was found: its height, and bool [X, Y] outlines under, on and around its top."""
+
+    height_m: float
+    under: np.ndarray
+    inner: np.ndarray
+    around: np.ndarray
+
+    @classmethod
+    def of(cls, plate: Plate, surface: Surface, parameters: PieceParameters) -> "Table":
+        """Return the table of a plate."""
+        reach = surface.cells_of(parameters.back_gap_m)
+        outline = plate.footprint
+        return cls(plate.height_m, dilate(outline), erode(outline), dilate(outline, reach))
+
+
+@dataclass(frozen=True, eq=False)
+class Seat:
+    """A chair's seat that was found: its height, its middle, and bool [X, Y] what is under it."""
+
+    height_m: float
+    middle_m: np.ndarray  # float64 [2]
+    under: np.ndarray
+
+    @classmethod
+    def of(cls, plate: Plate, surface: Surface, parameters: PieceParameters) -> "Seat":
+        """Return the seat of a plate."""
+        points = surface.points_m[plate.mask][:, :2].astype(np.float64)
+        reach = surface.cells_of(parameters.foot_reach_m)
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        return cls(plate.height_m, middle, dilate(plate.footprint, reach))
+
+
+def class_of_plate(
+    surface: Surface, plate: Plate, left: np.ndarray, parameters: PlateParameters
+) -> SemanticClass | None:
+    """Return what a plate is the top, the seat or the mattress of; None where it does not say.
+
+    Args:
+        surface: the room.
+        plate: the plate.
+        left: bool [X, Y, Z], the cells that nothing has claimed yet.
+        parameters: the thresholds.
+    """
+    height, area, width = plate.height_m, plate.area_m2, plate.width_m
+    desk_high = within(height, parameters.desk_height_m)
+    closed = plate.rim_share >= (parameters.desk_share if desk_high else parameters.box_share)
+    seat = class_of_seat(surface, plate, left, closed, parameters)
+    if seat is not None:
+        return seat
+    large = plate.length_m >= parameters.bed_size_m[0] and width >= parameters.bed_size_m[1]
+    if large and area >= parameters.bed_area_m2 and within(height, parameters.bed_height_m):
+        return SemanticClass.BED
+    if not closed and _is_table_top(plate, parameters):
+        return SemanticClass.TABLE
+    solid = closed or height >= parameters.open_box_height_m
+    wide = area >= parameters.box_area_m2 and width >= parameters.box_width_m
+    # Of a worktop on which much stands only pieces are seen.
+    if closed and within(height, parameters.worktop_height_m):
+        least_m, long_m = parameters.worktop_size_m
+        wide |= width >= least_m and plate.length_m >= long_m
+    return SemanticClass.FURN if solid and wide and height >= parameters.box_height_m else None
+
+
+def _is_table_top(plate: Plate, parameters: PlateParameters) -> bool:
+    """Return whether a plate has the height and the size of a table's top, high or low."""
+    if within(plate.height_m, parameters.table_height_m):
+        wide = plate.width_m >= parameters.table_width_m
+        return wide and plate.area_m2 >= parameters.table_area_m2
+    low = within(plate.height_m, parameters.low_table_height_m)
+    return low and plate.area_m2 >= parameters.low_table_area_m2
+
+
+def class_of_piece(
+    piece: Piece, tables: list[Table], seats: list[Seat], parameters: PieceParameters
+) -> SemanticClass:
+    """Return what a piece is that no plate has claimed."""
+    if any(_is_leg(piece, table, parameters) for table in tables):
+        return SemanticClass.TABLE
+    if any(_is_foot(piece, seat, parameters) for seat in seats):
+        return SemanticClass.CHAIR
+    if _is_screen(piece, parameters):
+        return SemanticClass.TVS
+    if any(_is_back_at(piece, table, parameters) for table in tables):
+        return SemanticClass.CHAIR
+    if _is_chair(piece, parameters):
+        return SemanticClass.CHAIR
+    leafy = piece.oklab[1] <= parameters.leaf[0] and piece.oklab[2] >= parameters.leaf[1]
+    if leafy and piece.flat_share < 0.5:
+        return SemanticClass.OBJS
+    large = piece.long_m >= parameters.box_length_m and piece.tall_m >= parameters.box_height_m
+    boxy = piece.flat_share >= parameters.flat_share and len(piece.at[0]) >= parameters.box_cells
+    deep = piece.near_wall and piece.off_wall_m > parameters.hanging_m
+    return SemanticClass.FURN if large and boxy and deep else SemanticClass.OBJS
+
+
+def _is_leg(piece: Piece, table: Table, parameters: PieceParameters) -> bool:
+    """Return whether a piece stands or hangs under a table, up to its top: a leg, an apron."""
+    below = table.height_m - piece.high_m[2]
+    return table.under[piece.at[:2]].mean() >= 0.8 and -0.04 <= below <= parameters.under_table_m
+
+
+def _is_foot(piece: Piece, seat: Seat, parameters: PieceParameters) -> bool:
+    """Return whether a piece stands under a seat: the star of a chair whose post is too thin."""
+    stands = piece.low_m[2] <= parameters.foot_bottom_m and piece.high_m[2] <= seat.height_m
+    off = np.linalg.norm((piece.low_m + piece.high_m)[:2] / 2 - seat.middle_m)
+    return bool(stands and off <= parameters.foot_off_m and seat.under[piece.at[:2]].mean() >= 0.8)
+
+
+def _is_screen(piece: Piece, parameters: PieceParameters) -> bool:
+    """Return whether a piece is a thin, upright plate off the floor, wider than high.
+
+    It is dark, or a small flat one blue, as a lit one is: cupboards may be blue too.
+    """
+    off_floor = piece.low_m[2] >= parameters.screen_bottom_m
+    dark = piece.oklab[0] <= parameters.screen_lightness
+    small = piece.long_m <= parameters.monitor_m and piece.flat_share >= parameters.monitor_flat
+    lit = small and screen_share(piece.oklab[None], parameters) > 0
+    if not (off_floor and (dark or lit)):
+        return False
+    sized = within(piece.long_m, parameters.screen_width_m)
+    sized &= within(piece.tall_m, parameters.screen_height_m)
+    thin = piece.thin_m <= parameters.screen_thick_m
+    return sized and thin and within(piece.long_m / piece.tall_m, parameters.screen_shape)
+
+
+def _is_back_at(piece: Piece, table: Table, parameters: PieceParameters) -> bool:
+    """Return whether a piece is the back of a chair that its table hides: at the rim, upright."""
+    sized = within(piece.long_m, parameters.back_length_m)
+    sized &= piece.tall_m >= parameters.back_height_m and piece.thin_m <= parameters.back_thick_m
+    rises = piece.high_m[2] >= table.height_m + parameters.back_over_m
+    at_rim = piece.low_m[2] >= table.height_m - 0.3 and table.height_m >= 0.6
+    if not (sized and rises and at_rim and piece.high_m[2] <= parameters.chair_top_m[1]):
+        return False
+    on, near = table.inner[piece.at[:2]].mean(), table.around[piece.at[:2]].mean()
+    return bool(on <= 0.1 and near >= 0.9)
+
+
+def _is_chair(piece: Piece, parameters: PieceParameters) -> bool:
+    """Return whether a piece has a chair's box and stands away from walls."""
+    low = piece.low_m[2] <= parameters.chair_bottom_m and piece.tall_m >= 0.25
+    sized = within(piece.high_m[2], parameters.chair_top_m)
+    return low and sized and within(piece.long_m, parameters.chair_length_m) and not piece.near_wall
+
+
+# How far around its plate a thing may reach and up to what height, in metres; 0 = the plate's own.
+# Arms, backs and headboards rise over a seat or a mattress; on a table lie other things.
+REACH_M = {
+    SemanticClass.TABLE: (0.08, 0.0),
+    SemanticClass.FURN: (0.08, 0.0),
+    SemanticClass.BED: (0.08, 1.2),
+    SemanticClass.SOFA: (0.32, 1.0),
+    SemanticClass.CHAIR: (0.24, 1.15),
+}
+HEAD_M = 0.55  # How far pillows reach from the head of a bed.
+APART_M = 0.5  # A chair belongs to a table no further off.
+WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
+MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
+TOP_M = 0.06  # A plate's cells lie this near its height.
+
+# What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
+ROUNDS = (
+    (SemanticClass.TABLE,),
+    (SemanticClass.BED, SemanticClass.SOFA, SemanticClass.CHAIR),
+    (SemanticClass.FURN,),
+)
+JOINING_CLASSES = (
+    SemanticClass.FURN,
+    SemanticClass.SOFA,
+    SemanticClass.BED,
+    SemanticClass.CHAIR,
+)
+
+
+def label_furniture(
+    surface: Surface,
+    rest: np.ndarray,
+    wall: np.ndarray,
+    labels: np.ndarray,
+    parameters: GeometricParameters,
+) -> None:
+    """Write the classes of the cells ``rest`` to ``labels``, both [X, Y, Z].
+
+    Things that stand apart are looked at apart, so that a house takes as long as its rooms.
+    """
+    plan, inside = project_to_plan(rest), wall.sum(axis=2) < WALL_CELLS
+    groups, count = label_components(plan | (dilate(plan, surface.cells_of(APART_M / 2)) & inside))
+    margin = surface.cells_of(MARGIN_M)
+    for number, box in enumerate(ndimage.find_objects(groups, count), 1):
+        x, y = (slice(max(side.start - margin, 0), side.stop + margin) for side in box)
+        own = rest[x, y] & (groups[x, y] == number)[:, :, None]
+        _label_group(surface.columns(x, y), own, wall[x, y], labels[x, y], parameters)
+
+
+def _label_group(
+    surface: Surface,
+    rest: np.ndarray,
+    wall: np.ndarray,
+    labels: np.ndarray,
+    parameters: GeometricParameters,
+) -> None:
+    """Write the classes of things that stand together.
+
+    A plate that says what it is takes its thing with it; what is left falls into pieces.
+    """
+    left = rest.copy()
+    tables, seats = _label_plates(surface, left, labels, parameters)
+    contact = {kind: dilate((labels == kind) & rest & ~left) for kind in JOINING_CLASSES}
+    for piece in find_pieces(surface, left, wall, parameters.pieces):
+        joined = _joined_class(piece, contact, parameters)
+        labels[piece.at] = joined or class_of_piece(piece, tables, seats, parameters.pieces)
+
+
+def _label_plates(
+    surface: Surface, left: np.ndarray, labels: np.ndarray, parameters: GeometricParameters
+) -> tuple[list[Table], list[Seat]]:
+    """Write what plates say to ``labels``, take their cells from ``left``.
+
+    Returns:
+        The tables and the seats of chairs.
+    """
+    plates = find_plates(surface, left, parameters.plates)
+    plates.sort(key=lambda plate: -plate.area_m2)
+    tables: list[Table] = []
+    seats: list[Seat] = []
+    for wanted in ROUNDS:
+        for plate in plates:
+            if (plate.mask & left).sum() < 0.5 * plate.mask.sum():
+                continue
+            kind = class_of_plate(surface, plate, left, parameters.plates)
+            if kind is None or kind not in wanted:
+                continue
+            claimed = _claimed(surface, plate, left, kind)
+            if kind == SemanticClass.CHAIR and not _stands_free(
+                surface, plate, claimed, left, parameters.plates
+            ):
+                continue
+            labels[claimed] = kind
+            left &= ~claimed
+            if kind == SemanticClass.TABLE:
+                tables.append(Table.of(plate, surface, parameters.pieces))
+            if kind == SemanticClass.CHAIR:
+                seats.append(Seat.of(plate, surface, parameters.pieces))
+    return tables, seats
+
+
+def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticClass) -> np.ndarray:
+    """Return the cells that go with a plate: a table's top alone, a closed box's whole body."""
+    height = surface.points_m[..., 2]
+    reach_m, top_m = REACH_M[kind]
+    is_bed = kind == SemanticClass.BED
+    outline = _with_head(surface, plate, left) if is_bed else plate.footprint
+    around = dilate(outline, surface.cells_of(reach_m))[:, :, None]
+    reach = around & left & (height <= max(top_m, plate.height_m + TOP_M))
+    if kind == SemanticClass.TABLE:
+        # Beside its rim, what rises higher is the back of a chair.
+        rises = np.zeros_like(left)
+        rises[:, :, :-1] = left[:, :, 1:] & ~plate.footprint[:, :, None]
+        return reach & (height >= plate.height_m - TOP_M) & ~rises
+    parts, _ = label_components(reach)
+    own = np.unique(parts[plate.mask & left])
+    return reach & np.isin(parts, own[own > 0])
+
+
+def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
+    """Return a bed's outline with its head: pillows and a headboard rise along a whole side."""
+    first = surface.layers_below(plate.height_m + TOP_M)
+    risen = project_to_plan(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
+    rows, columns = np.nonzero(plate.footprint)
+    x, y = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
+    more = surface.cells_of(HEAD_M)
+    result = plate.footprint.copy()
+    for beyond, axis in (
+        ((slice(max(x.start - more, 0), x.start), y), 0),
+        ((slice(x.stop, x.stop + more), y), 0),
+        ((x, slice(max(y.start - more, 0), y.start)), 1),
+        ((x, slice(y.stop, y.stop + more)), 1),
+    ):
+        if np.any(risen[beyond], axis=axis).mean() >= 0.6:
+            result[beyond] = True
+    return result
+
+
+def _stands_free(
+    surface: Surface,
+    plate: Plate,
+    claimed: np.ndarray,
+    left: np.ndarray,
+    parameters: PlateParameters,
+) -> bool:
+    """Return whether a chair's cells do not go on into something larger.
+
+    What touches an easy chair, which is closed all around, in another colour is another thing.
+    """
+    beyond = dilate(claimed, 2) & left & ~claimed
+    count = int(beyond.sum())
+    if plate.rim_share >= parameters.box_share:
+        apart = surface.oklab[beyond] - np.median(surface.oklab[claimed], axis=0)
+        count = int((np.linalg.norm(apart, axis=1) <= parameters.same_cloth).sum())
+    return count <= 0.25 * int(claimed.sum())
+
+
+def _joined_class(
+    piece: Piece, contact: dict[SemanticClass, np.ndarray], parameters: GeometricParameters
+) -> SemanticClass | None:
+    """Return the class of the thing whose side a piece is: low, and touching it over a third."""
+    if piece.low_m[2] > parameters.pieces.joining_bottom_m:
+        return None
+    # A curtain beside an easy chair is no side of it.
+    shares = {
+        kind: float(touched[piece.at].mean())
+        for kind, touched in contact.items()
+        if kind == SemanticClass.FURN or piece.high_m[2] <= REACH_M[kind][1]
+    }
+    if not shares:
+        return None
+    best = max(shares, key=lambda kind: shares[kind])
+    return best if shares[best] >= parameters.pieces.joining_share else None
