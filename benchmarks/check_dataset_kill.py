@@ -25,7 +25,7 @@ from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, house_scenes, plan_dataset
 from world2minecraft.minecraftocc.store import verify_store
-from world2minecraft.minecraftocc.store.stored import stored_samples
+from world2minecraft.minecraftocc.store.shard import stored_samples
 from world2minecraft.rendering.views import camera_of
 
 HOUSES, IMAGES = 2, 40

@@ -16,9 +16,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from world2minecraft.construction.display.boxes import Frame, entities_of, pieces_of
 from world2minecraft.construction.display.builder import most_pieces
-from world2minecraft.construction.display.frame import Frame, entities_of
-from world2minecraft.construction.display.pieces import pieces_of
 from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import Entity

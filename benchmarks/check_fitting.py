@@ -32,8 +32,8 @@ from world2minecraft.construction.fitting import (
     shape_set,
     thin_cells,
 )
-from world2minecraft.construction.fitting.joins import parts_of_shapes
-from world2minecraft.construction.fitting.masks import PROBES, SUB, solid_of
+from world2minecraft.construction.fitting.shapes import PROBES, SUB, solid_of
+from world2minecraft.construction.fitting.stabilization import parts_of_shapes
 from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import AIR, BlockVolume

@@ -37,7 +37,7 @@ from world2minecraft.minecraftocc.labels.labels import (
     resized,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.tours import nyu_camera
 from world2minecraft.minecraftocc.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.procgen.worlds import generate_world

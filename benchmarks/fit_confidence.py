@@ -29,7 +29,7 @@ from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
 from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.fusion.confidence import (
     FREE_FEATURES,
     OCCUPIED_FEATURES,

@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.networks.completion.rooms import FIRST_SEED
-from world2minecraft.networks.completion.samples import make_samples, write_samples
+from world2minecraft.networks.completion.samples import FIRST_SEED, make_samples, write_samples
 
 
 def main() -> None:

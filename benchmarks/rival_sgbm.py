@@ -27,7 +27,7 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera, DepthMap, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.reconstruction.opening import preparing
+from world2minecraft.reconstruction.opening import preparation as preparing
 
 ASKED, PAIRS = 12, 6  # So many neighbours are looked at for so many pairs that can be rectified.
 MOST_ALONG = 0.6  # Share of a motion that may go along the view: rectified, more turns too far.

@@ -20,9 +20,8 @@ from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_
 from world2minecraft.networks.completion.augment import cropped
 from world2minecraft.networks.completion.export import export_completion
 from world2minecraft.networks.completion.network import MULTIPLE, CompletionNet
-from world2minecraft.networks.completion.rooms import FIRST_SEED
 from world2minecraft.networks.completion.sample_pool import SamplePool
-from world2minecraft.networks.completion.samples import Sample, read_samples
+from world2minecraft.networks.completion.samples import FIRST_SEED, Sample, read_samples
 from world2minecraft.networks.completion.training import CompletionRun, Trainer
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 

@@ -13,7 +13,7 @@ from benchmarks.refinement import (
 
 from world2minecraft.core.types import OBSERVED, LayoutObject, OccupancyGrid
 from world2minecraft.editing.scene import SceneDraft, parse_command
-from world2minecraft.editing.scene import scene_objects as objects_of
+from world2minecraft.editing.scene import objects_of
 from world2minecraft.furniture import cells_of, template
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.sceneforge.tools import tools_of

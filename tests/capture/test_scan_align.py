@@ -52,7 +52,7 @@ def test_any_tilt_and_turn_gives_the_same_room(surfaces, seed, noise):
     room_to_scan = np.eye(4)
     room_to_scan[:3, :3] = Rotation.random(random_state=seed).as_matrix()
     room_to_scan[:3, 3] = np.random.default_rng(seed).uniform(-20, 20, 3)
-    aligned = align_surface(found[noise].turned(room_to_scan))
+    aligned = align_surface(found[noise].transformed(room_to_scan))
     _check(aligned.scan_to_room, room_to_scan, aligned.room_size_m, size, degrees=0.3, metres=0.01)
 
 
@@ -61,7 +61,7 @@ def test_the_result_does_not_depend_on_the_capture_s_frame(surfaces):
     surface = surfaces[0][None]
     plain = align_surface(surface)
     turn = rotation_about_z(117.0)
-    turned = align_surface(surface.turned(turn))
+    turned = align_surface(surface.transformed(turn))
     np.testing.assert_allclose(turned.scan_to_room @ turn, plain.scan_to_room, atol=2e-3)
     look = plain.scan_to_room[:3, :3] @ surface.cameras[0, :3, 2]
     assert look[1] > abs(look[0]) - 1e-6

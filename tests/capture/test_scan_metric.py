@@ -89,7 +89,7 @@ def test_a_tilted_frame_changes_little(box_surface):
     tilt = np.eye(4)
     tilt[1:3, 1:3] = [[0.8, -0.6], [0.6, 0.8]]
     tilt[:3, 3] = [3.0, -2.0, 5.0]
-    turned = box_surface.turned(tilt @ rotation_about_z(70.0))
+    turned = box_surface.transformed(tilt @ rotation_about_z(70.0))
     assert estimate_scale(turned).scale == pytest.approx(
         estimate_scale(box_surface).scale, rel=0.02
     )
@@ -203,7 +203,7 @@ def test_bad_words_are_refused_with_what_to_type(name, length, error, text):
 
 
 def test_what_was_not_seen_cannot_be_known(box_room, box_surface):
-    floor_only = box_surface.chosen(box_surface.normals[:, 2] > 0.9)
+    floor_only = box_surface.subset(box_surface.normals[:, 2] > 0.9)
     for name, length_m in (("ceiling height", 2.5), ("room length", 4.2)):
         with pytest.raises(UsageError, match="was seen|were seen"):
             estimate_scale(floor_only, [Known(name, length_m)])
@@ -211,7 +211,7 @@ def test_what_was_not_seen_cannot_be_known(box_room, box_surface):
 
 def test_too_little_surface_is_refused(box_surface):
     with pytest.raises(ImplausibleRoomError, match="at least 500 are needed"):
-        estimate_scale(box_surface.chosen(np.arange(20)))
+        estimate_scale(box_surface.subset(np.arange(20)))
     assert len(collect_unscaled([]).points_m) == 0
 
 

@@ -39,7 +39,7 @@ def test_a_small_lean_is_found(box_room, degrees):
     surface = collect_oriented_points(box_room.views(14, noise_seed=1))
     lean = np.eye(4)
     lean[:3, :3] = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
-    left = straightening_turn(surface.turned(lean)) @ lean[:3, :3]
+    left = straightening_turn(surface.transformed(lean)) @ lean[:3, :3]
     assert np.degrees(Rotation.from_matrix(left).magnitude()) < 0.05
 
 

@@ -14,7 +14,7 @@ from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraftocc.cell_predictions import SaidCells, cells_in_grid
-from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.formats.cameras import depth_png
 from world2minecraft.minecraftocc.frame_completion import GridPlace
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))

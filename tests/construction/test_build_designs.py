@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.block_designs import body_box, idiom_box
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import idiom
 from world2minecraft.furniture import template
 from world2minecraft.minecraft.rules.stability import unstable
 

@@ -9,9 +9,14 @@ from build_samples import CHAIR, OBJS, RED, TABLE, WOOD, Sketch
 
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn, write_build
 from world2minecraft.construction.canvas import BARRIER
+from world2minecraft.construction.display.boxes import (
+    Frame,
+    Piece,
+    boxes_in_room,
+    entities_of,
+    pieces_of,
+)
 from world2minecraft.construction.display.builder import MOST_PIECES, MOST_PIECES_ELSE
-from world2minecraft.construction.display.frame import Frame, Piece, boxes_in_room, entities_of
-from world2minecraft.construction.display.pieces import pieces_of
 from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import ObjectInstance, Placement

@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.display.block_alignment import Settler
-from world2minecraft.construction.display.colliders import MARK, cover_of, put_colliders
-from world2minecraft.construction.display.frame import Frame, Piece
-from world2minecraft.construction.display.heaps import (
+from world2minecraft.construction.display.boxes import Frame, Piece
+from world2minecraft.construction.display.builder import (
     frame_of_cells,
     pieces_of_cells,
     without_specks,
 )
+from world2minecraft.construction.display.colliders import MARK, cover_of, put_colliders
 from world2minecraft.construction.display.part_materials import role_colours, states_of_parts
 from world2minecraft.construction.display.worktops import as_counter, deepened, plate_pieces
 from world2minecraft.construction.lattice import lattice_over

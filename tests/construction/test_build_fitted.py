@@ -12,7 +12,7 @@ from world2minecraft.construction.cell_objects import (
     shared_solids,
     solid_of,
 )
-from world2minecraft.construction.fitted import design_of_parts
+from world2minecraft.construction.fitted_objects import design_of_parts
 from world2minecraft.construction.fitting import CALM, Shape, shape_set
 from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.materials import materials_of

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction.block_designs import filled_by, idiom_box
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import idiom
 from world2minecraft.furniture import template
 
 ROOM_M = 6.0

@@ -11,7 +11,7 @@ from scipy import ndimage
 from world2minecraft.construction import build_volume
 from world2minecraft.construction.doorways import find_gaps
 from world2minecraft.construction.lattice import lattice_over
-from world2minecraft.construction.lights import LEAST
+from world2minecraft.construction.lighting import LEAST
 from world2minecraft.construction.spawn import find_spawn
 from world2minecraft.construction.storeys import upper_floors_m, with_storeys
 from world2minecraft.core.coordinates import apply, invert

@@ -13,10 +13,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.block_meanings import Meaning, labelled, meanings_of
-from world2minecraft.construction.palette_files import palette_of
-from world2minecraft.construction.palettes import PALETTE_FILES, load_palette
-from world2minecraft.construction.pieces import piece_of
-from world2minecraft.construction.restricting import UNSEEN, nearest_allowed
+from world2minecraft.construction.finishing import UNSEEN, nearest_allowed
+from world2minecraft.construction.palettes import PALETTE_FILES, load_palette, palette_of, piece_of
 from world2minecraft.construction.user_furniture import furniture_of
 from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError

@@ -10,9 +10,8 @@ from generated_rooms import corner_of, furnished_room, true_grid
 from house_samples import house
 
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn
-from world2minecraft.construction.connect import settle
-from world2minecraft.construction.lamps import WALK_BLOCKS
-from world2minecraft.construction.lights import LEAST_CORNER
+from world2minecraft.construction.finishing import settle
+from world2minecraft.construction.lighting import LEAST_CORNER, WALK_BLOCKS
 from world2minecraft.construction.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, invert

@@ -3,7 +3,7 @@ import pytest
 from build_samples import Sketch, furnished, l_room
 
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn
-from world2minecraft.construction.lights import LEVEL, passes_light
+from world2minecraft.construction.lighting import LEVEL, passes_light
 from world2minecraft.construction.spawn import standing_cells
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.minecraft.collision_shapes import boxes_of

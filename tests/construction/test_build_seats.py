@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.construction.halves import LOWER
+from world2minecraft.construction.fitted_objects import LOWER
 from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.parts import design_of
 from world2minecraft.construction.seats import chair_paints, lit_colour

@@ -8,7 +8,7 @@ from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.cell_objects import shape_of_cells
 from world2minecraft.construction.lattice import face_shares, lattice_over, memberships, overlaps
 from world2minecraft.construction.parts import design_of
-from world2minecraft.construction.tops import top_cells
+from world2minecraft.construction.worktops import top_cells
 from world2minecraft.furniture import TEMPLATES, template
 
 ANY = BuildParameters(lights=False, edge="none", most_contradicted=1.0)

@@ -3,7 +3,7 @@ import pytest
 from build_samples import WALL, WHITE, Sketch
 
 from world2minecraft.construction import build_volume
-from world2minecraft.construction.standout import PICTURE, RUG, standing_out
+from world2minecraft.construction.shell import PICTURE, RUG, standing_out
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of

@@ -10,7 +10,7 @@ from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import idiom
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import srgb_to_oklab
 

@@ -4,11 +4,10 @@ from build_samples import DARK, FURN, RED, WHITE, Sketch
 from world2minecraft.construction import build_volume
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import one_paint
-from world2minecraft.construction.halves import LOWER
+from world2minecraft.construction.fitted_objects import LOWER
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.construction.palette_files import palette_of
-from world2minecraft.construction.plates import Plates
-from world2minecraft.construction.worktops import Worktop, joined
+from world2minecraft.construction.palettes import palette_of
+from world2minecraft.construction.worktops import Plates, Worktop, joined
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of

@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import idiom
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
 from world2minecraft.minecraft.collision_shapes import boxes_of
 

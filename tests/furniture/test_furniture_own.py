@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import DamagedFileError, LimitError, UnknownNameError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.furniture import rasterization as raster
+from world2minecraft.furniture import raster
 from world2minecraft.furniture.block_designs import block_size, laid
 from world2minecraft.furniture.library import template, templates_of, variants_of
 from world2minecraft.furniture.user_import import Wish, adopt, front_of

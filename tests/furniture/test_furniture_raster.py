@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import TEMPLATES, cells_of, size_in_cells, surface, template
-from world2minecraft.furniture import rasterization as raster
+from world2minecraft.furniture import raster
 
 NAMES = TEMPLATES.names()
 

@@ -49,12 +49,12 @@ def test_wide_patches_stand_on_planes_and_small_ones_at_a_fold():
 
 def test_thinning_keeps_some_of_all_parts_of_the_image():
     found = extract_patches(np.full((240, 320), 2.0, np.float32), CAMERA)
-    few = found.thinned(100)
+    few = found.subsample(100)
     assert len(few.points_m) == len(few.normals) == len(few.sigma_m) == 100
     np.testing.assert_allclose(
         np.ptp(few.points_m, axis=0), np.ptp(found.points_m, axis=0), atol=0.1
     )
-    assert found.thinned(10**6) is found
+    assert found.subsample(10**6) is found
 
 
 def test_holes_and_steps_give_none():
@@ -78,7 +78,7 @@ def test_a_surface_is_gathered_in_the_scan_s_frame_and_chosen_from():
     assert surface.names == ("a", "c")
     np.testing.assert_allclose(surface.points_m[surface.owner == 0, 2], 2.0, atol=1e-6)
     np.testing.assert_allclose(surface.points_m[surface.owner == 1, 2], 5.0, atol=1e-6)
-    part = surface.chosen(surface.owner == 1)
+    part = surface.subset(surface.owner == 1)
     assert len(part.points_m) == len(part.sigma_m) == (surface.owner == 1).sum()
-    back = surface.turned(pose).turned(np.linalg.inv(pose))
+    back = surface.transformed(pose).transformed(np.linalg.inv(pose))
     np.testing.assert_allclose(back.points_m, surface.points_m, atol=1e-12)

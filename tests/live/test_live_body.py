@@ -25,7 +25,7 @@ from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.physics import BlockWorld, Keys, standing_place
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.navigation.server.body import join

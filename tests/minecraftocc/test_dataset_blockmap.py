@@ -16,13 +16,17 @@ from world2minecraft.minecraftocc.block_map import (
     block_map_json,
     block_map_of,
     class_of_fine,
-    classify,
     load_block_map,
     read_block_map,
     remapped,
 )
-from world2minecraft.minecraftocc.block_map.conditions import CONDITIONS, MEASURES
-from world2minecraft.minecraftocc.block_map.pieces import columns, joined_parts
+from world2minecraft.minecraftocc.block_map import classification as classify
+from world2minecraft.minecraftocc.block_map.context import (
+    CONDITIONS,
+    MEASURES,
+    columns,
+    joined_parts,
+)
 from world2minecraft.minecraftocc.block_map.rooms import NONE, next_above
 from world2minecraft.minecraftocc.block_map.rules import Rule
 from world2minecraft.minecraftocc.values import FineClass

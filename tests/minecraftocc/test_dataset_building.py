@@ -25,11 +25,11 @@ from world2minecraft.minecraftocc.building import build as build_module
 from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.building import scenes as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
-from world2minecraft.minecraftocc.building.shards import units_of
+from world2minecraft.minecraftocc.building.shard_rendering import units_of
 from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.labels.labels import label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.plan import (
     DatasetPlan,
     GivenViews,
@@ -37,10 +37,10 @@ from world2minecraft.minecraftocc.plan import (
     plan_dataset,
     source_scenes,
 )
-from world2minecraft.minecraftocc.source import open_scene_source
+from world2minecraft.minecraftocc.scene_sources import open_scene_source
 from world2minecraft.minecraftocc.store import open_store, verify_store
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
-from world2minecraft.minecraftocc.store.tar import member_at
+from world2minecraft.minecraftocc.store.shard import member_at
 from world2minecraft.rendering import LookLight, prepare_scene, render_volume
 from world2minecraft.rendering.presentation.shot_frames import exposed
 from world2minecraft.rendering.views import Shot, camera_of

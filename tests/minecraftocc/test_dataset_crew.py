@@ -15,7 +15,7 @@ from world2minecraft.minecraftocc.building.process_registry import (
     of_the_crew,
     wait_for_others,
 )
-from world2minecraft.minecraftocc.engine import worker
+from world2minecraft.minecraftocc.engine import process_pool as worker
 
 AT_WORK = """
 import sys

@@ -8,7 +8,7 @@ from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.minecraftocc.source import open_scene_source
+from world2minecraft.minecraftocc.scene_sources import open_scene_source
 
 MODERN = ("modern_apartment", "modern_cottage", "modern_library", "modern_restaurant")
 EMPTY_BLOCKS = ("air", "water", "barrier", "light", "structure_void")

@@ -19,7 +19,7 @@ from world2minecraft.minecraftocc.labels.labels import (
     unknown,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.showing import label_image_of
 from world2minecraft.minecraftocc.values import OccSample
 from world2minecraft.rendering import prepare_scene, render_volume

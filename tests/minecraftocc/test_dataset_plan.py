@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.minecraftocc.building.build import shared_views
 from world2minecraft.minecraftocc.building.recorded_views import LONGEST_NAME as LONGEST_TOUR
-from world2minecraft.minecraftocc.building.shards import units_of
-from world2minecraft.minecraftocc.building.shares import shared_views
+from world2minecraft.minecraftocc.building.shard_rendering import units_of
 from world2minecraft.minecraftocc.plan import (
     MOST_SCENES,
     PRESETS,
@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.plan import (
     plan_dataset,
     source_scenes,
 )
-from world2minecraft.minecraftocc.store.tar import LONGEST_KEY
+from world2minecraft.minecraftocc.store.shard import LONGEST_KEY
 
 
 @pytest.mark.parametrize(

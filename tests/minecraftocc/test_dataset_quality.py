@@ -13,12 +13,12 @@ from world2minecraft.evaluation.metrics.image_quality import (
     niqe_model,
     piqe,
 )
-from world2minecraft.minecraftocc.picture_sources import pictures_at
-from world2minecraft.minecraftocc.quality import (
+from world2minecraft.minecraftocc.image_quality import (
     CAVEATS,
     choose,
     measure_quality,
     picture_quality,
+    pictures_at,
     quality_json,
     quality_text,
     resized,

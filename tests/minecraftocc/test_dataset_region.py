@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import apply, invert, look_at, rotation_ab
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraftocc.labels.labels import gathered, is_on_cells
 from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, region_of
-from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.values import FineClass, SceneVoxels
 
 PLAIN = RegionRule(axis_offset_cells=0, diagonal_offset_cells=0)

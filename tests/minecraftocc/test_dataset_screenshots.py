@@ -12,9 +12,12 @@ from PIL.PngImagePlugin import PngInfo
 
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.minecraftocc.name_patterns import NamePattern
-from world2minecraft.minecraftocc.png_text import MOST_TEXT, read_png_facts
-from world2minecraft.minecraftocc.screenshots import read_screenshots
+from world2minecraft.minecraftocc.screenshots import (
+    MOST_TEXT,
+    NamePattern,
+    read_png_facts,
+    read_screenshots,
+)
 from world2minecraft.rendering.views.cameras import GamePose
 
 POSE = {"x": 1.5, "y": 64.0, "z": -3.25, "yaw": 90.0, "pitch": 12.5}

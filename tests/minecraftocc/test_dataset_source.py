@@ -13,8 +13,12 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.formats.scene import scene_of, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.minecraftocc.built_box import built_box, is_built
-from world2minecraft.minecraftocc.source import open_scene_source, scene_id_of
+from world2minecraft.minecraftocc.scene_sources import (
+    built_box,
+    is_built,
+    open_scene_source,
+    scene_id_of,
+)
 
 SPAWN = (5.5, 62.0, 5.5)
 

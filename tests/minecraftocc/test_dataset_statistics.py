@@ -7,13 +7,13 @@ from tests.minecraftocc.samples import FINE, occ_labels, random_labels, sample
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.minecraftocc.importers.labelled import CLASS_KINDS
+from world2minecraft.minecraftocc.importers.samples import CLASS_KINDS
 from world2minecraft.minecraftocc.statistics import (
     StatisticsCounter,
     count_samples,
     picture_counts,
 )
-from world2minecraft.minecraftocc.statistics.cells import WorldCells
+from world2minecraft.minecraftocc.statistics.counting import WorldCells
 from world2minecraft.minecraftocc.values import FineClass, LabelRegion
 
 

@@ -20,8 +20,8 @@ from world2minecraft.minecraftocc.tours import (
     read_views,
     write_views,
 )
+from world2minecraft.minecraftocc.tours.planning import GAP_DEG, GAP_M
 from world2minecraft.minecraftocc.tours.rooms import find_rooms, shared
-from world2minecraft.minecraftocc.tours.tourist import GAP_DEG, GAP_M
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import render_batch

@@ -8,8 +8,8 @@ from label_worlds import PALETTE, designs_of, room_of_things
 from world2minecraft.core.coordinates import block_axes_to_grid, block_to_room
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraftocc.labels import voxels as module
-from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels import voxelization as module
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.values import FineClass
 from world2minecraft.rendering.block_models import OwnLooks
 

@@ -7,8 +7,7 @@ from PIL import Image
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.types import View
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
-from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, depth_png
 from world2minecraft.minecraftocc.frame_completion import (
     FILE_AXES,
     GridPlace,

@@ -13,7 +13,7 @@ from small_flat import SPAWN, flat_volume
 from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.navigation.environment.observations import Eyes
 from world2minecraft.navigation.server import body as body_module
 from world2minecraft.navigation.server import installing

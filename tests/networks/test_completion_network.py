@@ -8,11 +8,10 @@ import torch
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.networks.completion.export import export_completion, halved
-from world2minecraft.networks.completion.losses import completion_loss
 from world2minecraft.networks.completion.network import TINY, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import Sample, write_samples
-from world2minecraft.networks.completion.training import CompletionRun, Trainer
+from world2minecraft.networks.completion.training import CompletionRun, Trainer, completion_loss
 from world2minecraft.reconstruction.semantics.completion import CompletionModel, spans
 from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS, Sight
 

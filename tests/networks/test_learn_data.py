@@ -9,11 +9,15 @@ from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.config import GRIDS, DataSource
-from world2minecraft.networks.data.batches import TrainingPart, drawn_batches, ordered_batches
+from world2minecraft.networks.data.batches import (
+    TrainingPart,
+    drawn_batches,
+    ordered_batches,
+    plan_draws,
+)
 from world2minecraft.networks.data.cache import StreamedFrames, cached_frames, frames_bytes
 from world2minecraft.networks.data.class_weights import class_counts, class_weights
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.mixing import plan_draws
 from world2minecraft.networks.data.opening import CachePlace, open_run_data
 from world2minecraft.networks.data.splits import evenly, split_rows
 

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
 from world2minecraft.networks.config import GRIDS
-from world2minecraft.networks.data.augment import augmented, flipped, jittered
+from world2minecraft.networks.data.batches import augmented, flipped, jittered
 from world2minecraft.networks.data.frames import FrameRule, frame_of
 
 LARGE = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)

@@ -12,11 +12,17 @@ from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotat
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.config import GRIDS, read_config
 from world2minecraft.networks.csv_logger import read_rows
-from world2minecraft.networks.data.augment import augmented, augmented_together
-from world2minecraft.networks.data.batches import DrawnFrames, Stacked, TrainingPart
+from world2minecraft.networks.data.batches import (
+    DrawnFrames,
+    Draws,
+    Stacked,
+    TrainingPart,
+    augmented,
+    augmented_together,
+    draw_rng,
+)
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.mixing import Draws, draw_rng
 from world2minecraft.networks.data.opening import CachePlace
 from world2minecraft.networks.data.sequences import Companions, count_of, looks_into, seen_from
 from world2minecraft.networks.models import make_network

@@ -9,14 +9,16 @@ import torch
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.batch import OccInput, OccOutput, OccTarget
-from world2minecraft.networks.depth import depth_loss
-from world2minecraft.networks.frusta import frustum_loss
 from world2minecraft.networks.layers.depth_bins import least_depth
 from world2minecraft.networks.losses import LossWeights, occupancy_losses
-from world2minecraft.networks.relations import coarse_labels, relation_loss, relations_of
-from world2minecraft.networks.semantic import (
+from world2minecraft.networks.losses_one import (
+    coarse_labels,
     cross_entropy,
+    depth_loss,
+    frustum_loss,
     geometric_affinity,
+    relation_loss,
+    relations_of,
     semantic_affinity,
 )
 

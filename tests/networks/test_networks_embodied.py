@@ -8,7 +8,7 @@ from room_frames import SHAPE, VOXEL_M, room_batch
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.networks.batch import OccInput
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.models.stream import SceneStream, window_before
+from world2minecraft.networks.models.embodied import SceneStream, window_before
 
 SCENE = (40, 36, 18)
 EYES = [(3.0, 0.6, 1.6), (3.4, 5.6, 1.6), (0.7, 3.0, 1.5)]

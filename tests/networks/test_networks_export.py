@@ -6,8 +6,8 @@ import torch
 from room_frames import SHAPE, VOXEL_M, room_batch
 
 from world2minecraft.core.errors import OutputError
-from world2minecraft.networks.export import MOST_DIFFERENCE, export_network
 from world2minecraft.networks.models import NETWORKS, make_network
+from world2minecraft.networks.onnx_export import MOST_DIFFERENCE, export_network
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 USING_DEPTH = ("iso", "symphonies", "embodied")

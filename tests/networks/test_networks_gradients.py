@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import nn
 
-from world2minecraft.networks.layers.dilated import DilatedConv3d, families, joined
-from world2minecraft.networks.layers.group_norm import GroupNorm
+from world2minecraft.networks.layers.normalization import DilatedConv3d, GroupNorm, families, joined
 
 SIDES = st.tuples(*[st.integers(1, 7)] * 3)
 STEPS = st.tuples(*[st.integers(1, 3)] * 3)

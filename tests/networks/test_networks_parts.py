@@ -8,10 +8,9 @@ import torch
 
 from world2minecraft.core.errors import InputError, MissingExtraError
 from world2minecraft.networks.batch import OccInput
-from world2minecraft.networks.layers import hf_backbone
+from world2minecraft.networks.layers import backbones as hf_backbone
 from world2minecraft.networks.layers.attention import DeformableAttention
 from world2minecraft.networks.layers.backbones import WIDTHS, make_backbone
-from world2minecraft.networks.layers.ddr import AxisBlock, Double
 from world2minecraft.networks.layers.depth_bins import (
     DepthBranch,
     along_rays,
@@ -21,8 +20,8 @@ from world2minecraft.networks.layers.depth_bins import (
     known_depth,
     least_depth,
 )
-from world2minecraft.networks.layers.projection import Sight
-from world2minecraft.networks.layers.sampling import sample, sample_by_corners
+from world2minecraft.networks.layers.projection import Sight, sample, sample_by_corners
+from world2minecraft.networks.layers.residual_3d import AxisBlock, Double
 
 
 def mixed(values, place):

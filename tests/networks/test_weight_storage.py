@@ -13,9 +13,15 @@ from onnx import numpy_helper
 from room_frames import SHAPE, VOXEL_M
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.networks.export import _asked, _question, _traced, export_network
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.weight_storage import rounded, with_stored_weights
+from world2minecraft.networks.onnx_export import (
+    _asked,
+    _question,
+    _traced,
+    export_network,
+    rounded,
+    with_stored_weights,
+)
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 FACTS = NetworkFacts("monoscene", SHAPE, VOXEL_M, (96, 72))

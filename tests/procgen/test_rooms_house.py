@@ -8,9 +8,13 @@ import pytest
 
 from world2minecraft.furniture.layout_checks import collisions, out_of_bounds
 from world2minecraft.procgen import generate_house
-from world2minecraft.procgen.houses.house_gaps import house_gaps
-from world2minecraft.procgen.houses.house_plan import WALL_M, plan_house
-from world2minecraft.procgen.houses.stairs import HEADROOM_M, stairwell
+from world2minecraft.procgen.houses.plan import (
+    HEADROOM_M,
+    WALL_M,
+    house_gaps,
+    plan_house,
+    stairwell,
+)
 from world2minecraft.procgen.sensors.navmesh import find_stands
 
 HOUSES = [(0, 3, 1, 0.0), (1, 5, 1, 0.7), (2, 5, 2, 0.0)]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.procgen.houses.stairs import railing
+from world2minecraft.procgen.houses.plan import railing
 from world2minecraft.procgen.rooms import bathroom as washing
 from world2minecraft.procgen.rooms import decor, seating, storage
 from world2minecraft.procgen.rooms import play_and_hall as playing

@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.procgen.sensors.film import TURN, plan_film
+from world2minecraft.procgen.sensors.phone import TURN, plan_film
 from world2minecraft.procgen.sensors.photo import prepare_photos
 from world2minecraft.procgen.sensors.shots import Shooting
 from world2minecraft.procgen.sensors.surface_textures import mixed

@@ -10,7 +10,7 @@ from world2minecraft.furniture.layout_checks import collisions, out_of_bounds
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen import KINDS, SHAPES, generate_room
 from world2minecraft.procgen.rooms.clutter import MAX_ASKEW_DEG
-from world2minecraft.procgen.rooms.ground import Cut, Ground, Roof
+from world2minecraft.procgen.rooms.floor_shapes import Cut, Ground, Roof
 from world2minecraft.procgen.sensors.navmesh import find_stands
 
 SHAPED = [(kind, shape, 0.0) for kind in ("living", "bed") for shape in SHAPES if shape != "box"]

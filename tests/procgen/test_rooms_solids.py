@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.furniture_model import Bar, Model, Part
-from world2minecraft.procgen.rooms.place import Item
+from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.rooms.solid_voxels import is_plain, modelled, solid_cells
 
 WOOD = (180, 140, 90)

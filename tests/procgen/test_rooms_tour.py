@@ -10,8 +10,7 @@ from world2minecraft.core.types import Camera, Layout, Opening
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.sensors.navmesh import BODY_M, HEAD_M, find_stands, is_inside
 from world2minecraft.procgen.sensors.shots import Shooting, room_shots
-from world2minecraft.procgen.sensors.tour import plan_tour
-from world2minecraft.procgen.sensors.walk import plan_walk
+from world2minecraft.procgen.sensors.trajectory import plan_tour, plan_walk
 from world2minecraft.rendering import cast_voxels, prepare_voxels
 
 CAMERA = Camera(160, 120, 131.2, 131.2, 80.0, 60.0)

@@ -17,8 +17,8 @@ from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.procgen.worlds import generate_world, write_worlds
-from world2minecraft.procgen.worlds.layouts import house_layouts
-from world2minecraft.procgen.worlds.reach import LEVEL, reached_floors
+from world2minecraft.procgen.worlds.stored import house_layouts
+from world2minecraft.procgen.worlds.world import LEVEL, reached_floors
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
 

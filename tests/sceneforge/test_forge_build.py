@@ -20,7 +20,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.cleanup.passes import mended
 from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge import block_preview as blocks

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.networks.export import Exported
+    from world2minecraft.networks.onnx_export import Exported
 
 EXAMPLES = """\
 w2m export RUN --out net.onnx                              the best weights of a run
@@ -36,7 +36,7 @@ def run(
     check_extra()
     from world2minecraft.networks.callbacks import WEIGHTS
     from world2minecraft.networks.checkpoints import load_weights, weights_config
-    from world2minecraft.networks.export import export_network
+    from world2minecraft.networks.onnx_export import export_network
     from world2minecraft.networks.training import network_of
 
     path = weights / WEIGHTS if weights.is_dir() else weights

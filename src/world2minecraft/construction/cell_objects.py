@@ -7,7 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.construction.colour_sources import Coats
-from world2minecraft.construction.fitted import LAID_ON, TIE, Design, standing, turned_middle
+from world2minecraft.construction.fitted_objects import (
+    LAID_ON,
+    TIE,
+    Design,
+    of_half_layers,
+    standing,
+    turned_middle,
+)
 from world2minecraft.construction.fitting import (
     Fit,
     Rules,
@@ -19,8 +26,7 @@ from world2minecraft.construction.fitting import (
     solve,
     thin_cells,
 )
-from world2minecraft.construction.fitting.masks import SUB
-from world2minecraft.construction.halves import of_half_layers
+from world2minecraft.construction.fitting.shapes import SUB
 from world2minecraft.construction.lattice import Lattice, face_shares
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.tops import top_cells
+from world2minecraft.construction.worktops import top_cells
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.geometry.morphology import dilate_faces

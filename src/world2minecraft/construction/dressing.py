@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.construction.fitted import Design
+from world2minecraft.construction.fitted_objects import Design
 from world2minecraft.construction.materials import WEIGHTS, materials_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters

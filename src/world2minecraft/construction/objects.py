@@ -33,7 +33,7 @@ from world2minecraft.construction.cell_objects import (
 )
 from world2minecraft.construction.colour_sources import Coats, Hues
 from world2minecraft.construction.dressing import Dresser
-from world2minecraft.construction.fitted import (
+from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     Design,
     design_of_parts,
@@ -41,21 +41,20 @@ from world2minecraft.construction.fitted import (
     one_block,
 )
 from world2minecraft.construction.fitting import without_loose
-from world2minecraft.construction.fitting.masks import SUB
+from world2minecraft.construction.fitting.shapes import SUB
 from world2minecraft.construction.lattice import volume_shares
 from world2minecraft.construction.lattice_fitting import best_place, best_step
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.parts import design_of
 from world2minecraft.construction.places import LAST, in_order, within_storeys
-from world2minecraft.construction.plates import Plates
 from world2minecraft.construction.seats import chair_paints
 from world2minecraft.construction.substitutes import known_by_shape
 from world2minecraft.construction.surfaces import block_colours
+from world2minecraft.construction.worktops import Plates
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.furniture import Idiom, template
-from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import Idiom, idiom, template
 from world2minecraft.furniture.solids import own_cells
 
 CELLS = "cells"

@@ -1,22 +1,111 @@
-"""Which blocks a room may be built of: palettes by name, or a file of one's own.
+"""Reading palette files, JSON or YAML, and telling what is wrong with one.
 
-A palette says which full blocks a surface of each class may be made of. A mod's says beside it
-which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
-(``meanings``). One that lists ``blocks`` is restricted to them (``restricting``). Files are read
-and checked by ``palette_files``; docs/palettes.md says how they are written.
+A file may begin from another palette (``extends``), so that one of a user needs two lines: a name
+and the blocks. Every block is looked up in the game's table, except those of other namespaces,
+which are of mods.
 """
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.construction.block_meanings import meanings_of
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError, one_line
+from world2minecraft.core.files import plain_yaml, read_bytes
+from world2minecraft.geometry.colour import srgb_to_oklab
+from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
+from world2minecraft.minecraft.block_states import BlockState, check_state, complete, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 if TYPE_CHECKING:
     from world2minecraft.construction.block_meanings import Meanings
-    from world2minecraft.construction.pieces import Piece
+
+# The furniture of a mod that a palette offers: blocks that stand for some templates.
+
+FILLS = ("one", "row", "floor", "box")
+# Where a block's facing looks, of a piece that looks east.
+FACINGS = {"front": "east", "back": "west", "left": "north", "right": "south"}
+LARGEST = 8  # Blocks a side of a piece made of several.
+JOINS = ("sides", "flags", "shape")
+
+
+class Cell(NamedTuple):
+    """One block of a piece of several: front-to-back, side, up from its first; its block."""
+
+    at: tuple[int, int, int]
+    id: str
+    properties: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What stands for some templates.
+
+    designs: the names of templates, or of families, that it stands for.
+    cells: its blocks; ``{wood}`` and ``{dye}`` in their names take the object's colour.
+    fill: ``one`` as they are; ``row`` across its width, ``floor`` over its footprint, ``box``
+        over all of it, each by the one cell.
+    facing: where ``facing`` looks: ``front``, ``back``, ``left`` or ``right``; none without it.
+    joins: how it joins its like: ``sides`` (north, east ... of tables), ``flags`` (left, right of
+        desks), ``shape`` (the shape of sofas); none for blocks that stand alone.
+    """
+
+    designs: tuple[str, ...]
+    cells: tuple[Cell, ...]
+    fill: str = "one"
+    facing: Literal["front", "back", "left", "right"] | None = None
+    joins: str | None = None
+
+
+def piece_of(raw: Any) -> Piece:
+    """Return the piece that an entry of a palette file holds.
+
+    Raises:
+        ValueError: it is none. UsageError: it names no block.
+    """
+    known = ("for", "id", "properties", "cells", "fill", "facing", "joins")
+    if not isinstance(raw, dict) or not set(raw) <= set(known) or "for" not in raw:
+        raise ValueError(f"furniture must have for and id, and may have {', '.join(known[2:])}")
+    designs = raw["for"]
+    if not (isinstance(designs, list) and designs and all(isinstance(d, str) for d in designs)):
+        raise ValueError(f"for must be a list of designs or families, not {designs!r}")
+    for key, choices in (("fill", FILLS), ("facing", tuple(FACINGS)), ("joins", JOINS)):
+        if key in raw and raw[key] not in choices:
+            raise ValueError(f"{key} must be one of {', '.join(choices)}, not {raw[key]!r}")
+    listed = raw.get("cells", [{"id": raw.get("id"), "properties": raw.get("properties", {})}])
+    cells = tuple(_cell(one) for one in listed)
+    if len(cells) > 1 and raw.get("fill", "one") != "one":
+        raise ValueError("a piece of several cells cannot fill a place")
+    return Piece(tuple(designs), cells, raw.get("fill", "one"), raw.get("facing"), raw.get("joins"))
+
+
+def _cell(raw: Any) -> Cell:
+    if not isinstance(raw, dict) or not isinstance(raw.get("id"), str):
+        raise ValueError(f"a piece of furniture needs an id, such as mod:oak_chair, not {raw!r}")
+    at = raw.get("at", [0, 0, 0])
+    good = isinstance(at, list) and len(at) == 3 and all(type(v) is int for v in at)
+    if not good or not all(0 <= v < LARGEST for v in at):
+        raise ValueError(f"at must be three whole numbers from 0 to {LARGEST - 1}, not {at!r}")
+    properties = raw.get("properties", {})
+    if not isinstance(properties, dict):
+        raise ValueError(f"properties must be keys with values, not {properties!r}")
+    texts = {str(key): str(value).lower() for key, value in properties.items()}
+    for kind in (WOODS[0], DYES[0]):
+        BlockState(raw["id"].replace("{wood}", kind).replace("{dye}", kind), texts)
+    return Cell((at[0], at[1], at[2]), raw["id"], tuple(sorted(texts.items())))
+
+
+# Which blocks a room may be built of: palettes by name, or a file of one's own.
+#
+# A palette says which full blocks a surface of each class may be made of. A mod's says beside it
+# which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
+# (``meanings``). One that lists ``blocks`` is restricted to them (``restricting``). Files are read
+# and checked by ``palette_files``; docs/palettes.md says how they are written.
 
 PALETTE_FILES = {
     "vanilla": "palette_vanilla.json",
@@ -59,7 +148,6 @@ def load_palette(name: str) -> Palette:
         UnknownNameError: no palette and no file has this name.
         InputError: the file is no palette; the message says what it lacks.
     """
-    from world2minecraft.construction.palette_files import read_palette, source_of  # noqa: PLC0415
 
     if name in PALETTE_FILES:
         return source_of(name)
@@ -74,3 +162,227 @@ def shipped(name: str) -> str:
     """Return the text of a palette file of the program."""
     source = files("world2minecraft.construction") / "data" / PALETTE_FILES[name]
     return source.read_text("utf-8")
+
+
+MAX_BYTES = 1 << 20
+MAX_NAMES = 4096
+KEYS = (
+    "name", "about", "extends", "blocks", "groups", "classes", "prefers", "defaults", "slabs",
+    "fences", "glass", "pane", "furniture", "reads",
+)  # fmt: skip
+PAINTED = (*STRUCTURE_CLASSES, *OBJECT_CLASSES)
+# What does not stand by itself for good, by parts of names: it falls, melts, grows, weathers.
+_PASSING = ("concrete_powder", "sand", "gravel", "ice", "coral", "leaves", "grass_block",
+            "mycelium", "podzol", "nylium", "farmland", "dragon_egg", "anvil", "tnt", "sponge",
+            "spawner", "command_block", "structure_block", "jigsaw", "_ore")  # fmt: skip
+_LASTING = ("sandstone", "packed_ice", "blue_ice")
+_WEATHERING = ("copper",)
+
+
+def read_palette(path: Path) -> Palette:
+    """Return the palette of a file.
+
+    Raises:
+        InputError: there is none, or it is no palette. LimitError: it is too large.
+    """
+    text = read_bytes(path, MAX_BYTES)
+    try:
+        raw = json.loads(text) if path.suffix == ".json" else plain_yaml(text)
+    except (ValueError, RecursionError) as error:
+        kind = "JSON" if path.suffix == ".json" else "YAML"
+        raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error
+    try:
+        return palette_of(raw)
+    except (ValueError, UsageError) as error:
+        raise InputError(path, str(error)) from error
+
+
+@cache
+def source_of(name: str) -> Palette:
+    """Return a palette of the program by its name."""
+    return palette_of(json.loads(shipped(name)))
+
+
+def palette_of(raw: Any) -> Palette:
+    """Return the palette that a palette file holds.
+
+    Raises:
+        ValueError: it is no palette. UnknownNameError: it names a block that the game lacks.
+    """
+    keys = _mapping("a palette", raw, KEYS)
+    name = keys.get("name")
+    if not isinstance(name, str) or not name:
+        raise ValueError("a palette needs a name, such as name: nordic")
+    whole = dict(keys)
+    if "extends" in keys or "blocks" in keys:
+        whole = _extended(keys)
+    only = _only(keys.get("blocks"))
+    groups = {
+        group: tuple(_cube(block) for block in _names(f"group {group}", blocks))
+        for group, blocks in _mapping("groups", whole.get("groups", {})).items()
+    }
+    chosen = _by_class("classes", whole.get("classes", {}), groups)
+    blocks = {number: _usable(number, chosen, only) for number in PAINTED}
+    prefers = _by_class("prefers", whole.get("prefers", {}), groups)
+    return Palette(
+        name=name,
+        blocks=blocks,
+        preferred={
+            number: frozenset(prefers.get(number, ())) & frozenset(blocks[number])
+            for number in PAINTED
+        },
+        defaults=_defaults(whole.get("defaults", {}), blocks),
+        slabs=_shapes("slabs", whole.get("slabs", {}), only),
+        fences=_shapes("fences", whole.get("fences", {}), only),
+        glass=_glass("glass", whole.get("glass"), only),
+        pane=_glass("pane", whole.get("pane"), only),
+        only=only,
+        furniture=tuple(piece_of(one) for one in _list("furniture", whole.get("furniture", []))),
+        meanings=meanings_of(whole["reads"]) if "reads" in whole else None,
+    )
+
+
+def _extended(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a palette over those of the one it begins from."""
+    base = keys.get("extends", "vanilla")
+    if base not in PALETTE_FILES:
+        raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, not {base!r}")
+    below = json.loads(shipped(base))
+    if "extends" in below:
+        below = _extended(below)
+    result = dict(below)
+    for key, value in keys.items():
+        both = isinstance(value, dict) and isinstance(below.get(key), dict)
+        result[key] = {**below[key], **value} if both else value
+    return result
+
+
+def _only(named: Any) -> frozenset[str] | None:
+    """Return the full names of the blocks that a palette is restricted to, None for all."""
+    if named is None:
+        return None
+    names = frozenset(_state(block).partition("[")[0] for block in _names("blocks", named))
+    if not any(is_full_cube(str(complete(parse_state(name)))) for name in names):
+        raise ValueError("blocks must name one full block at least, such as white_concrete")
+    return names
+
+
+def _usable(
+    number: int, chosen: Mapping[int, tuple[str, ...]], only: frozenset[str] | None
+) -> tuple[str, ...]:
+    """Return the full blocks of a class, those of ``only`` where there are such."""
+    usual = chosen.get(number, ())
+    if only is None:
+        if not usual:
+            raise ValueError(f"classes lacks {CLASS_NAMES[number]!r}; give it a list of groups")
+        return usual
+    kept = tuple(block for block in usual if block.partition("[")[0] in only)
+    if kept:
+        return kept
+    whole = (str(complete(parse_state(name))) for name in sorted(only))
+    return tuple(state for state in whole if is_full_cube(state) and "glass" not in state) or tuple(
+        state for state in map(str, sorted(only)) if is_full_cube(state)
+    )
+
+
+def _by_class(
+    what: str, raw: Any, groups: Mapping[str, tuple[str, ...]]
+) -> dict[int, tuple[str, ...]]:
+    """Return blocks by class number: each class names groups, or blocks themselves."""
+    result = {}
+    for name, listed in _mapping(what, raw).items():
+        if name not in CLASS_NAMES[1:]:
+            raise ValueError(f"{what} has no {name!r}; classes: {', '.join(CLASS_NAMES[1:])}")
+        result[CLASS_NAMES.index(name)] = tuple(
+            block
+            for group in _names(f"{what} of {name}", listed)
+            for block in (groups[group] if group in groups else (_cube(group),))
+        )
+    return result
+
+
+def _defaults(raw: Any, blocks: Mapping[int, tuple[str, ...]]) -> dict[int, str]:
+    """Return the block of each class where no colour is known: a usable one like the stated."""
+    stated = _by_class("defaults", {k: [v] for k, v in _mapping("defaults", raw).items()}, {})
+    result = {}
+    for number, choices in blocks.items():
+        wanted = stated.get(number, choices)[0]
+        offered = srgb_to_oklab(colours_of(choices))
+        nearest = nearest_oklab(srgb_to_oklab(colours_of([wanted])), offered)[0]
+        result[number] = wanted if wanted in choices else choices[int(nearest)]
+    return result
+
+
+def _shapes(what: str, raw: Any, only: frozenset[str] | None) -> dict[str, str]:
+    """Return slabs or fences by their full block, both of them usable."""
+    result = {}
+    for block, shape in _mapping(what, raw).items():
+        full, name = _cube(block), _state(shape)
+        if only is None or {full.partition("[")[0], name.partition("[")[0]} <= only:
+            result[full] = name.partition("[")[0] if ":" in str(shape) else str(shape)
+    return result
+
+
+def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
+    """Return what windows are of: as stated where it is usable, else a glass of ``only``."""
+    if stated is None:
+        raise ValueError(f"a palette needs {what}, such as {what}: glass")
+    state = str(complete(parse_state(_state(stated))))
+    if only is None or state.partition("[")[0] in only:
+        return state
+    kinds = ("glass_pane", "glass") if what == "pane" else ("glass",)
+    for kind in kinds:
+        for name in sorted(only):
+            if name.endswith(kind):
+                return str(complete(parse_state(name)))
+    raise ValueError("blocks must name a glass for windows, such as glass or white_stained_glass")
+
+
+def _cube(text: Any) -> str:
+    """Return a full block, complete, that stands by itself for good."""
+    state = str(complete(parse_state(_state(text))))
+    name = state.partition("[")[0].partition(":")[2]
+    if not is_full_cube(state):
+        raise ValueError(f"{text} is no full block; surfaces are made of full ones")
+    passing = any(part in name.split("_") or name.endswith(part) for part in _PASSING)
+    passing |= any(part in name for part in _WEATHERING) and not name.startswith("waxed_")
+    if passing and not any(part in name for part in _LASTING):
+        raise ValueError(f"{text} falls, melts, grows or changes by itself; choose another block")
+    return state
+
+
+def _state(text: Any) -> str:
+    """Return a block state as text, checked; blocks of other namespaces are taken as they are."""
+    if not isinstance(text, str):
+        raise ValueError(f"a block must be a name such as oak_planks, not {_short(text)}")
+    state = parse_state(text)
+    return str(check_state(state)) if state.name.startswith("minecraft:") else str(state)
+
+
+def _mapping(what: str, value: Any, known: Iterable[str] = ()) -> dict[str, Any]:
+    if not isinstance(value, dict) or not all(isinstance(key, str) for key in value):
+        raise ValueError(f"{what} must be keys with values, not {_short(value)}")
+    names = tuple(known)
+    strange = [key for key in value if names and key not in names]
+    if strange:
+        raise ValueError(f"{what} has no {strange[0]!r}; it has: {', '.join(names)}")
+    return value
+
+
+def _list(what: str, value: Any) -> list[Any]:
+    if not isinstance(value, list) or len(value) > MAX_NAMES:
+        raise ValueError(f"{what} must be a list of {MAX_NAMES} at most, not {_short(value)}")
+    return value
+
+
+def _names(what: str, value: Any) -> list[str]:
+    listed = _list(what, value)
+    wrong = [one for one in listed if not isinstance(one, str)]
+    if wrong or not listed:
+        raise ValueError(f"{what} must be a list of names, not {_short(wrong[0] if wrong else [])}")
+    return listed
+
+
+def _short(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."

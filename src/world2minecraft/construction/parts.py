@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.halves import of_half_layers
+from world2minecraft.construction.fitted_objects import of_half_layers
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid

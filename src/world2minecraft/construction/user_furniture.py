@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.construction.block_designs import idiom_box
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.pieces import FACINGS, Piece
+from world2minecraft.construction.palettes import FACINGS, Piece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, template

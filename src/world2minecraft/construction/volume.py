@@ -6,17 +6,15 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import cell_colours, one_paint, seen_colours
-from world2minecraft.construction.connect import settle
 from world2minecraft.construction.display.builder import DisplayBuilder
+from world2minecraft.construction.finishing import restrict, settle
 from world2minecraft.construction.floating_blocks import carry_floaters, close_gaps
-from world2minecraft.construction.lamps import hang_lamps
 from world2minecraft.construction.lattice import is_exact, lattice_over, snapped_corner_m
-from world2minecraft.construction.lights import put_lights
+from world2minecraft.construction.lighting import hang_lamps, put_lights
 from world2minecraft.construction.objects import ObjectBuilder
 from world2minecraft.construction.palettes import Palette, load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.plaque import SIGN, WALL_SIGN, with_plaque
-from world2minecraft.construction.restricting import restrict
 from world2minecraft.construction.shell import put_edge, put_shell
 from world2minecraft.construction.storeys import with_storeys
 from world2minecraft.construction.structure import build_shell

@@ -9,11 +9,97 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.halves import FULL, LOWER
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.fitted_objects import FULL, LOWER, Design
 from world2minecraft.construction.lattice import Lattice, overlaps
-from world2minecraft.construction.tops import step_cells
-from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.geometry.morphology import binary_closing, dilate
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.colour import srgb_to_oklab
+from world2minecraft.geometry.morphology import (
+    binary_closing,
+    dilate,
+    dilate_within,
+    nearest_set_cells,
+)
+from world2minecraft.minecraft.block_colours import colours_of
+from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.minecraft.collision_shapes import is_full_cube
+
+# Tops of objects that gave no depth: glossy counters and glass tables, closed where space shows.
+#
+# A ray that crosses the space above a counter and meets nothing measurable in it leaves free cells
+# above unseen ones. Such a step, level with the rim of an object and joined to it, is its top.
+
+RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
+REACH_M = 0.7  # How far from the rim: the depth of a worktop.
+LEAST_RIM_M = 0.3  # Lower things are no furniture with a top.
+
+
+def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return unseen cells that close the top of an object, and cells that look like them.
+
+    Args:
+        grid: the room; its free cells show where the top must be.
+        cells: int [M, 3], the object's own.
+
+    Returns:
+        int [N, 3], the unseen cells; int [N, 3], for each the nearest cell of the object that
+        was seen from above.
+    """
+    low, box = _box(grid, cells)
+    steps, free = _steps(grid, box)
+    body, joined = _joined_to(grid, cells, low, steps)
+    upper = body & np.concatenate([free[:, :, 1:], np.zeros_like(free[:, :, :1])], axis=2)
+    flat = upper & ~np.concatenate([np.zeros_like(body[:, :, :1]), body[:, :, :-1]], axis=2)
+    upper = flat if flat.any() else upper  # The edge over a front mixes both their colours.
+    if not joined.any() or not upper.any():
+        return np.zeros((0, 3), int), np.zeros((0, 3), int)
+    nearest, _ = nearest_set_cells(upper)
+    return np.argwhere(joined) + low, np.stack([axis[joined] for axis in nearest], 1) + low
+
+
+def step_cells(grid: OccupancyGrid, cells: np.ndarray) -> np.ndarray:
+    """Return the unseen cells, int [N, 3], that close the top of an object with cells [M, 3]."""
+    low, box = _box(grid, cells)
+    steps, _ = _steps(grid, box)
+    return np.argwhere(_joined_to(grid, cells, low, steps)[1]) + low
+
+
+def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slice, ...]]:
+    """Return the box around an object in which its top may lie, and its low corner, int [3]."""
+    reach = max(1, round(REACH_M / grid.voxel_m))
+    low = np.maximum(cells.min(0) - [reach, reach, 1], 0)
+    high = np.minimum(cells.max(0) + np.array([reach + 1, reach + 1, 3]), grid.shape)
+    return low, tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+
+
+def _joined_to(
+    grid: OccupancyGrid, cells: np.ndarray, low: np.ndarray, steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return an object's own tall cells and the steps that join it, bool in the box of steps."""
+    reach = max(1, round(REACH_M / grid.voxel_m))
+    body = np.zeros(steps.shape, bool)
+    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
+    body[tuple((cells[tall] - low).T)] = True
+    return body, _joined(steps, dilate(body, (0, 0, RIM_LAYERS)), reach)
+
+
+def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unseen cells, bool, that lie right under seen free space, and that space."""
+    unseen = grid.source[box] == UNSEEN
+    free = (grid.labels[box] == 0) & ~unseen
+    steps = np.zeros_like(unseen)
+    steps[:, :, :-1] = unseen[:, :, :-1] & free[:, :, 1:]
+    return steps, free
+
+
+def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
+    """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
+    flat = np.zeros((3, 3, 3), bool)
+    flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
+    return dilate_within(rim, steps | rim, flat, reach) & steps & ~rim
+
 
 LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
 LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.
@@ -131,3 +217,76 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
     plan = np.asarray(own[:, :, level : level + 3].any(2) & ~pillar)
     plan[steps[:, 0], steps[:, 1]] = True
     return binary_closing(plan, (GAP_CELLS, GAP_CELLS))
+
+
+# Glossy worktops on the canvas, before what carries them is set.
+
+PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
+
+
+class Plates:
+    """The worktops of a room by the number of their object."""
+
+    def __init__(self, canvas: Canvas, palette: Palette):
+        self.canvas, self.palette, self.lattice = canvas, palette, canvas.lattice
+        self.worktops: dict[int, Worktop] = {}
+
+    def put_worktops(self, grid: OccupancyGrid, colours: np.ndarray, coloured: np.ndarray) -> None:
+        """Set the glossy worktops; what else their objects are made of comes under and on them."""
+        for number in np.unique(grid.instance[grid.labels == SemanticClass.FURN]):
+            cells = np.argwhere((grid.instance == number) & (grid.labels == SemanticClass.FURN))
+            top = find_worktop(grid, cells, colours, coloured, self.lattice)
+            if number and top is not None:
+                self.worktops[int(number)] = top
+        self.worktops = joined(self.worktops)
+        if self.lattice.blocks_per_metre < PLATES_FROM:
+            return
+        for number, top in self.worktops.items():
+            self._put_plate(top, top.columns, number)
+
+    def _put_plate(self, top: Worktop, columns: np.ndarray, number: int) -> None:
+        """Set the plate of a worktop over columns, bool [X, Y], where nothing stands."""
+        mask = np.zeros(self.lattice.shape, bool)
+        mask[1:-1, 1:-1, top.layer] = columns[1:-1, 1:-1]
+        mask &= self.canvas.states == 0
+        slabs = self.palette.slabs if top.half != FULL else {}  # A palette of few blocks has none.
+        choices = list(slabs or self.palette.blocks[SemanticClass.FURN])
+        apart = np.linalg.norm(srgb_to_oklab(colours_of(choices)) - top.colour, axis=1)
+        block = choices[int(apart.argmin())]
+        state = f"{slabs[block]}[type=bottom]" if slabs else block
+        self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
+
+    def put_carpets(self) -> None:
+        """Lay carpets for the worktops of a scale at which a plate would be all of a counter.
+
+        So its front keeps its own colour, and its top shows the worktop's.
+        """
+        if self.lattice.blocks_per_metre >= PLATES_FROM:
+            return
+        carpets = [block for block in known_blocks() if block.endswith("_carpet")]
+        carpets = [block for block in carpets if self.palette.allows(block)]
+        if not carpets:
+            return
+        for number, top in self.worktops.items():
+            full = np.array([is_full_cube(state) for state in self.canvas.palette])  # It grows.
+            own = (self.canvas.instance == number) & full[self.canvas.states]
+            under = own[:, :, top.layer] & top.columns
+            free = self.canvas.states[:, :, top.layer + 1] == 0
+            if (under & free).any():
+                apart = np.linalg.norm(srgb_to_oklab(colours_of(carpets)) - top.colour, axis=1)
+                mask = np.zeros(self.lattice.shape, bool)
+                mask[:, :, top.layer + 1] = under & free
+                state = carpets[int(apart.argmin())]
+                self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
+
+    def plate_over(self, design: Design, number: int) -> None:
+        """Let an object's worktop cover one of its designs that reaches up to it."""
+        top = self.worktops.get(number)
+        if top is None or self.lattice.blocks_per_metre < PLATES_FROM:
+            return
+        level = top.layer - int(design.low[2])
+        if level == design.numbers.shape[2] - 1:
+            columns = np.zeros(self.lattice.shape[:2], bool)
+            for x, y in np.argwhere(design.filled[:, :, level]) + design.low[:2]:
+                columns[x, y] = True
+            self._put_plate(top, columns, number)

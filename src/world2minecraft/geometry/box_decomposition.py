@@ -1,9 +1,15 @@
-"""Few boxes for many cells: exact partitions first, then coarser ones within a bound.
+"""Decompose labelled grids into few axis-aligned boxes: exactly, approximately, or overlapping.
 
-A shape comes as labels on a grid, 0 where there is nothing; it goes out as boxes of one label,
-``[label, x0, y0, z0, x1, y1, z1]`` with the last corner excluded. The boxes of a partition never
-share a cell, and together they are the shape. The fewest boxes are hard to find, so the shape is
-swept in 48 ways (six orders of growth, from eight corners) and the best sweep wins.
+A shape is labels on a grid, 0 where there is nothing; a box is a row
+``[label, x0, y0, z0, x1, y1, z1]`` with the last corner excluded.
+
+- ``partition_boxes``: disjoint boxes whose union is the shape. The fewest boxes are hard to find,
+  so the shape is swept in 48 ways (six orders of growth, from eight corners); the best sweep wins.
+- ``simplify_boxes``: fewer disjoint boxes within a bound on the IoU. Each step joins two
+  neighbouring boxes into the box around both, or drops a small one: whichever changes fewest cells
+  for each box that it saves.
+- ``decompose_boxes``: boxes of one label may overlap where a partition would need many more. A disc
+  of cells falls into a box for each step of its rim; overlapping boxes take two steps each.
 """
 
 from itertools import permutations, product
@@ -13,6 +19,14 @@ import numpy as np
 from world2minecraft.core.jit import njit
 
 MAX_PARTITION_SEARCH_CELLS = 4_000_000  # Above it one sweep is made: 48 would take seconds.
+REACH = 2  # Cells between boxes that may be joined; a box over a wider gap changes the shape.
+MAX_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.
+RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label.
+MAX_COVER_SHARE = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
+MIN_COVER_BOXES = 8  # With fewer boxes a partition is always taken: no boxes meet there.
+MAX_COVER_SEARCH_CELLS = 1_000_000
+# The orders in which a box grows from a cell, along both ways of each axis in turn.
+_ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
 
 
 def partition_boxes(labels: np.ndarray) -> np.ndarray:
@@ -142,16 +156,6 @@ def rasterize_boxes(boxes: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 def _sorted(boxes: np.ndarray) -> np.ndarray:
     return boxes[np.lexsort(boxes.T[::-1])]
-
-
-# Fewer boxes than a shape has exactly, as long as the shape stays the same but for a little.
-#
-# Each step joins two boxes that lie near each other into the box around both, or drops a small
-# one: whichever changes fewest cells for each box that it saves. Boxes never come to overlap.
-
-REACH = 2  # Cells between boxes that may be joined; a box over a wider gap changes the shape.
-MAX_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.
-RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label.
 
 
 def simplify_boxes(
@@ -299,19 +303,6 @@ def _join(boxes, alive, first, second):  # pragma: no cover
             alive[n] = False
     boxes[first] = box
     alive[first] = True
-
-
-# Few boxes for round shapes: boxes may overlap where a partition would need many more.
-#
-# A disc of cells falls into a box for each step of its rim; boxes that overlap take two steps each.
-
-MAX_COVER_SHARE = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
-MIN_COVER_BOXES = (
-    8  # With fewer boxes a partition is always taken: it needs no care where boxes meet.
-)
-MAX_COVER_SEARCH_CELLS = 1_000_000
-# The orders in which a box grows from a cell, along both ways of each axis in turn.
-_ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
 
 
 def decompose_boxes(labels: np.ndarray) -> np.ndarray:

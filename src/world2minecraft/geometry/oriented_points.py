@@ -29,7 +29,7 @@ class OrientedPoints:
     owner: np.ndarray
     names: tuple[str, ...] = ()
 
-    def turned(self, transform: np.ndarray) -> "Surface":
+    def transformed(self, transform: np.ndarray) -> "Surface":
         """Return the surface in another frame; ``transform`` is rigid."""
         return replace(
             self,
@@ -38,7 +38,7 @@ class OrientedPoints:
             cameras=transform @ self.cameras,
         )
 
-    def chosen(self, which: np.ndarray) -> "Surface":
+    def subset(self, which: np.ndarray) -> "Surface":
         """Return the surface of some of the points, by a mask or by indices."""
         return replace(
             self,
@@ -68,7 +68,7 @@ def collect_oriented_points(
         depth_m = view.depth_m
         if view.trust is not None:
             depth_m = np.where(view.trust >= MIN_TRUST, depth_m, np.float32(0))
-        found = extract_patches(depth_m, view.depth_camera).thinned(most_each)
+        found = extract_patches(depth_m, view.depth_camera).subsample(most_each)
         pose = view.depth_camera_to_scan
         points.append(_moved(found.points_m, pose[:3, :3], pose[:3, 3]))
         normals.append(_moved(found.normals, pose[:3, :3], np.zeros(3)))

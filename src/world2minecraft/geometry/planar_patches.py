@@ -36,7 +36,7 @@ class Patches:
     normals: np.ndarray
     sigma_m: np.ndarray
 
-    def thinned(self, most: int) -> "Patches":
+    def subsample(self, most: int) -> "Patches":
         """Return at most ``most`` of the patches, evenly spread over the image."""
         count = len(self.sigma_m)
         if count <= most:

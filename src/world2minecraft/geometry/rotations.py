@@ -1,13 +1,11 @@
-"""Rotations as phones and data sets state them: quaternions x, y, z, w."""
+"""Rotation matrices from rotation vectors, and from quaternions x, y, z, w.
+
+Rotation vectors are not converted by scipy: its last bits differ, and with them the poses of
+generated captures, which are the same bytes for the same seed from one version to the next.
+"""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-
-# Rotations by their vector: about it, by its length in radians.
-
-# Not by scipy's Rotation: its last bits differ, and with them the poses that generated captures
-# state, which are the same bytes for the same seed from one version to the next.
-
 
 MIN_ANGLE_RAD = 1e-15  # Under it an axis has no direction.
 

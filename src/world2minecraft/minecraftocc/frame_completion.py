@@ -15,11 +15,14 @@ from world2minecraft.core.errors import CaptureError, DamagedFileError, InputErr
 from world2minecraft.core.files import array_names, read_npz
 from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
 from world2minecraft.core.types.checks import transform
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
-from world2minecraft.minecraftocc.formats.depth_codes import metres_of
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, metres_of
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
-from world2minecraft.reconstruction.fusion import CleanParameters, EvidenceMap, remove_floaters
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import (
+    CleanParameters,
+    EvidenceMap,
+    read_out,
+    remove_floaters,
+)
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 from world2minecraft.reconstruction.semantics.completion import CompletionModel, likeliest
 from world2minecraft.reconstruction.semantics.completion_channels import sight_of

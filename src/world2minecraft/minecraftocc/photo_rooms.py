@@ -19,7 +19,7 @@ from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
 from world2minecraft.minecraftocc.labels.labels import label_image
 from world2minecraft.minecraftocc.labels.region import region_in
-from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
+from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.rooms.kinds import KINDS
 from world2minecraft.procgen.sensors.exposure import (
@@ -28,7 +28,7 @@ from world2minecraft.procgen.sensors.exposure import (
     exposed,
     prepare_textured,
 )
-from world2minecraft.procgen.sensors.tour import plan_tour
+from world2minecraft.procgen.sensors.trajectory import plan_tour
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
 FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
@@ -80,7 +80,7 @@ def photo_samples(plan: PhotoRooms) -> Iterator[OccSample]:
         yield from _of_room(plan, number, room, "test" if is_test else "train")
 
 
-def room_voxels(room: Room, voxel_m: float = USUAL_VOXEL_M) -> SceneVoxels:
+def room_voxels(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
     """Return a room's cells, by the rule that made NYUv2's 8 cm of 2 cm; they know no instances.
 
     Args:

@@ -6,20 +6,241 @@ then the PNG's texts, then the name; each view says where its pose came from.
 """
 
 import re
-from collections.abc import Callable
+import struct
+import zlib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path, PurePosixPath
-from typing import Literal
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.name_patterns import NEEDED, USUAL, NamePattern
-from world2minecraft.minecraftocc.png_text import PngFacts, read_png_facts
 from world2minecraft.rendering.views.cameras import GamePose, camera_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour
+
+# The size and the texts of a PNG, read chunk by chunk without its pixels, everything bounded.
+
+# Not by Pillow: its PngInfo only writes texts. Its reader keeps the last of several texts with one
+# keyword, where a pose told twice must be refused, unpacks all pixels to find texts behind them,
+# and takes a text that does not unpack for an empty one.
+
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+MOST_CHUNKS = 20_000
+MOST_TEXT, MOST_TEXTS = 1 << 16, 64  # Bytes of one text, unpacked; texts of a file.
+MOST_SIDE_PX = 20_000
+
+
+class PngFacts(NamedTuple):
+    """What a PNG says before its pixels are looked at."""
+
+    width_px: int
+    height_px: int
+    texts: tuple[tuple[str, str], ...]  # keyword and text, in the order of the file
+
+
+def read_png_facts(path: str | Path) -> PngFacts:
+    """Read the size and the texts of a PNG.
+
+    Raises:
+        InputError: it cannot be opened. DamagedFileError: it is no PNG, or is cut short.
+        LimitError: it holds more or longer texts than any screenshot.
+    """
+    source = Path(path)
+    try:
+        with source.open("rb") as stream:
+            return _facts(stream, source)
+    except OSError as error:
+        raise InputError(source, f"cannot be read: {error.strerror or error}") from error
+
+
+def _facts(stream: BinaryIO, source: Path) -> PngFacts:
+    if stream.read(8) != SIGNATURE:
+        raise DamagedFileError(source, "is no PNG")
+    length, kind = _head(stream, source)
+    if kind != b"IHDR" or length != 13:
+        raise DamagedFileError(source, "is no PNG: it does not begin with its size")
+    width, height = struct.unpack(">II", _body(stream, length, kind, source)[:8])
+    if not (0 < width <= MOST_SIDE_PX and 0 < height <= MOST_SIDE_PX):
+        raise DamagedFileError(source, f"says a size of {width}x{height} pixels")
+    texts: list[tuple[str, str]] = []
+    for _ in range(MOST_CHUNKS):
+        length, kind = _head(stream, source)
+        if kind == b"IEND":
+            return PngFacts(width, height, tuple(texts))
+        if kind not in (b"tEXt", b"zTXt", b"iTXt"):
+            stream.seek(length + 4, 1)
+            continue
+        if length > MOST_TEXT or len(texts) == MOST_TEXTS:
+            raise LimitError(source, f"holds more than {MOST_TEXTS} texts of {MOST_TEXT} bytes")
+        texts.append(_text(kind, _body(stream, length, kind, source), source))
+    raise LimitError(source, f"has more than {MOST_CHUNKS} chunks")
+
+
+def _head(stream: BinaryIO, source: Path) -> tuple[int, bytes]:
+    head = stream.read(8)
+    if len(head) < 8:
+        raise DamagedFileError(source, "is cut short")
+    length, kind = struct.unpack(">I4s", head)
+    if length > 1 << 31:
+        raise DamagedFileError(source, "is no PNG: a chunk's length is out of range")
+    return length, kind
+
+
+def _body(stream: BinaryIO, length: int, kind: bytes, source: Path) -> bytes:
+    data = stream.read(length + 4)
+    if len(data) < length + 4:
+        raise DamagedFileError(source, "is cut short")
+    if zlib.crc32(kind + data[:length]) != struct.unpack(">I", data[length:])[0]:
+        raise DamagedFileError(source, f"is damaged: the checksum of its {kind.decode()} is wrong")
+    return data[:length]
+
+
+def _text(kind: bytes, data: bytes, source: Path) -> tuple[str, str]:
+    keyword, _, rest = data.partition(b"\0")
+    encoding = "latin-1"
+    if kind == b"zTXt":
+        rest = _unpacked(rest[1:], source)
+    elif kind == b"iTXt":
+        packed, encoding = rest[:1] == b"\1", "utf-8"
+        rest = rest[2:].partition(b"\0")[2].partition(b"\0")[2]  # Behind language and translation.
+        rest = _unpacked(rest, source) if packed else rest
+    return keyword.decode("latin-1"), rest.decode(encoding, "replace")
+
+
+def _unpacked(data: bytes, source: Path) -> bytes:
+    unpacker = zlib.decompressobj()
+    try:
+        text = unpacker.decompress(data, MOST_TEXT)
+    except zlib.error as error:
+        raise DamagedFileError(source, "is damaged: a packed text does not unpack") from error
+    if unpacker.unconsumed_tail:
+        raise LimitError(source, f"holds a text of more than {MOST_TEXT} bytes")
+    return text
+
+
+# Poses in file names: a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, or a plain regex.
+#
+# A template is safe whatever the names are. A regex has the named groups x, y, z, yaw and pitch; one
+# that could take very long on some name (nested repeats, many wild ones) is refused.
+
+NEEDED = ("x", "y", "z", "yaw", "pitch")
+USUAL = ("*{x}_{y}_{z}_{yaw}_{pitch}", "*{x},{y},{z},{yaw},{pitch}", "*{x} {y} {z} {yaw} {pitch}")
+MOST_NAME = 255  # Letters, as most file systems have it.
+MOST_PATTERN = 400
+MOST_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
+NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,9})?"
+_WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # Behind anything a number begins, and does not go on.
+_EXAMPLE = "{x}_{y}_{z}_{yaw}_{pitch}"
+
+
+class NamePattern:
+    """What reads a pose out of a file's name, without its suffix."""
+
+    def __init__(self, text: str):
+        """Check a pattern. Raises UsageError."""
+        self.text = text
+        if len(text) > MOST_PATTERN:
+            raise UsageError(f"a pattern has up to {MOST_PATTERN} letters, not {len(text)}")
+        self._compiled = re.compile(_regex(text) if "(?P<" in text else _of_template(text))
+        missing = [name for name in NEEDED if name not in self._compiled.groupindex]
+        if missing:
+            raise UsageError(
+                f"pattern {text!r} has no {missing[0]}; it needs all of {_EXAMPLE}, in any order"
+            )
+
+    def read(self, stem: str) -> dict[str, float] | None:
+        """Return x, y, z, yaw and pitch of a name; None where it does not match."""
+        if len(stem) > MOST_NAME or (found := self._compiled.fullmatch(stem)) is None:
+            return None
+        try:
+            return {name: float(found[name]) for name in NEEDED}
+        except (TypeError, ValueError):  # A group that took part in no match, or no number.
+            return None
+
+
+def _of_template(text: str) -> str:
+    """Return the regex of a template. Raises UsageError."""
+    if text.count("*") > MOST_WILD:
+        raise UsageError(f"pattern {text!r} has more than {MOST_WILD} *")
+    parts, known, before = [], set(), ""
+    for part in filter(None, re.split(r"(\{[^{}]*\}|\*)", text)):
+        if part == "*":
+            parts.append(".*?")
+        elif part.startswith("{") and part.endswith("}"):
+            name = part[1:-1]
+            if name not in NEEDED:
+                raise UsageError(f"pattern {text!r} has {part}; it knows {', '.join(NEEDED)} and *")
+            if name in known:
+                raise UsageError(f"pattern {text!r} has {part} twice")
+            if before.startswith("{"):
+                raise UsageError(f"pattern {text!r} needs something between two numbers")
+            known.add(name)
+            parts.append(_WHOLE * (before == "*") + f"(?P<{name}>{NUMBER})")
+        else:
+            parts.append(re.escape(part))
+        before = part
+    return "".join(parts)
+
+
+def _regex(text: str) -> str:
+    """Return a regex as it is, when it is quick on every name. Raises UsageError."""
+    try:
+        tree = import_module("re._parser").parse(text)
+    except (re.error, RecursionError, OverflowError) as error:
+        raise UsageError(f"pattern {text!r} is no regex ({error}); try {_EXAMPLE}") from error
+    found = list(_items(tree))
+    names = [name for name, _, _ in found]
+    if any("ASSERT" in name or name.startswith(("GROUPREF", "BRANCH")) for name in names):
+        raise UsageError(f"pattern {text!r} looks ahead or back, or branches; try {_EXAMPLE}")
+    if any(inside for name, inside, _ in found if name == "REPEAT"):
+        raise UsageError(f"pattern {text!r} has a repeat within a repeat; try {_EXAMPLE}")
+    wild = sum(is_wild for name, _, is_wild in found if name == "REPEAT")
+    if wild > MOST_WILD:
+        raise UsageError(f"pattern {text!r} has {wild} repeats of anything; try {_EXAMPLE}")
+    return text
+
+
+def _items(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, bool]]:
+    """Give what a parsed regex is made of: its name, whether it is repeated, whether it is wild."""
+    for code, value in tree:
+        name = str(code)
+        if name.endswith("_REPEAT"):
+            _, most, body = value
+            is_many = int(most) > 1
+            if is_many:
+                yield "REPEAT", inside, _is_wild(body)
+            yield from _items(body, inside or is_many)
+        elif name == "SUBPATTERN":
+            yield from _items(value[-1], inside)
+        elif name == "ATOMIC_GROUP":
+            yield from _items(value, inside)
+        else:
+            yield name, inside, False
+
+
+def _is_wild(body: Any) -> bool:
+    """Whether what is repeated takes more than figures, dots and signs."""
+    if len(body) != 1:
+        return True
+    code, value = body[0]
+    if str(code) == "LITERAL":
+        return False
+    return str(code) != "IN" or not all(_is_numeric(str(kind), told) for kind, told in value)
+
+
+def _is_numeric(kind: str, told: Any) -> bool:
+    """Whether a part of a set is of figures, dots or signs."""
+    if kind == "LITERAL":
+        return chr(told) in "+-.0123456789"
+    if kind == "RANGE":
+        return ord("0") <= told[0] and told[1] <= ord("9")
+    return kind == "CATEGORY" and str(told) == "CATEGORY_DIGIT"
+
 
 At = Literal["feet", "eye"]
 SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")

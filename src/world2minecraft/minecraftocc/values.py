@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.core.types import Camera, checks
-from world2minecraft.geometry.view_region import LabelRegion
+from world2minecraft.geometry.view_region import DEFAULT_SHAPE, DEFAULT_VOXEL_M, LabelRegion
 
 __all__ = [
-    "USUAL_SHAPE",
-    "USUAL_VOXEL_M",
+    "DEFAULT_SHAPE",
+    "DEFAULT_VOXEL_M",
     "FineClass",
     "LabelRegion",
     "OccLabels",

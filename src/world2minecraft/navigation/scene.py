@@ -36,7 +36,7 @@ from world2minecraft.minecraft.physics.walk_graph import (
     solid_of,
     walk_graph,
 )
-from world2minecraft.minecraftocc.source import SceneSource, open_scene_source
+from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
 from world2minecraft.minecraftocc.tours.values import TourRule
 from world2minecraft.navigation.landmarks import Landmark, landmarks_of

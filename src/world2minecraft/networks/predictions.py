@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import array_names, read_npy, read_npz
-from world2minecraft.minecraftocc.formats.unpickling import read_pickle
+from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.networks.config import GRIDS, Grid
 
 # How an array's axes lie: which of them are our x, y, z.

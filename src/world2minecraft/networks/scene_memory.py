@@ -17,12 +17,11 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import count_scene
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
-from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import GRIDS, RunConfig
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import known_cells
-from world2minecraft.networks.models.embodied import Embodied
-from world2minecraft.networks.models.stream import SceneStream
+from world2minecraft.networks.models.embodied import Embodied, SceneStream
 from world2minecraft.networks.scene_voting import SceneFrame, assembled, lattice_of
 from world2minecraft.networks.scoring import MEMORY, of_scenes
 

@@ -41,9 +41,8 @@ from world2minecraft.networks.checkpoints import (
     write_weights,
 )
 from world2minecraft.networks.config import OWN_FRAMES, RunConfig, read_config, write_config
-from world2minecraft.networks.data.batches import drawn_batches
+from world2minecraft.networks.data.batches import drawn_batches, plan_draws
 from world2minecraft.networks.data.class_weights import class_weights
-from world2minecraft.networks.data.mixing import plan_draws
 from world2minecraft.networks.data.opening import CachePlace, RunData, open_run_data
 from world2minecraft.networks.data.splits import evenly
 from world2minecraft.networks.lightning_module import Steps

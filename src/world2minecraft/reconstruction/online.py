@@ -28,11 +28,11 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.reconstruction.fusion import EvidenceMap, remove_floaters
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import corrected
 from world2minecraft.reconstruction.registration import register
 from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.reconstruction.stages import labelled

@@ -35,7 +35,7 @@ from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import notes_of, predictor
 from world2minecraft.reconstruction.opening import open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import corrected
 from world2minecraft.reconstruction.registration import register, told
 from world2minecraft.reconstruction.resume import kept_before, with_kept_files
 from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture

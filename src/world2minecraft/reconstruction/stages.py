@@ -34,7 +34,7 @@ from world2minecraft.reconstruction.fusion import (
     confidence_table,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval import furnish

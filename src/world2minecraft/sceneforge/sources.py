@@ -20,7 +20,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
-from world2minecraft.editing.scene import scene_objects as objects_of
+from world2minecraft.editing.scene import objects_of
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_objects, read_placements
 from world2minecraft.formats.occupancy_files import (

@@ -12,10 +12,10 @@ from world2minecraft.capture.stereo import network_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import DepthMap, Photo, Scan
 from world2minecraft.reconstruction.fusion import FuseParameters, fuse_views
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.registration import RegisterParameters, register
-from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import corrected
 
 ROOM = BoxRoom((7.0, 5.5, 2.7))  # So large that 5 % of a wall's distance is more than a voxel.
 OFF = 0.05  # Up to so much, as monocular networks are known for.

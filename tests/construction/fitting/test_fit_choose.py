@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.construction.fitting.selection import choose, gains_of
-from world2minecraft.construction.fitting.settle import with_corners
 from world2minecraft.construction.fitting.shapes import CALM, SIDES, shape_set
+from world2minecraft.construction.fitting.stabilization import with_corners
 from world2minecraft.minecraft.rules.connections import connected
 
 CALM_SET = shape_set(CALM)

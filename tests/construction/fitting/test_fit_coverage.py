@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.fitting.coverage import (
+from world2minecraft.construction.fitting.problem import (
     as_blocks,
     covered,
     covered_blocks,
@@ -12,7 +12,7 @@ from world2minecraft.construction.fitting.coverage import (
     from_blocks,
     thin_cells,
 )
-from world2minecraft.construction.fitting.masks import SUB
+from world2minecraft.construction.fitting.shapes import SUB
 
 SEEDS = st.integers(0, 10_000)
 

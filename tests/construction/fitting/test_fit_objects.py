@@ -19,8 +19,7 @@ from world2minecraft.construction.fitting import (
     shape_set,
     solve,
 )
-from world2minecraft.construction.fitting.finish import without_crumbs
-from world2minecraft.construction.fitting.joins import parts_of_shapes
+from world2minecraft.construction.fitting.stabilization import parts_of_shapes, without_crumbs
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.rules.connections import connected

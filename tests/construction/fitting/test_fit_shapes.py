@@ -3,8 +3,16 @@
 import numpy as np
 import pytest
 
-from world2minecraft.construction.fitting.masks import PROBES, SUB, faces_of, mask_of, solid_of
-from world2minecraft.construction.fitting.shapes import CALM, Shape, shape_set
+from world2minecraft.construction.fitting.shapes import (
+    CALM,
+    PROBES,
+    SUB,
+    Shape,
+    faces_of,
+    mask_of,
+    shape_set,
+    solid_of,
+)
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 

@@ -11,7 +11,7 @@ from world2minecraft.core.types import (
     Placement,
 )
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene import scene_objects as objects_of
+from world2minecraft.editing.scene import objects_of
 
 SHAPE = (7, 6, 5)
 

@@ -16,7 +16,7 @@ from world2minecraft.evaluation.scoring.stage_ablation import (
 )
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import reconstruct
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 
 GOLDEN = Path(__file__).with_name("golden.json")
 EVERY = 4  # Ticks between the places written down.

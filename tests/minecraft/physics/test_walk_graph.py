@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.minecraft.physics.shortest_paths import (
     distances_m,

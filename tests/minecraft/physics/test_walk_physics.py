@@ -20,7 +20,7 @@ from world2minecraft.minecraft.physics import (
     eye_height,
     standing_place,
 )
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.minecraft.physics.collisions import free_way, overlapping
 
 PLAIN = BoxWorld([[-1e4, -1, -1e4, 1e4, 0, 1e4]])

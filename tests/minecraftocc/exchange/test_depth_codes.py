@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.minecraftocc.formats.depth_codes import depth_png, metres_of
+from world2minecraft.minecraftocc.formats.cameras import depth_png, metres_of
 
 DEPTH_M = np.array([[0, 0.5, 1.2345], [8.191, 8.192, np.inf]], np.float32)
 

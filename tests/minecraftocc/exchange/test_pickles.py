@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
-from world2minecraft.minecraftocc.formats.unpickling import parse_pickle, read_pickle
+from world2minecraft.minecraftocc.formats.safe_pickle import parse_pickle, pickle_bytes, read_pickle
 
 VALUES = {
     "name": "scene0000_00/00012 é",

@@ -16,14 +16,16 @@ from PIL import Image
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import npz_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.store.pictures import depth_of, depth_png, picture_bytes
 from world2minecraft.minecraftocc.store.sample_files import (
     FineTable,
     SampleFiles,
+    depth_of,
+    depth_png,
     pack_sample,
+    picture_bytes,
     unpack_sample,
 )
-from world2minecraft.minecraftocc.store.tar import BLOCK, end_bytes, member_at, member_bytes
+from world2minecraft.minecraftocc.store.shard import BLOCK, end_bytes, member_at, member_bytes
 from world2minecraft.rendering.output.images import depth_bytes
 
 TABLE = FineTable((AIR, CHAIR, PLANKS))

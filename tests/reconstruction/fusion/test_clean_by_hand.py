@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.fusion.cleaning import structure_layers
 
 

@@ -12,7 +12,7 @@ from world2minecraft.reconstruction.fusion import (
     close_structure,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 CAMERA = Camera(80, 60, 70.0, 70.0, 40.0, 30.0)

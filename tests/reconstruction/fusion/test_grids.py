@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import GridEvidence, PointEvidence
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.fusion.network_grids import EDGE, grid_gains
 
 SURE = float(np.log((1 - EDGE) / EDGE))

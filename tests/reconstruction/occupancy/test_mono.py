@@ -13,7 +13,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_of
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import monocular as mono
 from world2minecraft.reconstruction.occupancy import predictor

@@ -15,7 +15,8 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.reconstruction.opening import open_prepared, prepared, preparing
+from world2minecraft.reconstruction.opening import open_prepared, prepared
+from world2minecraft.reconstruction.opening import preparation as preparing
 from world2minecraft.reconstruction.opening.scale import (
     clicked,
     depth_ratios,

@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Corrections, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.reconstruction.registration import RegisterParameters, register, told
-from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import corrected
 from world2minecraft.reconstruction.registration.pose_refinement import register_surface
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
@@ -136,7 +136,7 @@ def test_the_frame_of_the_scan_does_not_matter(true_surface):
     room_to_scan = np.eye(4)
     room_to_scan[:3, :3] = Rotation.from_euler("xyz", [20, 7, 110], degrees=True).as_matrix()
     room_to_scan[:3, 3] = [3, -8, 1]
-    there = refined(given.turned(room_to_scan), np.linalg.inv(room_to_scan)).corrections
+    there = refined(given.transformed(room_to_scan), np.linalg.inv(room_to_scan)).corrections
     carried = np.linalg.inv(room_to_scan) @ there.pose_change @ room_to_scan
     np.testing.assert_allclose(carried, here.pose_change, atol=1e-4)
 
@@ -155,7 +155,7 @@ def test_frames_that_share_nothing_stay(true_surface):
     lone = np.isin(given.owner, [1, 10])
     index = np.searchsorted([1, 10], given.owner[lone]).astype(np.int32)
     pair = replace(
-        given.chosen(lone), owner=index, cameras=given.cameras[[1, 10]], names=("a", "b")
+        given.subset(lone), owner=index, cameras=given.cameras[[1, 10]], names=("a", "b")
     )
     found = refined(pair).corrections
     np.testing.assert_array_equal(found.pose_change, np.stack([np.eye(4)] * 2))
@@ -165,7 +165,7 @@ def test_frames_that_share_nothing_stay(true_surface):
 @pytest.mark.parametrize("frames", [0, 1])
 def test_no_frame_or_one_is_no_trouble(true_surface, frames):
     few = replace(
-        true_surface.chosen(true_surface.owner < frames),
+        true_surface.subset(true_surface.owner < frames),
         cameras=true_surface.cameras[:frames], names=true_surface.names[:frames],
     )  # fmt: skip
     found = refined(few).corrections

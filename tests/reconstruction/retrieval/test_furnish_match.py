@@ -19,7 +19,7 @@ from world2minecraft.reconstruction.retrieval import (
     furnish,
     ranked_matches,
 )
-from world2minecraft.reconstruction.retrieval.bounds import floor_under_m
+from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m
 
 NAMES = [name for name in TEMPLATES.names() if template(name).matched]
 FULL_IOU = 0.9

@@ -11,8 +11,7 @@ from label_grids import grid_of
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 from world2minecraft.furniture.solids import box_m, depth_m, solids_m
-from world2minecraft.reconstruction.retrieval.bounds import within_rooms
-from world2minecraft.reconstruction.retrieval.settling import settle
+from world2minecraft.reconstruction.retrieval.placement_settling import settle, within_rooms
 
 VOXEL_M = 0.08
 ROOM = Layout(np.array([[0, 0], [4, 0], [4, 3], [0, 3]], float), 2.4)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 
 VOXEL_M = 0.08
 MARGIN = 2  # Cells around the inner box.

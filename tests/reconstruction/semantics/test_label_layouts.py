@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.layout.room_layouts import outline_of
 from world2minecraft.reconstruction.semantics import find_structure
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller

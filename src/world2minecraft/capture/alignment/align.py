@@ -194,11 +194,11 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     scan_to_level = np.eye(4)
     scan_to_level[:3, :3] = frame_of_up(ground.up)
     scan_to_level[2, 3] = -ground.height_m
-    level = surface.turned(scan_to_level)
+    level = surface.transformed(scan_to_level)
     scan_to_level = _turn_to_walls(level) @ scan_to_level
-    level = surface.turned(scan_to_level)
+    level = surface.transformed(scan_to_level)
     scan_to_level = _straightened(level, ground.floor_area_m2 > 0) @ scan_to_level
-    level = surface.turned(scan_to_level)
+    level = surface.transformed(scan_to_level)
     box = find_box(level)
     low_m, high_m = _with_cameras(box, level)
     level_to_room = np.eye(4)
@@ -244,8 +244,8 @@ def _straightened(level: OrientedPoints, has_floor: bool) -> np.ndarray:
     move = np.eye(4)
     move[:3, :3] = straightening_turn(level)
     if has_floor:
-        turned = level.turned(move)
-        move[2, 3] = -face_place_m(turned.chosen(turned.normals[:, 2] > FACING), 2, 0.0)
+        turned = level.transformed(move)
+        move[2, 3] = -face_place_m(turned.subset(turned.normals[:, 2] > FACING), 2, 0.0)
     return move
 
 

@@ -85,7 +85,7 @@ def face_place_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
         axis: 0, 1 or 2.
         place_m: where the face is about; returned where nothing is within 8 cm of it.
     """
-    near = facing.chosen(np.abs(facing.points_m[:, axis] - place_m) < REACH_M)
+    near = facing.subset(np.abs(facing.points_m[:, axis] - place_m) < REACH_M)
     if not len(near.points_m):
         return place_m
     found = profile(near.points_m, axis, BIN_M)

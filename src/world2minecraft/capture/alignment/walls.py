@@ -52,7 +52,7 @@ def find_yaw(surface: OrientedPoints) -> float:
         if near.sum() > 20:
             yaw += float(np.mean(off[near]))
     for _ in range(2):
-        yaw += _wall_slope(surface.turned(rotation_about_z(-yaw)))
+        yaw += _wall_slope(surface.transformed(rotation_about_z(-yaw)))
     return (yaw + 45) % 90 - 45
 
 
@@ -118,7 +118,7 @@ def _side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bool]:
     places = found.peaks(max(WALL_LEAST_M2, WALL_SHARE * float(found.area_m2.max())))
     for place in places[::-1]:
         if np.mean(patches > place + 0.10) <= BEYOND_SHARE:
-            return face_place_m(surface.chosen(facing), axis, -sign * float(place)), True
+            return face_place_m(surface.subset(facing), axis, -sign * float(place)), True
     return -sign * end, False
 
 
@@ -137,7 +137,7 @@ def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
 def _ceiling(surface: OrientedPoints) -> tuple[float, bool]:
     """Return the height of the highest large surface that faces down, or where points end."""
     points = surface.points_m
-    facing = surface.chosen(surface.normals[:, 2] < -FACING)
+    facing = surface.subset(surface.normals[:, 2] < -FACING)
     found = profile(facing.points_m, 2)
     high = _distinct(points, points[:, 2])
     for place in found.peaks(WALL_LEAST_M2)[::-1]:

@@ -163,7 +163,7 @@ def _levelled(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
     to_level = np.eye(4)
     to_level[:3, :3] = frame_of_up(ground.up)
     to_level[2, 3] = -ground.height_m
-    return surface.turned(to_level), ground.floor_area_m2 > 0
+    return surface.transformed(to_level), ground.floor_area_m2 > 0
 
 
 def _lowest_camera(heights: np.ndarray) -> float:
@@ -209,7 +209,7 @@ def _ceiling(level: OrientedPoints, camera: float) -> float | None:
 
 def _sides(level: OrientedPoints) -> tuple[float | None, float | None]:
     """Return the longer and the shorter side of the room, each None where a wall is missing."""
-    box = find_box(level.turned(rotation_about_z(-find_yaw(level))))
+    box = find_box(level.transformed(rotation_about_z(-find_yaw(level))))
     sides = []
     for axis, name in enumerate("xy"):
         both = {f"{name}-", f"{name}+"} <= set(box.seen)

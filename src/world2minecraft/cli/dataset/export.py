@@ -54,7 +54,7 @@ def run(
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
-    from world2minecraft.minecraftocc.exporters.rules import DATA_ROOT, FRAMES_PER_SCENE
+    from world2minecraft.minecraftocc.exporters.options import DATA_ROOT, FRAMES_PER_SCENE
     from world2minecraft.minecraftocc.importers import open_occupancy
 
     rule = ExportRule(

@@ -64,10 +64,10 @@ def run(
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.metrics.image_quality import niqe_model
     from world2minecraft.evaluation.metrics.image_quality.niqe import available_variants
-    from world2minecraft.minecraftocc.picture_sources import pictures_at
-    from world2minecraft.minecraftocc.quality import (
+    from world2minecraft.minecraftocc.image_quality import (
         choose,
         measure_quality,
+        pictures_at,
         quality_json,
         quality_text,
         size_of,

@@ -105,8 +105,8 @@ def _of_data(
 def _of_tour(
     tour: Path, world: Path, most: int, first: bool, width: int, hour: float | None
 ) -> "Iterable[tuple[np.ndarray, str]]":
+    from world2minecraft.minecraftocc.scene_sources import open_scene_source
     from world2minecraft.minecraftocc.sheet import drawn_views
-    from world2minecraft.minecraftocc.source import open_scene_source
     from world2minecraft.minecraftocc.tours import read_views
     from world2minecraft.rendering.light import LookLight
     from world2minecraft.rendering.scene import prepare_scene

@@ -21,7 +21,7 @@ from world2minecraft.cli.dataset.options import (
 )
 
 if TYPE_CHECKING:
-    from world2minecraft.minecraftocc.source import SceneSource
+    from world2minecraft.minecraftocc.scene_sources import SceneSource
     from world2minecraft.minecraftocc.tours import PlannedView
 
 EXAMPLES = """\
@@ -85,7 +85,7 @@ def run(
         InputError: the world or a screenshot cannot be read.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.minecraftocc.source import open_scene_source
+    from world2minecraft.minecraftocc.scene_sources import open_scene_source
     from world2minecraft.minecraftocc.tours import write_views
 
     if screenshots is None and (at or poses is not None or pattern is not None):
@@ -135,7 +135,7 @@ def _write_recorded(
     out: Path,
 ) -> None:
     from world2minecraft.minecraftocc.screenshots import read_screenshots
-    from world2minecraft.minecraftocc.tours.recorded import write_recorded
+    from world2minecraft.minecraftocc.tours.pose_files import write_recorded
 
     told = said_at(at)
     views = read_screenshots(

@@ -79,7 +79,7 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json, write_text
     from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.networks.tables import latex_rows
+    from world2minecraft.networks.scoring import latex_rows
 
     if not said.exists():
         from world2minecraft.core.errors import InputError

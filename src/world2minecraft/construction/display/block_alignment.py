@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.construction.canvas import UNSEEN_BLOCKS, Canvas
-from world2minecraft.construction.display.frame import Frame
+from world2minecraft.construction.display.boxes import Frame
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.construction.canvas import BARRIER, LIGHT, Canvas
-from world2minecraft.construction.display.frame import Frame, Piece, boxes_in_room
+from world2minecraft.construction.display.boxes import Frame, Piece, boxes_in_room
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.minecraft.visual_shapes import is_luminous
 

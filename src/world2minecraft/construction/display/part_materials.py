@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from world2minecraft.construction.display.frame import Frame
+from world2minecraft.construction.display.boxes import Frame
 from world2minecraft.construction.paint import FADED, costs_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.construction.display.block_alignment import WALLS
-from world2minecraft.construction.display.frame import Frame, Piece
+from world2minecraft.construction.display.boxes import Frame, Piece
 from world2minecraft.construction.worktops import Worktop
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement

@@ -4,12 +4,26 @@
 choose from a ``ShapeSet`` and give numbers of its shapes.
 """
 
-from world2minecraft.construction.fitting.coverage import covered, covered_blocks, thin_cells
-from world2minecraft.construction.fitting.finish import finished, without_loose
-from world2minecraft.construction.fitting.objects import Fit, even_of, fit_of, fit_solid, solve
-from world2minecraft.construction.fitting.parts import PartsFit, fit_parts
-from world2minecraft.construction.fitting.problem import Problem, Rules, Target, problem_of
+from world2minecraft.construction.fitting.object_fitting import (
+    Fit,
+    PartsFit,
+    even_of,
+    fit_of,
+    fit_parts,
+    fit_solid,
+    solve,
+)
+from world2minecraft.construction.fitting.problem import (
+    Problem,
+    Rules,
+    Target,
+    covered,
+    covered_blocks,
+    problem_of,
+    thin_cells,
+)
 from world2minecraft.construction.fitting.shapes import CALM, Shape, ShapeSet, shape_set
+from world2minecraft.construction.fitting.stabilization import finished, without_loose
 
 __all__ = [
     "CALM",

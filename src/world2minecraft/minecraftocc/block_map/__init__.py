@@ -4,9 +4,12 @@
 and ``remapped`` gives what is labelled already other classes.
 """
 
-from world2minecraft.minecraftocc.block_map.classify import classify
-from world2minecraft.minecraftocc.block_map.export import block_map_json
-from world2minecraft.minecraftocc.block_map.fine import class_of_fine, remapped
+from world2minecraft.minecraftocc.block_map.classification import (
+    block_map_json,
+    class_of_fine,
+    classify,
+    remapped,
+)
 from world2minecraft.minecraftocc.block_map.parser import (
     MAPS,
     block_map_of,

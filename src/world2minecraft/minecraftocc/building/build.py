@@ -3,7 +3,7 @@
 import json
 import shutil
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -11,14 +11,23 @@ from typing import Any
 
 from world2minecraft.core.errors import ConflictError, OutputError, UsageError
 from world2minecraft.core.files import write_json
+from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.building.cpu_clock import STAGES, milliseconds_an_image
+from world2minecraft.minecraftocc.building.cpu_clock import (
+    STAGES,
+    StageClock,
+    milliseconds_an_image,
+)
 from world2minecraft.minecraftocc.building.process_registry import dismiss, wait_for_others
 from world2minecraft.minecraftocc.building.scenes import SceneFacts, SceneTask, survey
-from world2minecraft.minecraftocc.building.shards import in_order, index_shard, make_shard, units_of
-from world2minecraft.minecraftocc.building.shares import shared_views
-from world2minecraft.minecraftocc.building.warming import is_cold, warm
+from world2minecraft.minecraftocc.building.shard_rendering import (
+    in_order,
+    index_shard,
+    make_shard,
+    studio_of,
+    units_of,
+)
 from world2minecraft.minecraftocc.engine import Engine
 from world2minecraft.minecraftocc.plan import DatasetPlan, SceneSpec
 from world2minecraft.minecraftocc.store.folder import (
@@ -39,6 +48,75 @@ from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
 from world2minecraft.minecraftocc.store.shard import PART
 from world2minecraft.minecraftocc.store.writer import finish_store
 from world2minecraft.minecraftocc.values import FineClass
+
+# How the images of a split are shared, where some scenes have fewer views than others.
+#
+# Every scene is asked for its share; what one cannot give is asked of those that gave all. The same
+# answers give the same shares, so a build that was broken off comes to the same.
+
+MOST_ROUNDS = 6
+Look = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
+
+
+def shared_views(scenes: Iterable[SceneSpec], look: Look) -> list[SceneSpec]:
+    """Return scenes with as many images as they have views, in their order.
+
+    Args:
+        scenes: of any splits, each with the images that it is asked for.
+        look: called with scenes and how many images to ask each for; tells what they have.
+
+    Returns:
+        Of each split as many images as were asked for in all, or fewer where there are no more.
+    """
+    asked = {scene.scene_id: scene for scene in scenes}
+    wanted = {scene.split: 0 for scene in asked.values()}
+    for scene in asked.values():
+        wanted[scene.split] += scene.images
+    found: dict[str, int] = {}
+    todo = list(asked.values())
+    for _ in range(MOST_ROUNDS):
+        views = look(todo)
+        found |= {scene.scene_id: got for scene, got in zip(todo, views, strict=True)}
+        todo = [one for split, count in wanted.items() for one in _more(asked, found, split, count)]
+        asked |= {scene.scene_id: scene for scene in todo}
+        if not todo:
+            break
+    return [replace(scene, images=found[scene.scene_id]) for scene in asked.values()]
+
+
+def _more(
+    asked: dict[str, SceneSpec], found: dict[str, int], split: str, wanted: int
+) -> list[SceneSpec]:
+    """Return the scenes of a split that may have more, with what to ask them for next."""
+    mine = [scene for scene in asked.values() if scene.split == split]
+    short = wanted - sum(found[scene.scene_id] for scene in mine)
+    rich = [scene for scene in mine if found[scene.scene_id] >= scene.images]
+    if short <= 0 or not rich:
+        return []
+    each, more = divmod(short, len(rich))
+    return [
+        replace(scene, images=scene.images + each + (number < more))
+        for number, scene in enumerate(rich)
+        if each + (number < more)
+    ]
+
+
+# Compiling the inner loops once, before several processes would all do it at the same time.
+
+_LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
+
+
+def is_cold() -> bool:
+    """Whether the inner loops of a sample are still to be compiled."""
+    return not is_compiled(_LAST)
+
+
+def warm(task: SceneTask, tick: Callable[[int], None]) -> None:
+    """Look at a scene and make one sample of it; the look is kept, the sample is not."""
+    facts, _ = survey(task, tick)
+    if facts.views:
+        studio_of(task.folder, task.spec, task.recipe).sample(0, StageClock())
+
 
 EMPTY = FineClass("minecraft:air")
 

@@ -22,7 +22,7 @@ except ImportError:  # Windows has no shared locks; workers end with their paren
     fcntl = None
 
 from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.minecraftocc.engine.worker import end_if_deserted
+from world2minecraft.minecraftocc.engine.process_pool import end_if_deserted
 from world2minecraft.minecraftocc.store.folder import CREW
 
 PATIENCE_S = 60.0  # Workers notice within a second; one that writes to a slow disk takes longer.

@@ -3,8 +3,7 @@
 All call the same function with the same items, so all make the same files.
 """
 
-from world2minecraft.minecraftocc.engine.choice import ENGINES, Engine, opened_engine
-from world2minecraft.minecraftocc.engine.here import HereEngine
-from world2minecraft.minecraftocc.engine.pool import PoolEngine
+from world2minecraft.minecraftocc.engine.engines import ENGINES, Engine, HereEngine, opened_engine
+from world2minecraft.minecraftocc.engine.process_pool import PoolEngine
 
 __all__ = ["ENGINES", "Engine", "HereEngine", "PoolEngine", "opened_engine"]

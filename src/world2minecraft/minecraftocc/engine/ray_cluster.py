@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 from world2minecraft.core.errors import MissingExtraError, WorkerError
-from world2minecraft.minecraftocc.engine.worker import one_thread
+from world2minecraft.minecraftocc.engine.process_pool import one_thread
 
 AHEAD = 2  # Items in Ray's hands for each process, so that none waits.
 STORE_BYTES = 128 << 20  # Of shared memory: results are small.

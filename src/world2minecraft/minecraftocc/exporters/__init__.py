@@ -6,6 +6,6 @@ stopped. ``docs/occupancy-formats.md`` has every file and key.
 """
 
 from world2minecraft.minecraftocc.exporters.exporting import ExportReport, export_samples
-from world2minecraft.minecraftocc.exporters.rules import FORMATS, ExportRule
+from world2minecraft.minecraftocc.exporters.options import FORMATS, ExportRule
 
 __all__ = ["FORMATS", "ExportReport", "ExportRule", "export_samples"]

@@ -14,11 +14,11 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.minecraftocc.exporters.occscannet import OccScanNetExporter
-from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.exporters.options import ExportRule
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
-from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
-from world2minecraft.minecraftocc.formats.scene_grid import SceneGrid, StoredFrame, stored_frame
-from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, OccSample
+from world2minecraft.minecraftocc.formats.label_boxes import SceneGrid, StoredFrame, stored_frame
+from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
+from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, OccSample
 
 OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
 
@@ -79,7 +79,7 @@ class EmbodiedExporter:
     def _write_scene(self, scene: str, rows: list[NamedSample]) -> None:
         """Write the masks of a scene's frames, then its package: that says it is finished."""
         frames = [self._stored(row) for row in rows]
-        grid = SceneGrid.around([frame.origin_m for frame in frames], USUAL_VOXEL_M)
+        grid = SceneGrid.around([frame.origin_m for frame in frames], DEFAULT_VOXEL_M)
         if any(side > most for side, most in zip(grid.shape, OFFICIAL_CELLS, strict=True)):
             self._large.append(scene)
         labels = np.full(grid.shape, UNKNOWN, np.uint8)

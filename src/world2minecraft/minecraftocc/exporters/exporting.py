@@ -8,7 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.exporters.rules import FORMATS, Exporter, ExportRule
+from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, ExportRule
 from world2minecraft.minecraftocc.values import OccSample
 
 RECORD = "export.json"  # What was chosen, in the folder's root,

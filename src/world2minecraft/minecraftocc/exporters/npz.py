@@ -8,8 +8,8 @@ import numpy as np
 
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import write_json, write_npz
-from world2minecraft.minecraftocc.exporters.rules import ExportRule
-from world2minecraft.minecraftocc.formats.boxes import cells_in_image, chosen_labels
+from world2minecraft.minecraftocc.exporters.options import ExportRule
+from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image, chosen_labels
 from world2minecraft.minecraftocc.values import OccSample
 
 SPLITS = ("train", "test", "val", "all")

@@ -12,18 +12,21 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.files import write_bytes
-from world2minecraft.minecraftocc.exporters.pictures import colour_of, jpeg_bytes, split_of
-from world2minecraft.minecraftocc.exporters.rules import ExportRule
-from world2minecraft.minecraftocc.formats.boxes import (
+from world2minecraft.minecraftocc.exporters.options import (
+    ExportRule,
+    colour_of,
+    jpeg_bytes,
+    split_of,
+)
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler, depth_png
+from world2minecraft.minecraftocc.formats.label_boxes import (
     LabelledBox,
     box_in_image,
     check_usual,
     chosen_labels,
     region_box,
 )
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler
-from world2minecraft.minecraftocc.formats.depth_codes import depth_png
-from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, bin_bytes, downsampled
 from world2minecraft.minecraftocc.values import OccSample
 

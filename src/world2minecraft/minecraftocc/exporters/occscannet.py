@@ -13,10 +13,15 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.exporters.pictures import colour_of, jpeg_bytes, split_of
-from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.exporters.options import (
+    ExportRule,
+    colour_of,
+    jpeg_bytes,
+    split_of,
+)
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample, SceneNames
-from world2minecraft.minecraftocc.formats.boxes import (
+from world2minecraft.minecraftocc.formats.cameras import HALF_PX, Resampler, depth_png, vga_camera
+from world2minecraft.minecraftocc.formats.label_boxes import (
     LabelledBox,
     box_in_image,
     check_usual,
@@ -24,9 +29,7 @@ from world2minecraft.minecraftocc.formats.boxes import (
     region_box,
     room_box,
 )
-from world2minecraft.minecraftocc.formats.cameras import HALF_PX, Resampler, vga_camera
-from world2minecraft.minecraftocc.formats.depth_codes import depth_png
-from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
 from world2minecraft.minecraftocc.values import OccSample
 

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.minecraftocc.formats.unpickling import read_pickle
-from world2minecraft.minecraftocc.importers.labelled import (
+from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
+from world2minecraft.minecraftocc.importers.occscannet import read_frame
+from world2minecraft.minecraftocc.importers.samples import (
+    ImportedSet,
     checked_labels,
     checked_numbers,
     sample_of,
 )
-from world2minecraft.minecraftocc.importers.occscannet import read_frame
-from world2minecraft.minecraftocc.importers.source import ImportedSet
-from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, OccSample
+from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, OccSample
 
 _FRAME = re.compile(r"([\w-]{1,100})_(\d{1,9})_new", re.ASCII)
 MAX_SCENE_BYTES = 2 << 30
@@ -80,10 +80,10 @@ def read_scene(path: Path) -> ScenePackage:
     if centres.shape != (*shape, 3) or centres.dtype.kind != "f" or seen.shape != shape:
         raise DamagedFileError(path, "has centres or a mask of another shape than its labels")
     first = centres.reshape(-1, 3).min(axis=0).astype(np.float64)
-    origin_m = first - USUAL_VOXEL_M / 2  # Theirs are centres.
+    origin_m = first - DEFAULT_VOXEL_M / 2  # Theirs are centres.
     images = stored["valid_img_paths"]
     names = tuple(str(name) for name in images) if isinstance(images, list) else ()
-    return ScenePackage(labels, seen.astype(bool), origin_m, USUAL_VOXEL_M, names)
+    return ScenePackage(labels, seen.astype(bool), origin_m, DEFAULT_VOXEL_M, names)
 
 
 @dataclass(frozen=True)

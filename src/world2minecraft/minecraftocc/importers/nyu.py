@@ -11,16 +11,18 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.cameras import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
+from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.formats.sscnet import downsampled, read_bin
-from world2minecraft.minecraftocc.formats.unpickling import read_pickle
-from world2minecraft.minecraftocc.importers.labelled import (
+from world2minecraft.minecraftocc.importers.samples import (
     Found,
+    ImportedSet,
     as_large_as,
     checked_labels,
+    colour_at,
+    depth_at,
+    resized_colour,
     sample_of,
 )
-from world2minecraft.minecraftocc.importers.pictures import colour_at, depth_at, resized_colour
-from world2minecraft.minecraftocc.importers.source import ImportedSet
 from world2minecraft.minecraftocc.values import OccSample
 
 FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}

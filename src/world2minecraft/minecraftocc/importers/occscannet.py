@@ -13,17 +13,19 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
-from world2minecraft.minecraftocc.formats.unpickling import read_pickle
-from world2minecraft.minecraftocc.importers.labelled import (
+from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
+from world2minecraft.minecraftocc.importers.samples import (
     Found,
+    ImportedSet,
     as_large_as,
     checked_labels,
     checked_numbers,
+    colour_at,
+    depth_at,
+    resized_colour,
     sample_of,
 )
-from world2minecraft.minecraftocc.importers.pictures import colour_at, depth_at, resized_colour
-from world2minecraft.minecraftocc.importers.source import ImportedSet
-from world2minecraft.minecraftocc.values import USUAL_SHAPE, OccSample
+from world2minecraft.minecraftocc.values import DEFAULT_SHAPE, OccSample
 
 AXES = (1, 0, 2)  # Theirs y, x, z; ours x, y, z. The same swap leads back.
 LISTS = {
@@ -95,7 +97,7 @@ def read_frame(root: Path, name: str, labels: Any = None) -> Found:
     wanted = ("target_1_4", "voxel_origin", "cam_pose", "intrinsic")
     if missing := [word for word in wanted if word not in stored]:
         raise DamagedFileError(path, f"has no {', '.join(missing)}")
-    shape = (USUAL_SHAPE[1], USUAL_SHAPE[0], USUAL_SHAPE[2])
+    shape = (DEFAULT_SHAPE[1], DEFAULT_SHAPE[0], DEFAULT_SHAPE[2])
     held = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
     picture = root / "posed_images" / name
     colour = colour_at(picture.with_suffix(".jpg"))

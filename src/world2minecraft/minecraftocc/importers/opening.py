@@ -9,7 +9,7 @@ from world2minecraft.minecraftocc.importers.embodied import is_embodied, open_em
 from world2minecraft.minecraftocc.importers.npz import is_npz, open_npz
 from world2minecraft.minecraftocc.importers.nyu import is_nyu, open_nyu
 from world2minecraft.minecraftocc.importers.occscannet import is_occscannet, open_occscannet
-from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.importers.samples import ImportedSet
 
 
 class Kind(NamedTuple):

@@ -9,7 +9,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.view_region import LabelRegion, RegionRule, label_region, view_yaw_deg
 from world2minecraft.minecraftocc.values import SceneVoxels
 
-__all__ = ["RegionRule", "floor_under", "region_in", "label_region", "view_yaw_deg"]
+__all__ = ["RegionRule", "floor_under", "label_region", "region_in", "view_yaw_deg"]
 
 
 RUG_M = 0.25  # What lies so much higher than a floor that spreads wider is no floor of its own.

@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, LimitError, MissingExtraError, OutputError
 from world2minecraft.minecraftocc.store.folder import SHARD_NAME
 from world2minecraft.minecraftocc.store.sample_files import DEPTH, FACTS, IMAGE_FORMATS, LABELS
-from world2minecraft.minecraftocc.store.stored import StoredSample, stored_samples
+from world2minecraft.minecraftocc.store.shard import StoredSample, stored_samples
 
 COUNTS = ("occupied", "visible", "free", "in_frustum", "occluded", "unknown", "hits", "fine")
 TEXTS = ("key", "scene_id", "tour_id", "split", "shard", "region", "sha256")

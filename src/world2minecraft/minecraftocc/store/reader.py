@@ -20,7 +20,7 @@ from world2minecraft.minecraftocc.store.sample_files import (
     FineTable,
     unpack_sample,
 )
-from world2minecraft.minecraftocc.store.stored import StoredSample, stored_samples
+from world2minecraft.minecraftocc.store.shard import StoredSample, stored_samples
 from world2minecraft.minecraftocc.values import OccSample
 
 MAX_SAMPLE_BYTES = 512 << 20

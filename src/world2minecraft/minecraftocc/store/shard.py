@@ -7,18 +7,166 @@ the same bytes, however often the work was broken off.
 """
 
 import errno
+import hashlib
 import os
+import re
+import tarfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
+from typing import Any, BinaryIO
 
 from filelock import lock_descriptor
 
-from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.minecraftocc.store.stored import stored_samples
-from world2minecraft.minecraftocc.store.tar import end_bytes, member_bytes
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
+from world2minecraft.minecraftocc.store.sample_files import FACTS, MAX_FACTS_BYTES, read_facts
+
+# The members of a shard: ustar without owners and times, so that bytes tell of content alone.
+#
+# A member is a header of 512 bytes, its data, and zeros up to the next whole 512.
+
+BLOCK = 512
+RECORD = 20 * BLOCK  # A tar is so many bytes, or a multiple.
+LONGEST_KEY = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
+MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,90})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
+
+
+@dataclass(frozen=True)
+class Member:
+    """Where the data of a member lie in a shard."""
+
+    key: str  # "house_0001-a-000012"
+    kind: str  # "jpg", "depth.png", "occ.npz" or "json"
+    offset: int
+    size: int
+
+    @property
+    def end(self) -> int:
+        """Where the next member begins."""
+        return self.offset + self.size + padding(self.size)
+
+
+def padding(size: int) -> int:
+    """Return how many zeros follow so many bytes of data."""
+    return -size % BLOCK
+
+
+def member_bytes(name: str, data: bytes) -> bytes:
+    """Return a member with its header and its padding.
+
+    Example:
+        >>> len(member_bytes("a.json", b"{}"))
+        1024
+    """
+    info = tarfile.TarInfo(name)  # Its time and owner are 0, its mode is 644.
+    info.size = len(data)
+    return info.tobuf(tarfile.USTAR_FORMAT) + data + bytes(padding(len(data)))
+
+
+def end_bytes(length: int) -> bytes:
+    """Return what ends a tar of so many bytes: two blocks of zeros, filled up to a record."""
+    return bytes(2 * BLOCK + -(length + 2 * BLOCK) % RECORD)
+
+
+def member_at(stream: BinaryIO, offset: int, length: int) -> Member | None:
+    """Read the header at an offset of a tar that is ``length`` bytes long.
+
+    Returns None where there is no whole member of ours: at the end, or where bytes are damaged.
+    """
+    stream.seek(offset)
+    block = stream.read(BLOCK)
+    if len(block) < BLOCK:
+        return None
+    try:
+        info = tarfile.TarInfo.frombuf(block, "ascii", "strict")
+    except (tarfile.HeaderError, ValueError):
+        return None
+    name = MEMBER_NAME.fullmatch(info.name)
+    if name is None or not info.isreg() or info.size < 0:
+        return None
+    member = Member(name[1], name[2], offset + BLOCK, info.size)
+    return member if member.end <= length else None
+
+
+# The samples of a shard, found by their headers and their JSON; pictures are skipped over.
+
+_MOST_MEMBERS = 8
+_CHUNK = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class StoredSample:
+    """A sample in a shard: where it lies, and what its JSON tells."""
+
+    key: str
+    offset: int
+    size: int
+    members: tuple[Member, ...]
+    facts: dict[str, Any]
+    facts_sha256: str
+
+
+def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iterator[StoredSample]:
+    """Give the whole samples from the start of a shard, up to its end or the first that is not.
+
+    Args:
+        stream: the shard or its part.
+        length: its size in bytes.
+        checked: whether the sums of all members are compared, not of their JSON alone.
+    """
+    offset = 0
+    while (sample := _sample_at(stream, offset, length)) is not None:
+        if checked and not is_right(stream, sample):
+            return
+        yield sample
+        offset = sample.offset + sample.size
+
+
+def is_right(stream: BinaryIO, sample: StoredSample) -> bool:
+    """Whether the members of a sample have the sums that its JSON tells."""
+    told = sample.facts.get("sha256")
+    others = [member for member in sample.members if member.kind != FACTS]
+    if not isinstance(told, dict) or set(told) != {member.kind for member in others}:
+        return False
+    return all(told[member.kind] == _sum_of(stream, member) for member in others)
+
+
+def _sample_at(stream: BinaryIO, offset: int, length: int) -> StoredSample | None:
+    members: list[Member] = []
+    at = offset
+    while len(members) < _MOST_MEMBERS:
+        member = member_at(stream, at, length)
+        if member is None or (members and member.key != members[0].key):
+            return None
+        members.append(member)
+        at = member.end
+        if member.kind == FACTS:
+            break
+    if members[-1].kind != FACTS or members[-1].size > MAX_FACTS_BYTES:
+        return None
+    stream.seek(members[-1].offset)
+    data = stream.read(members[-1].size)
+    try:
+        facts = read_facts(data, members[-1].key)
+    except DamagedFileError:
+        return None
+    if facts.get("key") != members[0].key:
+        return None
+    total = hashlib.sha256(data).hexdigest()
+    return StoredSample(members[0].key, offset, at - offset, tuple(members), facts, total)
+
+
+def _sum_of(stream: BinaryIO, member: Member) -> str:
+    stream.seek(member.offset)
+    digest, left = hashlib.sha256(), member.size
+    while left > 0 and (data := stream.read(min(left, _CHUNK))):
+        digest.update(data)
+        left -= len(data)
+    return digest.hexdigest()
+
 
 PART = ".part"
 PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.

@@ -22,7 +22,7 @@ from world2minecraft.minecraftocc.store.folder import (
     read_meta,
 )
 from world2minecraft.minecraftocc.store.index import COUNTS, read_index, shard_rows, sum_of
-from world2minecraft.minecraftocc.store.stored import is_right, stored_samples
+from world2minecraft.minecraftocc.store.shard import is_right, stored_samples
 
 COMPARED = ("key", "offset", "size", "sha256", *(f"cells_{name}" for name in COUNTS))
 

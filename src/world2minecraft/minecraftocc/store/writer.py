@@ -31,8 +31,7 @@ from world2minecraft.minecraftocc.store.sample_files import (
     SampleFiles,
     pack_sample,
 )
-from world2minecraft.minecraftocc.store.shard import ShardWriter
-from world2minecraft.minecraftocc.store.tar import LONGEST_KEY
+from world2minecraft.minecraftocc.store.shard import LONGEST_KEY, ShardWriter
 from world2minecraft.minecraftocc.values import FineClass, OccSample
 
 LONGEST_SCENE = 80  # A shard's name, with its number, has 90.

@@ -1,8 +1,8 @@
 """Which pictures of a world are taken: smooth walks through its rooms, and views worth having."""
 
-from world2minecraft.minecraftocc.tours.beside import layouts_beside
-from world2minecraft.minecraftocc.tours.files import read_views, view_line, write_views
 from world2minecraft.minecraftocc.tours.planning import plan_views
+from world2minecraft.minecraftocc.tours.pose_files import read_views, view_line, write_views
+from world2minecraft.minecraftocc.tours.rooms import layouts_beside
 from world2minecraft.minecraftocc.tours.values import (
     PlannedView,
     TourRule,

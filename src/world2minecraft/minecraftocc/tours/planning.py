@@ -1,5 +1,11 @@
 """``plan_views``: walks through all rooms of a volume, and the views of them that are worth it."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockVolume
@@ -11,11 +17,194 @@ from world2minecraft.minecraft.physics.walk_graph import (
     solid_of,
     walk_graph,
 )
+from world2minecraft.minecraftocc.tours.headings import (
+    best_yaws,
+    drawn_kinds,
+    rated_headings,
+    seen_before,
+    wander,
+)
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms, shared
-from world2minecraft.minecraftocc.tours.tourist import Kinds, Tourist
-from world2minecraft.minecraftocc.tours.values import PlannedView, TourRule
-from world2minecraft.minecraftocc.tours.walks import Grounds
+from world2minecraft.minecraftocc.tours.values import KINDS, PlannedView, TourRule, kind_of_yaw
+from world2minecraft.minecraftocc.tours.view_quality import judged
+from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, Grounds, plan_walk
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.views.cameras import GamePose
+
+# One who tours one room: walk after walk, keeping what is good and new.
+
+WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
+GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.
+LEAST_FRAMES = 3  # Of a tour, where more are asked for.
+WIDEST_M = 0.6  # Between frames, where few are asked for,
+WALKED_MORE = 1.5  # and so many times as many are looked at.
+VAIN_WALKS = 5  # A room is done when so many walks in turn find nothing new.
+EASED = 0.7  # Then views may be so much nearer to each other,
+EASINGS = 3  # so many times.
+PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture lies lower than the eye.
+SWAY_M = 0.04  # An eye rises and sinks so much along a walk.
+DECIMALS = 6  # Of poses: what a tour file holds is exactly what was planned.
+
+
+@dataclass(eq=False)
+class Kinds:
+    """How many views of each kind of yaw a whole plan has so far."""
+
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(KINDS)))
+
+    def wanted(self, rule: TourRule, more: int) -> np.ndarray:
+        """Return how many of each kind are missing when so many more are taken, float64 [3]."""
+        shares = np.array(rule.yaw_shares) / sum(rule.yaw_shares)
+        return shares * (self.counts.sum() + more) - self.counts
+
+    def add(self, yaws_deg: np.ndarray) -> None:
+        """Count views."""
+        for yaw_deg in yaws_deg:
+            self.counts[KINDS.index(kind_of_yaw(float(yaw_deg)))] += 1
+
+
+@dataclass(eq=False)
+class _Taken:
+    """The views of one room so far."""
+
+    poses: list[np.ndarray] = field(default_factory=list)  # [N, 5]: x, y, z, yaw, pitch
+
+    def new(self, rows: np.ndarray, apart_blocks: float, apart_deg: float) -> np.ndarray:
+        """Tell which rows, float64 [N, 5], are neither a view taken nor like an earlier row."""
+        known = np.concatenate([*self.poses, rows]) if self.poses else rows
+        first = len(known) - len(rows)
+        result = np.ones(len(rows), bool)
+        for n, row in enumerate(rows):
+            others = known[: first + n]
+            if first + n == 0:
+                continue
+            near = np.abs(others[:, :3] - row[:3]).max(axis=1) < apart_blocks
+            turn = np.abs((others[:, 3] - row[3] + 180) % 360 - 180)
+            alike = near & (turn < apart_deg) & (np.abs(others[:, 4] - row[4]) < apart_deg)
+            alike[first:] &= result[:n]
+            result[n] = not alike.any()
+        return result
+
+
+@dataclass(eq=False)
+class Tourist:
+    """One who tours one room."""
+
+    volume: BlockVolume
+    scene: BlockScene
+    room: TourRoom
+    grounds: Grounds
+    rule: TourRule
+    seed: int
+    kinds: Kinds
+    is_done: bool = False
+    taken: _Taken = field(default_factory=_Taken)
+    tours: list[np.ndarray] = field(default_factory=list)  # [N, 6]: a pose, and seconds
+    walks: int = 0
+    eased: int = 0
+
+    @property
+    def count(self) -> int:
+        """How many views were found."""
+        return sum(map(len, self.tours))
+
+    def find(self, more: int) -> None:
+        """Find so many more views, or as many as there are."""
+        wanted, vain = self.count + more, 0
+        while self.count < wanted and not self.is_done:
+            before = self.count
+            self._walk(wanted - self.count)
+            vain = 0 if self.count > before else vain + 1
+            if vain == VAIN_WALKS:
+                vain, self.eased = 0, self.eased + 1
+                self.is_done = self.eased > EASINGS
+
+    def views(self) -> Iterator[PlannedView]:
+        """Give the views found, in their order."""
+        for number, tour in enumerate(self.tours):
+            for frame, row in enumerate(tour):
+                x, y, z, yaw_deg, pitch_deg, t_s = (float(value) for value in row)
+                pose = GamePose(x, y, z, yaw_deg, pitch_deg, "eye")
+                yield PlannedView(
+                    f"r{self.room.number:02d}t{number:03d}",
+                    frame,
+                    self.rule.camera,
+                    pose.camera_to_room(self.volume.block_to_room),
+                    pose,
+                    t_s,
+                    self.room.number,
+                )
+
+    def _walk(self, wanted: int) -> None:
+        """Take one walk, and of its views what is good and new."""
+        rng = np.random.default_rng([self.seed, self.room.number, self.walks])
+        self.walks += 1
+        rows = self._rows(wanted, rng)
+        poses = np.array([self._camera_to_room(row) for row in rows])
+        seen = judged(self.scene, self.volume.states, poses, self.rule)
+        labelled = bool(self.volume.semantic.any())
+        good = np.flatnonzero(seen.is_good(self.volume.blocks_per_metre, labelled))
+        ease = EASED**self.eased
+        apart = self.rule.apart_m * self.volume.blocks_per_metre * ease
+        good = good[self.taken.new(rows[good], apart, self.rule.apart_deg * ease)]
+        for found in self._parted(rows[good], min(LEAST_FRAMES, wanted)):
+            tour = found[:wanted]
+            wanted -= len(tour)
+            if len(tour):
+                self.tours.append(np.column_stack([tour, self._times_s(tour)]))
+                self.taken.poses.append(tour)
+                self.kinds.add(tour[:, 3])
+
+    def _rows(self, wanted: int, rng: np.random.Generator) -> np.ndarray:
+        """Return the poses along a walk, float64 [N, 5]: x, y, z of the eye, yaw, pitch."""
+        rule = self.rule
+        way = plan_walk(self.grounds, rng)
+        spacing_m = len(way) * SAMPLE_M / (WALKED_MORE * wanted)
+        every = max(1, round(float(np.clip(spacing_m, rule.spacing_m, WIDEST_M)) / SAMPLE_M))
+        feet, spacing_m = way[int(rng.integers(every)) % len(way) :: every], every * SAMPLE_M
+        eyes = feet.copy()
+        eyes[:, 1] += self._eyes_m(len(feet), spacing_m, rng) * self.volume.blocks_per_metre
+        kinds = drawn_kinds(len(feet), spacing_m, self.kinds.wanted(rule, len(feet)), rng)
+        rated = rated_headings(self.scene, eyes, self.volume.block_to_room, rule)
+        if self.taken.poses:
+            taken = np.concatenate(self.taken.poses)
+            rated = rated - seen_before(eyes, taken, self.volume.blocks_per_metre)
+        yaws = best_yaws(rated, kinds, spacing_m, rng)
+        pitch = rng.normal(PITCH_MEAN_DEG, PITCH_SPREAD_DEG / 2)
+        pitch = pitch + PITCH_SPREAD_DEG * wander(len(feet), spacing_m, rng)
+        pitch = np.clip(pitch, *rule.pitch_deg)
+        return np.round(np.column_stack([eyes, yaws, pitch]), DECIMALS) + 0.0
+
+    def _eyes_m(self, count: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
+        """Return how high the eye is over the feet along a walk, float64 [N]."""
+        if rng.random() < self.rule.player_share:
+            return np.full(count, PLAYER_EYE_BLOCKS)
+        high_m = rng.uniform(*self.rule.eye_m) + SWAY_M * wander(count, spacing_m, rng)
+        return np.clip(high_m, *self.rule.eye_m)
+
+    def _camera_to_room(self, row: np.ndarray) -> np.ndarray:
+        pose = GamePose(*(float(value) for value in row), at="eye")
+        return pose.camera_to_room(self.volume.block_to_room)
+
+    def _parted(self, rows: np.ndarray, least: int) -> list[np.ndarray]:
+        """Return views in a row as tours without leaps, those of too few frames left out."""
+        if not len(rows):
+            return []
+        step_m = np.linalg.norm(np.diff(rows[:, :3], axis=0), axis=1) / (
+            self.volume.blocks_per_metre
+        )
+        turn = np.abs((np.diff(rows[:, 3]) + 180) % 360 - 180)
+        cuts = np.flatnonzero((step_m > GAP_M) | (turn > GAP_DEG)) + 1
+        return [part for part in np.split(rows, cuts) if len(part) >= least]
+
+    def _times_s(self, tour: np.ndarray) -> np.ndarray:
+        """Return when each frame is taken, as fast as one walks and turns."""
+        walk = np.linalg.norm(np.diff(tour[:, :3], axis=0), axis=1) / (
+            self.volume.blocks_per_metre * WALK_M_S
+        )
+        turn = np.abs((np.diff(tour[:, 3]) + 180) % 360 - 180) / TURN_DEG_S
+        return np.round(np.r_[0, np.cumsum(np.hypot(walk, turn))], DECIMALS)
+
 
 LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 

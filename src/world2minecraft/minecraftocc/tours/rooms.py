@@ -8,6 +8,7 @@ room, such as those in a doorway, go to the nearest room.
 
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from scipy import ndimage
@@ -16,12 +17,34 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.jit import njit
-from world2minecraft.core.types import BlockVolume
+from world2minecraft.core.types import BlockVolume, Layout
+from world2minecraft.formats.layout import read_layouts
 from world2minecraft.minecraft.physics.body import HEIGHT
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
 from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
 from world2minecraft.minecraftocc.tours.values import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
+
+# The rooms that a scene says itself: ``layout.json`` of a run, beside its build or above it.
+
+_NAME = "layout.json"
+
+
+def layouts_beside(path: str | Path) -> tuple[Layout, ...]:
+    """Return the rooms of the run that a place belongs to; none where it is of no run.
+
+    Args:
+        path: a run's folder, its ``build``, the world in it, or any other place.
+
+    Raises:
+        DamagedFileError: its ``layout.json`` is no layout.
+    """
+    place = Path(path)
+    for folder in (place, place.parent, place.parent.parent):
+        if (folder / _NAME).is_file() and (folder / "build").is_dir():
+            return read_layouts(folder / _NAME)
+    return ()
+
 
 NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
 LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,

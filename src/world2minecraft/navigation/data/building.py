@@ -18,7 +18,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.engine import opened_engine
-from world2minecraft.minecraftocc.source import scene_id_of
+from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.navigation.data.item_building import (
     COMPOSITIONS,
     PAPER_WALKS,

@@ -7,7 +7,7 @@ from gymnasium import spaces
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.navigation.moves import moved, wrapped_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Move, MoveSet, Stance

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics import step
 from world2minecraft.navigation.environment.action_spaces import Continuous, Discrete
 from world2minecraft.navigation.moves import forward_blocks, heading, wrapped_yaw
 from world2minecraft.navigation.scene import VlnScene

@@ -17,7 +17,7 @@ from world2minecraft.formats.build_source import Source, Start
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import trimmed
 from world2minecraft.formats.volume_formats import labelled
-from world2minecraft.minecraftocc.source import open_scene_source, source_of_blocks
+from world2minecraft.minecraftocc.scene_sources import open_scene_source, source_of_blocks
 from world2minecraft.navigation.running.episode_ground import Ground, SceneGround
 from world2minecraft.navigation.scene import VlnScene, layouts_beside
 from world2minecraft.navigation.server.actions import MovesOnServer

@@ -11,7 +11,7 @@ from torch import nn
 
 from world2minecraft.core.files import write_bytes
 from world2minecraft.networks.completion.network import CompletionNet
-from world2minecraft.networks.weight_storage import SMALL, with_stored_weights
+from world2minecraft.networks.onnx_export import SMALL, with_stored_weights
 from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS
 
 OPSET = 17

@@ -1,6 +1,7 @@
 """Frames as tensors: batches that a run draws, and batches in order for validation."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +10,122 @@ from torch.utils.data import DataLoader, Dataset
 
 from world2minecraft.networks.batch import OccInput, OccTarget
 from world2minecraft.networks.config import Grid, RunConfig
-from world2minecraft.networks.data.augment import augmented_together
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
-from world2minecraft.networks.data.mixing import Draws, draw_rng
 from world2minecraft.networks.data.sequences import Companions, count_of
+
+# Which frame is drawn when, of one set or of several.
+#
+# A draw takes a set with a chance in proportion to its weight, whatever its size, and then the next
+# frame of that set's own order: each comes once before any comes again. All of it follows from the
+# seed, and draw number n is the same whether the draws before it were made or not; so a run that was
+# stopped goes on at its draw.
+
+
+class Draws(NamedTuple):
+    """The draws of a run, in their order."""
+
+    source: np.ndarray  # int32 [N], which set
+    row: np.ndarray  # int64 [N], which of its training frames
+
+
+def plan_draws(sizes: Sequence[int], weights: Sequence[float], count: int, seed: int) -> Draws:
+    """Return ``count`` draws from sets of the given sizes.
+
+    Example:
+        >>> draws = plan_draws([3], [1.0], 6, 0)
+        >>> sorted(draws.row[:3].tolist()), sorted(draws.row[3:].tolist())
+        ([0, 1, 2], [0, 1, 2])
+    """
+    chances = np.asarray(weights, np.float64) / np.sum(weights)
+    source = np.random.default_rng([seed, 0]).choice(len(sizes), size=count, p=chances)
+    row = np.empty(count, np.int64)
+    for number, size in enumerate(sizes):
+        places = np.flatnonzero(source == number)
+        epochs = -(-len(places) // size)
+        orders = [
+            np.random.default_rng([seed, 1 + number, epoch]).permutation(size)
+            for epoch in range(epochs)
+        ]
+        row[places] = np.concatenate(orders)[: len(places)] if orders else 0
+    return Draws(source.astype(np.int32), row)
+
+
+def draw_rng(seed: int, draw: int) -> np.random.Generator:
+    """Return the generator that changes the frame of one draw."""
+    return np.random.default_rng([seed, 2**20, draw])
+
+
+# Frames changed at random: mirrored, and in other colours.
+#
+# A mirrored frame is a frame of the mirrored room: picture, depth, principal point, pose and cells
+# turn over together, so that a cell still falls on the pixels that show it. The pose stays a
+# rotation: camera and grid are mirrored both. Where the grid lies in the room is left as it was: no
+# network is told, and a mirrored frame is of no room.
+
+LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
+
+
+def flipped(frame: Frame, voxel_m: float) -> Frame:
+    """Return the frame of the room mirrored left to right, across the middle of its grid."""
+    intrinsics = frame.intrinsics.copy()
+    intrinsics[0, 2] = frame.image.shape[1] - intrinsics[0, 2]
+    intrinsics[0, 1] = -intrinsics[0, 1]
+    mirror = np.diag([-1.0, 1.0, 1.0, 1.0]).astype(np.float32)
+    over = mirror.copy()
+    over[0, 3] = frame.labels.shape[0] * voxel_m
+    return replace(
+        frame,
+        image=frame.image[:, ::-1],
+        depth_m=frame.depth_m[:, ::-1],
+        intrinsics=intrinsics,
+        camera_to_grid=over @ frame.camera_to_grid @ mirror,
+        **{name: getattr(frame, name)[::-1] for name in ("labels", "in_frustum", "seen", "free")},
+    )
+
+
+def jittered(image: np.ndarray, strength: float, rng: np.random.Generator) -> np.ndarray:
+    """Return a picture with other brightness, contrast and saturation, in an order by chance.
+
+    Args:
+        image: uint8 [H, W, 3].
+        strength: 0.4 changes each by a factor of 0.6 to 1.4.
+        rng: draws order and factors.
+    """
+    if not strength:
+        return image
+    values = image.astype(np.float32)
+    order, factors = rng.permutation(3), rng.uniform(1 - strength, 1 + strength, 3)
+    for kind in order:
+        values = _changed(values, int(kind), np.float32(factors[kind]))
+    return (values + np.float32(0.5)).astype(np.uint8)
+
+
+def _changed(values: np.ndarray, kind: int, factor: np.float32) -> np.ndarray:
+    """Return values mixed with black, with their mean grey, or with each pixel's own grey."""
+    if kind == 0:
+        mixed = values * factor
+    else:
+        grey = values @ LUMINANCE
+        base = grey.mean() if kind == 1 else grey[..., None]
+        mixed = base + (values - base) * factor
+    return np.clip(mixed, 0, 255)
+
+
+def augmented(
+    frame: Frame, voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
+) -> Frame:
+    """Return a frame mirrored with chance ``flip``, its colours changed by ``jitter``."""
+    return augmented_together([frame], voxel_m, flip, jitter, rng)[0]
+
+
+def augmented_together(
+    frames: Sequence[Frame], voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
+) -> list[Frame]:
+    """Return frames of one grid, all mirrored or none, each in colours of its own."""
+    turn_over = rng.random() < flip
+    changed = [replace(one, image=jittered(one.image, jitter, rng)) for one in frames]
+    return [flipped(one, voxel_m) for one in changed] if turn_over else changed
 
 
 class Batch(NamedTuple):

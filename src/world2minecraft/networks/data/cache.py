@@ -19,7 +19,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.data.frames import Frame, FrameRule, frame_of
 
 VERSION = 1  # Of what lies in the folder.

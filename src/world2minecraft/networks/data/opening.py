@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.importers import open_occupancy
-from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import RunConfig
 from world2minecraft.networks.data.batches import TrainingPart
 from world2minecraft.networks.data.cache import Frames, StreamedFrames, cached_frames

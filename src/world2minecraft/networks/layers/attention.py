@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.networks.layers.sampling import sample
+from world2minecraft.networks.layers.projection import sample
 
 
 class DeformableAttention(nn.Module):

@@ -1,12 +1,101 @@
 """What turns a picture into features: our own small network, or one of transformers."""
 
+import re
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
-from torch import nn
+import torch
+from torch import Tensor, nn
 
-from world2minecraft.core.errors import UsageError
-from world2minecraft.networks.layers.norms import Norm
-from world2minecraft.networks.layers.unet2d import Decoder, Encoder, PictureWidths, UNet2D
+from world2minecraft.core.errors import InputError, MissingExtraError, UsageError
+from world2minecraft.networks.layers.normalization import Norm
+from world2minecraft.networks.layers.unet2d import STRIDES, Decoder, Encoder, PictureWidths, UNet2D
+
+# Any backbone of the transformers library as the encoder of a network.
+#
+# Its maps, of whatever strides, are laid over the strides that the decoder expects: the first of
+# them at 1/4, the last at 1/32, resized where theirs differ (a vision transformer's are all at
+# 1/14 or so). At 1/2 a kernel of our own looks at the picture. The library's image processors are not
+# used, as they need torchvision.
+
+MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
+LEVELS = 4  # At 1/4, 1/8, 1/16 and 1/32.
+
+
+class HuggingFaceEncoder(nn.Module):
+    """A backbone by its name in a model hub, or from a folder.
+
+    Raises:
+        MissingExtraError: transformers is not installed.
+        InputError: the backbone cannot be had.
+    """
+
+    def __init__(self, model: str, widths: PictureWidths):
+        super().__init__()
+        self.network = _loaded(model)
+        self.multiple = _multiple_of(self.network.config)
+        given = list(self.network.channels)
+        self.levels = [min(level, len(given) - 1) for level in range(LEVELS)]
+        self.fine = nn.Sequential(nn.Conv2d(3, widths.taps[0], 3, 2, 1), nn.ReLU())
+        self.carry = nn.ModuleList(
+            nn.Conv2d(given[level], made, 1)
+            for level, made in zip(self.levels, widths.taps[1:], strict=True)
+        )
+
+    def forward(self, picture: Tensor) -> list[Tensor]:
+        """Return five maps, at 1/2 to 1/32, for a normalised picture [B, 3, H, W]."""
+        sides = [[-(-int(side) // stride) for side in picture.shape[2:]] for stride in STRIDES]
+        wanted = [max(round(int(s) / self.multiple), 1) * self.multiple for s in picture.shape[2:]]
+        maps = self.network(pixel_values=_resized(picture, wanted)).feature_maps
+        coarse = [
+            _resized(carry(maps[level]), side)
+            for carry, level, side in zip(self.carry, self.levels, sides[1:], strict=True)
+        ]
+        return [self.fine(picture), *coarse]
+
+
+def _resized(values: Tensor, sides: list[int]) -> Tensor:
+    if list(values.shape[2:]) == sides:
+        return values
+    return nn.functional.interpolate(values, sides, mode="bilinear", align_corners=False)
+
+
+def _loaded(model: str) -> Any:
+    try:
+        import transformers  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        raise MissingExtraError("a backbone of transformers", "hf") from None
+    if not Path(model).is_dir() and not MODEL_NAME.fullmatch(model):
+        raise InputError(model, "neither a folder nor the name of a model, ORG/NAME")
+    transformers.utils.logging.disable_progress_bar()
+    try:
+        config = transformers.AutoConfig.from_pretrained(model)
+        config.out_indices = _taps_of(config)
+        # The library's own way by a name refuses folders; the class that it would take does not.
+        with torch.device("meta"):
+            kind = type(transformers.AutoBackbone.from_config(config))
+        return kind.from_pretrained(model, config=config, dtype=torch.float32, use_safetensors=True)
+    except (OSError, ValueError, KeyError) as error:
+        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        raise InputError(model, f"no backbone of transformers: {reason}") from None
+
+
+def _taps_of(config: Any) -> list[int]:
+    """Return four of the stages that a backbone can give, the last of them among these."""
+    names = list(getattr(config, "stage_names", None) or [])
+    count = len(names) - 1 if names else int(getattr(config, "num_hidden_layers", LEVELS))
+    if count <= LEVELS:
+        return list(range(1, count + 1))
+    return [round((level + 1) * count / LEVELS) for level in range(LEVELS)]
+
+
+def _multiple_of(config: Any) -> int:
+    """Return what a picture's sides must be a multiple of."""
+    patch = getattr(config, "patch_size", None)
+    patch = patch[0] if isinstance(patch, (list, tuple)) else patch
+    return int(patch) if isinstance(patch, int) and patch > 4 else STRIDES[-1]
+
 
 WIDTHS = {
     "tiny": PictureWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
@@ -42,8 +131,5 @@ def make_encoder(name: str | None, widths: PictureWidths, norm: Norm) -> nn.Modu
         return Encoder(widths, norm)
     if not name.startswith(PREFIX):
         raise UsageError(f"a backbone is {PREFIX}ORG/NAME or {PREFIX}FOLDER, not {name!r}")
-    from world2minecraft.networks.layers.hf_backbone import (  # noqa: PLC0415
-        HuggingFaceEncoder,
-    )
 
     return HuggingFaceEncoder(name.removeprefix(PREFIX), widths)

@@ -8,9 +8,8 @@ The relations are supervised: alike, unlike, both empty, one empty (see ``losses
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.networks.layers.aspp import Reaches
-from world2minecraft.networks.layers.ddr import axis_blocks
-from world2minecraft.networks.layers.norms import Norm
+from world2minecraft.networks.layers.normalization import Norm
+from world2minecraft.networks.layers.residual_3d import Reaches, axis_blocks
 
 RELATIONS = 4
 

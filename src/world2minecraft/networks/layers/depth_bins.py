@@ -6,9 +6,8 @@ import torch
 from torch import Tensor, nn
 
 from world2minecraft.networks.batch import OccInput
-from world2minecraft.networks.layers.norms import Norm, conv2d
-from world2minecraft.networks.layers.projection import Sight
-from world2minecraft.networks.layers.sampling import sample
+from world2minecraft.networks.layers.normalization import Norm, conv2d
+from world2minecraft.networks.layers.projection import Sight, sample
 from world2minecraft.networks.layers.unet2d import ResidualBlock
 
 FARTHEST_M = 10.0  # ISO's range for rooms, from 0.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.networks.layers.norms import Norm, conv2d
+from world2minecraft.networks.layers.normalization import Norm, conv2d
 
 STRIDES = (2, 4, 8, 16, 32)
 # What ImageNet's pictures have, so that trained backbones fit in: red, green, blue.

@@ -2,15 +2,130 @@
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Layout, Opening
-from world2minecraft.procgen.houses.house_gaps import Gap, house_gaps
-from world2minecraft.procgen.houses.house_paint import paint_house
-from world2minecraft.procgen.houses.house_plan import Cell, HousePlan, plan_house
-from world2minecraft.procgen.houses.house_rooms import furnish_cells
-from world2minecraft.procgen.rooms.colour_scheme import choose_style
-from world2minecraft.procgen.rooms.place import Item
+from world2minecraft.procgen.houses.plan import (
+    WALL_M,
+    Cell,
+    Gap,
+    HousePlan,
+    house_gaps,
+    plan_house,
+    stairwell,
+)
+from world2minecraft.procgen.houses.rooms import furnish_cells
+from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style, choose_style
+from world2minecraft.procgen.rooms.floor_shapes import grown
+from world2minecraft.procgen.rooms.furniture_model import shade
+from world2minecraft.procgen.rooms.openings import Hole
+from world2minecraft.procgen.rooms.placement import Item, Rug
 from world2minecraft.procgen.rooms.room import Room, layout_object
-from world2minecraft.procgen.rooms.voxelization import VOXEL_M
+from world2minecraft.procgen.rooms.voxelization import (
+    SHELL,
+    VOXEL_M,
+    Canvas,
+    floor_colours,
+    paint_hole,
+    paint_item,
+    paint_rug,
+)
+
+# A planned house becomes voxels: walls, slabs, gaps, stairs, and what stands in its rooms.
+
+CEILING_COLOUR = (244, 243, 239)
+FLOORS = {"kitchen": "tiles", "bathroom": "tiles", "hall": "tiles"}
+
+
+def paint_house(
+    plan: HousePlan,
+    gaps: tuple[Gap, ...],
+    styles: list[Style],
+    items: list[list[Item]],
+    rugs: list[tuple[Rug, ...]],
+    rng: np.random.Generator,
+) -> Canvas:
+    """Paint a house.
+
+    Args:
+        plan: its cells.
+        gaps: the openings in its walls.
+        styles: the colours of each cell.
+        items: what stands in each cell, in the frame of the house.
+        rugs: what lies on the floor of each cell, in the frame of the house.
+        rng: draws the grain of floors and furniture.
+    """
+    canvas = Canvas(plan.size_m)
+    for cell, style in zip(plan.cells, styles, strict=True):
+        _paint_cell(canvas, plan, cell, style, rng)
+    for gap in gaps:
+        _paint_gap(canvas, plan, gap)
+    if plan.flight:
+        canvas.fill(canvas.cells(stairwell(plan, plan.flight)), 0, 0, 0)
+    for cell, flat in zip(plan.cells, rugs, strict=True):
+        for rug in flat:
+            paint_rug(canvas, rug, cell.rect, cell.storey * plan.pitch_m)
+    number = 0
+    for held in items:
+        for item in held:
+            number += 1
+            paint_item(canvas, item, number, rng)
+    return canvas
+
+
+def _paint_cell(
+    canvas: Canvas, plan: HousePlan, cell: Cell, style: Style, rng: np.random.Generator
+) -> None:
+    """Paint the walls, the slabs and the air of one room; walls are shared by their halves."""
+    air = _air(canvas, cell)
+    near, half = grown(air, SHELL), grown(air, SHELL // 2)
+    floor = SHELL + round(cell.storey * plan.pitch_m / VOXEL_M)
+    top = floor + round(plan.height_m / VOXEL_M)
+    labels, colour = canvas.labels, canvas.colour
+    walls = near & (labels[:, :, floor] == 0)
+    column = labels[:, :, floor - SHELL : top + SHELL]
+    column[walls] = int(SemanticClass.WALL)
+    colour[walls, floor - SHELL : top + SHELL] = style.wall
+    colour[half, floor:top] = style.wall
+    colour[half, floor : floor + 4] = shade(WHITE, 0.96)
+    labels[near, floor - SHELL : floor] = int(SemanticClass.FLOOR)
+    tones = floor_colours(FLOORS.get(cell.kind, "planks"), air.shape, style.floor_wood, rng)
+    colour[half, floor - SHELL : floor] = tones[half][:, None]
+    labels[near, top : top + SHELL] = int(SemanticClass.CEILING)
+    colour[near, top : top + SHELL] = CEILING_COLOUR
+    labels[air, floor:top] = 0
+    colour[air, floor:top] = 0
+
+
+def _air(canvas: Canvas, cell: Cell) -> np.ndarray:
+    """Return bool [X, Y]: the columns of a room's floor."""
+    x, y = canvas.middles_m()
+    x, y = x - cell.x_m, y - cell.y_m
+    width, depth, _ = cell.ground.size_m
+    inside = (x > 0) & (x < width) & (y > 0) & (y < depth)
+    return inside & ~cell.ground.built(x, y)
+
+
+def _paint_gap(canvas: Canvas, plan: HousePlan, gap: Gap) -> None:
+    """Cut a gap through its wall; a window or a front door only as deep as it lies in it."""
+    floor_z = plan.cells[gap.cells[0]].storey * plan.pitch_m
+    if len(gap.cells) == 1:
+        hole = Hole(gap.kind, 0, gap.first_m, gap.last_m, gap.sill_m, gap.head_m)
+        paint_hole(canvas, hole, gap.wall, floor_z)
+        return
+    x0, y0, x1, y1 = gap.wall.rect(gap.first_m, gap.last_m, -WALL_M, 0.0)
+    a, b, c = canvas.cells((x0, y0, floor_z + gap.sill_m, x1, y1, floor_z + gap.head_m))
+    frame = _grown_slices(a, b, c, gap.wall.turn % 2)
+    canvas.colour[frame][canvas.labels[frame] == int(SemanticClass.WALL)] = WHITE
+    canvas.fill((a, b, c), 0, 0, 0)
+
+
+def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, slice, slice]:
+    """Return the voxels of a gap with a frame of 6 cm around it; at the floor there is none."""
+    sides = [a, b]
+    run = sides[1 - across]
+    sides[1 - across] = slice(run.start - 3, run.stop + 3)
+    return sides[0], sides[1], slice(c.start, c.stop + 3)
+
 
 ROOMS, STOREYS = (3, 14), (1, 2)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.procgen.rooms.furniture_model import Model
 from world2minecraft.procgen.rooms.odd import ODD
-from world2minecraft.procgen.rooms.place import Item, Plan, ways_are_clear
+from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
 from world2minecraft.procgen.rooms.small import ON_BEDS, ON_FLOORS, ON_TABLES, Maker
 
 Doors = list[tuple[float, float]]

@@ -8,14 +8,16 @@ does not hold what makes it what it is.
 from world2minecraft.procgen.rooms import decor, seating, storage
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.furniture_model import Model
-from world2minecraft.procgen.rooms.place import Item, Plan, snapped
-from world2minecraft.procgen.rooms.relations import (
+from world2minecraft.procgen.rooms.placement import (
+    Item,
+    Plan,
     Rug,
     chairs_around,
     pendant_over,
     picture_anywhere,
     pictures_over,
     rug_around,
+    snapped,
 )
 
 

@@ -8,8 +8,7 @@ import numpy as np
 from world2minecraft.procgen.rooms import daily_rooms, side_rooms
 from world2minecraft.procgen.rooms.colour_scheme import Style
 from world2minecraft.procgen.rooms.furniture_model import whole
-from world2minecraft.procgen.rooms.place import Plan
-from world2minecraft.procgen.rooms.relations import Rug
+from world2minecraft.procgen.rooms.placement import Plan, Rug
 
 
 @dataclass(frozen=True)

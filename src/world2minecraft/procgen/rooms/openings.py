@@ -7,9 +7,9 @@ import numpy as np
 
 from world2minecraft.core.types import Opening
 from world2minecraft.procgen.rooms.decor import curtain, door
+from world2minecraft.procgen.rooms.floor_shapes import Ground
 from world2minecraft.procgen.rooms.furniture_model import Colour, whole
-from world2minecraft.procgen.rooms.ground import Ground
-from world2minecraft.procgen.rooms.place import Item, Plan
+from world2minecraft.procgen.rooms.placement import Item, Plan
 
 DOOR_M = (0.90, 2.04)
 DOOR_SWING_M = 0.9

@@ -9,6 +9,12 @@ from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.procgen.rooms import voxelization as voxels
 from world2minecraft.procgen.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, choose_style
+from world2minecraft.procgen.rooms.floor_shapes import (
+    SHAPES,
+    open_walls,
+    shape_of_seed,
+    shaped_ground,
+)
 from world2minecraft.procgen.rooms.kinds import BASE_KINDS, KINDS, random_size
 from world2minecraft.procgen.rooms.openings import (
     Hole,
@@ -17,8 +23,7 @@ from world2minecraft.procgen.rooms.openings import (
     door_step_m,
     hang_curtains,
 )
-from world2minecraft.procgen.rooms.place import Item, Plan, ways_are_clear
-from world2minecraft.procgen.rooms.shapes import SHAPES, open_walls, shape_of_seed, shaped_ground
+from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
 

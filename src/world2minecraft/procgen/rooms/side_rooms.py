@@ -5,8 +5,15 @@ from world2minecraft.procgen.rooms import decor, seating, storage
 from world2minecraft.procgen.rooms import play_and_hall as playing
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.furniture_model import Model
-from world2minecraft.procgen.rooms.place import Item, Plan, snapped
-from world2minecraft.procgen.rooms.relations import Rug, chairs_around, pictures_over, rug_around
+from world2minecraft.procgen.rooms.placement import (
+    Item,
+    Plan,
+    Rug,
+    chairs_around,
+    pictures_over,
+    rug_around,
+    snapped,
+)
 
 
 def shuffled_walls(plan: Plan) -> tuple[int, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Model, Part, moved
-from world2minecraft.procgen.rooms.place import Item
+from world2minecraft.procgen.rooms.placement import Item
 
 PROBES = (-1 / 3, 0.0, 1 / 3)  # Of a voxel's side, along each axis.
 ENOUGH = 9  # Of 27: thin boards stay whole when they are turned, and nothing grows fat.

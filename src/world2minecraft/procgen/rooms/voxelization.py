@@ -8,11 +8,10 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
+from world2minecraft.procgen.rooms.floor_shapes import Ground, Rect, Wall, grown
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Colour, Part, shade
-from world2minecraft.procgen.rooms.ground import Ground, Rect, Wall, grown
 from world2minecraft.procgen.rooms.openings import RECESS_M, Hole
-from world2minecraft.procgen.rooms.place import Item
-from world2minecraft.procgen.rooms.relations import Rug
+from world2minecraft.procgen.rooms.placement import Item, Rug
 from world2minecraft.procgen.rooms.solid_voxels import is_plain, solid_cells
 
 VOXEL_M = STEP_M

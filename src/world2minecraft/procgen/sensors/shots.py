@@ -23,7 +23,7 @@ from world2minecraft.procgen.sensors.depth_camera import (
     sensor,
 )
 from world2minecraft.procgen.sensors.photo import Photo, PhotoScene, prepare_photos, take_photo
-from world2minecraft.procgen.sensors.tour import plan_tour
+from world2minecraft.procgen.sensors.trajectory import plan_tour
 
 FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
 MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.

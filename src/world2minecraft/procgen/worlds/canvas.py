@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.connect import settle
+from world2minecraft.construction.finishing import settle
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
 from world2minecraft.core.types import BlockVolume

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture import Idiom, template
 from world2minecraft.furniture.block_designs import block_size, laid
-from world2minecraft.procgen.rooms.place import Item
+from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import Ways
 from world2minecraft.procgen.worlds.furniture_choice import designs_for, dressed

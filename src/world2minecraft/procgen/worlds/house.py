@@ -12,8 +12,7 @@ import numpy as np
 
 from world2minecraft.minecraft.physics.body import HEIGHT, WIDTH
 from world2minecraft.minecraft.physics.walk_graph import columns_per_block
-from world2minecraft.procgen.houses.house_gaps import Gap, house_gaps
-from world2minecraft.procgen.houses.house_plan import WALL_M, Cell, HousePlan, plan_house
+from world2minecraft.procgen.houses.plan import WALL_M, Cell, Gap, HousePlan, house_gaps, plan_house
 
 RAIL = 1  # A rail takes a block.
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms.kinds import KINDS
+from world2minecraft.procgen.worlds.display_stands import HOME
 from world2minecraft.procgen.worlds.house import BlockHouse
 from world2minecraft.procgen.worlds.recipes import PICTURES
 from world2minecraft.procgen.worlds.task import BOARDS, Task
-from world2minecraft.procgen.worlds.wares import HOME
 
 BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
     "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.procgen.worlds.display_stands import Show
 from world2minecraft.procgen.worlds.dressing import hang_one
 from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
 from world2minecraft.procgen.worlds.house import BlockRoom
-from world2minecraft.procgen.worlds.showing import Show
 
 BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
     "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",

@@ -26,7 +26,7 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
     straightened,
 )
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.retrieval.settling import settle
+from world2minecraft.reconstruction.retrieval.placement_settling import settle
 from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.reconstruction.stages import LATER_STEPS
 

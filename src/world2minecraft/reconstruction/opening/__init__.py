@@ -5,7 +5,11 @@ returned as it is. All else is written anew to ``OUT/capture`` in our plain layo
 without distortion, poses, depth, how far each pixel is to be trusted, and where the scale is from.
 """
 
-from world2minecraft.reconstruction.opening.opening import open_prepared, scene_name
-from world2minecraft.reconstruction.opening.preparing import FOLDER, prepared
+from world2minecraft.reconstruction.opening.preparation import (
+    FOLDER,
+    open_prepared,
+    prepared,
+    scene_name,
+)
 
 __all__ = ["FOLDER", "open_prepared", "prepared", "scene_name"]

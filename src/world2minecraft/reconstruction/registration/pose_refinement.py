@@ -234,7 +234,7 @@ def register_surface(
     The depth is touched only where scales are found to vary, and nothing where the surface that
     took no part does not fit better.
     """
-    room = surface.turned(scan_to_room)
+    room = surface.transformed(scan_to_room)
     still = begin(room, chosen)
     if chosen.passes == 0 or len(room.cameras) < 2 or not len(room.points_m):
         return _registered(surface, still, scan_to_room, Verdict(False, None, None))
@@ -276,7 +276,7 @@ def _misfit_m(
     surface: OrientedPoints, held: np.ndarray, chosen: RegisterParameters
 ) -> float | None:
     """Return the median distance of held-out patches from their surfels; None where few judge."""
-    judges = surface.chosen(held)
+    judges = surface.subset(held)
     surfels = surfels_of(judges, chosen.cell_m, JUDGED_GAP_M)
     index = shared(judges, surfels, np.ones(len(judges.points_m), bool))
     if len(index) < LEAST_JUDGES:
@@ -299,7 +299,7 @@ def _registered(
     scale = np.round(np.exp(state.total[:, 6]), DECIMALS)
     facts = _facts(state, verdict)
     return Registered(
-        Corrections(surface.names, change, scale, facts), state.surface.turned(room_to_scan)
+        Corrections(surface.names, change, scale, facts), state.surface.transformed(room_to_scan)
     )
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Template, template, templates_of
-from world2minecraft.reconstruction.retrieval.bounds import floor_under_m, within_rooms
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, within_rooms
 from world2minecraft.reconstruction.retrieval.template_matching import (
     Bias,
     Scored,

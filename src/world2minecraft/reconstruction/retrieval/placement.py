@@ -11,10 +11,9 @@ from world2minecraft.furniture import template, templates_of
 from world2minecraft.furniture.chair_fitting import fit_seat, look_at, without_open_top
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
-from world2minecraft.reconstruction.retrieval.bounds import floor_under_m
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
-from world2minecraft.reconstruction.retrieval.settling import settle
+from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, settle
 from world2minecraft.reconstruction.retrieval.template_matching import (
     NO_SHIFT,
     Bias,

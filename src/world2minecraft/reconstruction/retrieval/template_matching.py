@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import Template
-from world2minecraft.furniture import rasterization as raster
+from world2minecraft.furniture import raster
 from world2minecraft.furniture.rasterization import overlaps
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters

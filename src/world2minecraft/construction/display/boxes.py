@@ -1,0 +1,253 @@
+"""Few boxes out of the parts of a template: exact ones, and coarser ones only over a limit.
+
+Parts may overlap; where they do the smaller one shows, as a shelf does in the books of a bay. The
+planes of all parts cut the shape into cells of any size, and the cells of one block are joined to
+boxes again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply, room_to_block, rotation_about_z
+from world2minecraft.core.types import Entity
+from world2minecraft.furniture import Part
+from world2minecraft.geometry.box_decomposition import cover_boxes, partition_boxes, simplify_boxes
+from world2minecraft.minecraft.entities import block_display
+
+# Where an object stands: its own frame in the room, and its boxes as display entities.
+
+
+class Piece(NamedTuple):
+    """One box of an object: x0 y0 z0 x1 y1 z1 in metres of its own frame, and its block."""
+
+    box_m: np.ndarray  # float64 [6]
+    state: str
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """An object's own frame: its origin in the middle of its footprint, at its bottom.
+
+    ``base_m`` is that origin in the room, ``size_m`` the object's depth, width and height along
+    its own axes; ``yaw_deg`` turns its front from room +x, counter-clockwise from above.
+    """
+
+    base_m: np.ndarray  # float64 [3]
+    size_m: np.ndarray  # float64 [3]
+    yaw_deg: float
+
+    @property
+    def object_to_room(self) -> np.ndarray:
+        """The 4x4 from the object's frame to the room's, both in metres."""
+        transform = rotation_about_z(self.yaw_deg)
+        transform[:3, 3] = self.base_m
+        return transform
+
+    @property
+    def bounds_m(self) -> np.ndarray:
+        """float64 [2, 3]: the least and the greatest corner of its turned box in the room."""
+        x, y, z = self.size_m
+        corners = np.array(
+            [[a, b, c] for a in (-x / 2, x / 2) for b in (-y / 2, y / 2) for c in (0, z)]
+        )
+        placed = apply(self.object_to_room, corners)
+        return np.stack([placed.min(axis=0), placed.max(axis=0)])
+
+    def moved(self, shift_m: np.ndarray) -> "Frame":
+        """Return the frame moved in the room by a shift, float64 [3] in metres."""
+        return replace(self, base_m=self.base_m + shift_m)
+
+
+def boxes_in_room(pieces: Sequence[Piece], frame: Frame) -> tuple[np.ndarray, np.ndarray]:
+    """Return the middles and the half sides, float64 [N, 3] both, of pieces.
+
+    The middles are in the room; the half sides are along the object's own axes.
+    """
+    boxes = np.array([piece.box_m for piece in pieces]).reshape(-1, 2, 3)
+    middles = apply(frame.object_to_room, boxes.mean(axis=1))
+    return middles, (boxes[:, 1] - boxes[:, 0]) / 2
+
+
+def entities_of(
+    pieces: Sequence[Piece],
+    frame: Frame,
+    corner_m: np.ndarray,
+    blocks_per_metre: float,
+    class_id: int,
+    instance: int,
+    *,
+    view_range: float = 1.0,
+    lights: Sequence[int | None] | None = None,
+) -> list[Entity]:
+    """Return a display entity for each piece, all at the middle of their object.
+
+    One place for all of an object's entities lets commands move and turn it as a whole.
+
+    Args:
+        pieces: the boxes of the object in its own frame.
+        frame: where it stands.
+        corner_m: the corner of the room that stands at block (0, 64, 0).
+        blocks_per_metre: the scale.
+        class_id: the object's class.
+        instance: its number.
+        view_range: how far it is drawn, in lengths of 64 blocks.
+        lights: for each piece the light that it is drawn by, None by that of its place.
+    """
+    middle_m = np.array([0.0, 0.0, frame.size_m[2] / 2])
+    to_block = room_to_block(corner_m, blocks_per_metre)
+    position = apply(to_block, apply(frame.object_to_room, middle_m))
+    result = []
+    for number, piece in enumerate(pieces):
+        low, high = piece.box_m[:3] - middle_m, piece.box_m[3:] - middle_m
+        # The axes of blocks: x stays, up is z, and south is -y.
+        box = np.array([low[0], low[2], -high[1], high[0], high[2], -low[1]]) * blocks_per_metre
+        result.append(
+            block_display(
+                piece.state,
+                box,
+                position.tolist(),
+                yaw_deg=frame.yaw_deg,
+                class_id=class_id,
+                instance=instance,
+                view_range=view_range,
+                light=None if lights is None else lights[number],
+            )
+        )
+    return result
+
+
+LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
+FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
+SAME_M = 1e-6  # Planes nearer than this are one.
+# Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
+# in one plane, do not flicker: a screen tells so much apart across a room.
+INSET_BLOCKS = 0.0005
+Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def pieces_of(
+    parts: Sequence[Part], states: Sequence[str], most: int, blocks_per_metre: float
+) -> list[Piece]:
+    """Return few pieces that show parts, exactly where that takes at most ``most``.
+
+    Args:
+        parts: the boxes of a template in its own frame.
+        states: the block of each part.
+        most: over so many pieces the shape is made coarser, to an IoU of ``LEAST_IOU``.
+        blocks_per_metre: the scale, by which pieces that overlap are kept apart.
+    """
+    names = sorted(set(states))
+    numbers = [names.index(state) + 1 for state in states]
+    labels, planes = _cut(parts, numbers)
+    boxes = partition_boxes(labels)
+    if len(boxes) > most:  # Only then boxes may overlap, as those of a round table's top do.
+        boxes = min(boxes, cover_boxes(labels), _whole(parts, numbers, planes), key=len)
+    if len(boxes) > most:
+        coarse, fine = _coarse(labels, planes, most)
+        if len(coarse) < len(boxes):
+            boxes, planes = coarse, fine
+    inset = INSET_BLOCKS / blocks_per_metre * _depths(boxes)
+    pieces = []
+    for (label, *cells), back in zip(boxes.tolist(), inset.tolist(), strict=True):
+        corners = [planes[axis % 3][cell] for axis, cell in enumerate(cells)]
+        box = np.array(corners, np.float64)
+        # Nothing thinner than the inset is turned inside out by it.
+        step = min(back, float((box[3:] - box[:3]).min()) / 4)
+        pieces.append(Piece(box + np.repeat([step, -step], 3), names[label - 1]))
+    return pieces
+
+
+def _whole(parts: Sequence[Part], labels: Sequence[int], planes: Planes) -> np.ndarray:
+    """Return the parts themselves as boxes, int64 [N, 7], between planes; the smallest first.
+
+    Where they overlap the larger stands back from the smaller, which shows.
+    """
+    corners = np.array([part.box_m for part in parts])
+    order = np.argsort(np.round(np.prod(corners[:, 3:] - corners[:, :3], axis=1), 9), kind="stable")
+    return np.array(
+        [
+            [labels[n], *(_place(planes[axis % 3], corners[n, axis]) for axis in range(6))]
+            for n in order.tolist()
+        ]
+    )
+
+
+def _cut(parts: Sequence[Part], labels: Sequence[int]) -> tuple[np.ndarray, Planes]:
+    """Return labels, int32 [X, Y, Z], of the cells between the planes of parts, and the planes."""
+    boxes = np.array([part.box_m for part in parts], np.float64).reshape(-1, 2, 3)
+    x, y, z = (_distinct(boxes[:, :, axis].ravel()) for axis in range(3))
+    planes = (x, y, z)
+    result = np.zeros([max(len(each) - 1, 0) for each in planes], np.int32)
+    volumes = np.prod(boxes[:, 1] - boxes[:, 0], axis=1)
+    for index in np.argsort(-np.round(volumes, 9), kind="stable").tolist():
+        low, high = boxes[index]
+        where = tuple(
+            slice(_place(planes[axis], low[axis]), _place(planes[axis], high[axis]))
+            for axis in range(3)
+        )
+        result[where] = labels[index]
+    return result, planes
+
+
+def _distinct(values: np.ndarray) -> np.ndarray:
+    """Return the values, rising, without those that another is as good as."""
+    ordered = np.unique(values)
+    return ordered[np.concatenate([[True], np.diff(ordered) > SAME_M])]
+
+
+def _place(planes: np.ndarray, value: float) -> int:
+    return int(np.abs(planes - value).argmin())
+
+
+def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, Planes]:
+    """Return boxes of a grid of 2 cm whose union has an IoU of at least a bound."""
+    fine, picks = [], []
+    for each in planes:
+        count = max(1, round((each[-1] - each[0]) / FINE_M))
+        edges = np.linspace(each[0], each[-1], count + 1)
+        middles = (edges[:-1] + edges[1:]) / 2
+        picks.append(np.clip(np.searchsorted(each, middles) - 1, 0, len(each) - 2))
+        fine.append(edges)
+    fewer = simplify_boxes(labels[np.ix_(*picks)], LEAST_IOU, enough=most)
+    return fewer, (fine[0], fine[1], fine[2])
+
+
+def _depths(boxes: np.ndarray) -> np.ndarray:
+    """Return how far each box stands back, int [N]: one step more than those it overlaps."""
+    depths = np.zeros(len(boxes), np.int64)
+    for n in range(1, len(boxes)):
+        meets = (boxes[:n, 1:4] < boxes[n, 4:]) & (boxes[n, 1:4] < boxes[:n, 4:])
+        over = meets.all(axis=1)
+        if over.any():
+            depths[n] = depths[:n][over].max() + 1
+    return depths
+
+
+def heap_pieces(
+    labels: np.ndarray,
+    open_cells: np.ndarray,
+    names: Sequence[str],
+    low_m: np.ndarray,
+    cell_m: float,
+) -> list[Piece]:
+    """Return the pieces of an object's own cells, made coarser to an IoU of ``LEAST_IOU``.
+
+    Args:
+        labels: int [X, Y, Z], 0 where there is nothing, else 1 and more: which of ``names``.
+        open_cells: bool [X, Y, Z], unseen cells inside the object.
+        names: the blocks.
+        low_m: float64 [3], the corner of cell (0, 0, 0) in the object's frame.
+        cell_m: the side of a cell.
+    """
+    boxes = simplify_boxes(labels, LEAST_IOU, open_cells)
+    exact = partition_boxes(labels)
+    if len(exact) <= len(boxes):
+        boxes = exact
+    corners = np.tile(low_m, 2) + boxes[:, 1:] * cell_m
+    return [
+        Piece(box, str(names[int(label) - 1]))
+        for label, box in zip(boxes[:, 0].tolist(), corners, strict=True)
+    ]

@@ -1,0 +1,137 @@
+"""Objects as shapes on the block lattice: fitted in their own frame, turned, and put in place."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.fitting import Fit, PartsFit, fit_parts
+from world2minecraft.construction.fitting.shapes import SUB, ShapeSet, shape_set
+from world2minecraft.construction.lattice import Lattice
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
+from world2minecraft.furniture import Part
+
+# Shapes in half blocks: each block is empty, full, or its lower or upper half.
+#
+# A design is an array ``halves`` uint8 [X, Y, Z]: bit 1 for the lower half of the block, bit 2 for
+# the upper. They are what is left where no finer shape exists in an object's colours: each becomes a
+# full block.
+
+LOWER, UPPER, FULL = 1, 2, 3
+
+
+def of_half_layers(layers: np.ndarray) -> np.ndarray:
+    """Return halves, uint8 [X, Y, Z], of a bool array [X, Y, 2 Z] with two layers a block."""
+    return (layers[:, :, 0::2] * LOWER + layers[:, :, 1::2] * UPPER).astype(np.uint8)
+
+
+TIE = 1e-6
+LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.
+
+
+class Design(NamedTuple):
+    """Shapes on the lattice, and which part each block belongs to (1 where there are none)."""
+
+    low: np.ndarray  # int [3], the lattice index of the first block
+    numbers: np.ndarray  # intp [X, Y, Z], of the shape set
+    part: np.ndarray  # int16 [X, Y, Z], 0 where it is empty
+    shapes: ShapeSet
+
+    @property
+    def filled(self) -> np.ndarray:
+        """Bool [X, Y, Z]."""
+        return self.numbers > 0
+
+    def moved(self, step: np.ndarray) -> "Design":
+        """Return the design moved by whole blocks, int [3]."""
+        return self._replace(low=self.low + step)
+
+    def cut(self, low: np.ndarray, box: tuple[slice, ...], numbers: np.ndarray) -> "Design":
+        """Return the part of the design in a box of it that begins at ``low``, with new shapes."""
+        return Design(low, numbers, np.where(numbers > 0, self.part[box], 0), self.shapes)
+
+
+def of_halves(low: np.ndarray, halves: np.ndarray, part: np.ndarray | None = None) -> Design:
+    """Return half blocks, uint8 [X, Y, Z], as a design of full blocks that begins at ``low``."""
+    numbers = (halves > 0).astype(np.intp)
+    own = numbers.astype(np.int16) if part is None else np.where(halves > 0, part, 0)
+    return Design(low, numbers, own, shape_set(frozenset()))
+
+
+def one_block(place: np.ndarray) -> Design:
+    """Return a single full block at a place, int [3]."""
+    ones = np.ones((1, 1, 1), np.intp)
+    return Design(place, ones, ones.astype(np.int16), shape_set(frozenset()))
+
+
+def design_of_parts(
+    placement: Placement, parts: Sequence[Part], lattice: Lattice, kinds: frozenset[str]
+) -> Design:
+    """Return a placement's parts as shapes, turned and in place.
+
+    Equal parts at one scale come out equal, wherever they stand.
+    """
+    sizes = placement.size_m * lattice.blocks_per_metre
+    middle = lattice.coordinates_of(placement.center_m)
+    base, bottom = standing(middle[2] - sizes[2] / 2, lattice)
+    counts, start = _plan(placement, sizes, middle)
+    boxes = tuple(tuple(np.round(part.box_m, 4).tolist()) for part in parts)
+    fit, part = _fit_of_parts(
+        boxes, lattice.blocks_per_metre, kinds, counts, bottom, placement.class_id in LAID_ON
+    )
+    shapes, turns = shape_set(kinds), placement.quarter_turns
+    numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
+    centre = turned_middle(fit, turns)
+    xy = np.floor(middle[:2] - centre + 0.5 - TIE).astype(int) if start is None else start
+    return Design(np.array([*xy, base]), numbers, np.rot90(part, turns), shapes)
+
+
+@lru_cache(maxsize=512)
+def _fit_of_parts(boxes, blocks_per_metre, kinds, counts, bottom, flush) -> PartsFit:
+    return fit_parts(
+        np.array(boxes),
+        blocks_per_metre,
+        shape_set(kinds),
+        counts=counts,
+        bottom=bottom,
+        flush=flush,
+    )
+
+
+def turned_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
+    """Return where the middle of a fit lies in its box after quarter turns, float64 [2]."""
+    x, y = fit.middle.tolist()
+    wide, long = fit.numbers.shape[:2]
+    for _ in range(quarter_turns % 4):
+        x, y, wide, long = long - y, x, long, wide
+    return np.array([x, y])
+
+
+def standing(bottom: float, lattice: Lattice) -> tuple[int, int]:
+    """Return the layer where something begins, and the sub-cell in it: whole or half a block."""
+    half = float(np.floor(2 * bottom + 0.5) / 2)
+    ground = float(lattice.ground_under(half))
+    half = ground if half < ground + 1 else half
+    return int(np.floor(half)), round((half - np.floor(half)) * SUB)
+
+
+def _plan(
+    placement: Placement, sizes: np.ndarray, middle: np.ndarray
+) -> tuple[tuple[int, int] | None, np.ndarray | None]:
+    """Return the whole blocks along a placement's own axes and its first block, or None twice.
+
+    Of what stands along walls the sides are rounded, each to the nearest edge of a block: its
+    front stays where it is.
+    """
+    if placement.class_id != SemanticClass.FURN:
+        return None, None
+    odd = placement.quarter_turns % 2
+    turned = sizes[:2][::-1] if odd else sizes[:2]
+    # Halves go outward on both sides, so that a turn or a mirror image changes nothing.
+    start = np.ceil(middle[:2] - turned / 2 - 0.5 - TIE).astype(int)
+    end = np.floor(middle[:2] + turned / 2 + 0.5 + TIE).astype(int)
+    count = np.maximum(end - start, 1)
+    along, across = (count[::-1] if odd else count).tolist()
+    return (along, across), start

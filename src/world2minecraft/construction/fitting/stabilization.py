@@ -1,0 +1,509 @@
+"""From gains to shapes that stand: stable, on legs, joined, symmetric, and without crumbs."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.construction.fitting.problem import UP, WAYS, Problem, Rules
+from world2minecraft.construction.fitting.selection import Gains, choose
+from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
+from world2minecraft.geometry.connected_components import label_components
+
+# What holds together: shapes that touch where the thing that they show runs on.
+#
+# Block by block the best shapes of a chair are a plate at the top of one block and a leg at the
+# bottom of it: a hovering seat. So a pair of shapes pays where the wanted runs through the face
+# between them and they do not touch.
+
+BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
+LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
+STACKED = 30.0  # Stairs over stairs: an upright wall of them looks like a washboard.
+ROUNDS = 6
+
+
+@lru_cache(maxsize=16)
+def touching(shapes: ShapeSet) -> np.ndarray:
+    """Return whether a shape touches another on one side of it, bool [6, S, S], ways as WAYS."""
+    flat = shapes.faces.reshape(len(shapes), 3, 2, -1).astype(np.float32)
+    rows = []
+    for axis in range(3):
+        high, low = flat[:, axis, 1], flat[:, axis, 0]
+        rows += [high @ low.T > 0, low @ high.T > 0]
+    return np.stack(rows)
+
+
+def joined(
+    grid: np.ndarray, rows: np.ndarray, scores: np.ndarray, problem: Problem, shapes: ShapeSet
+) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], changed so that neighbours touch where the wanted runs on.
+
+    Blocks of even and of odd places take turns; none that is empty is filled.
+
+    Args:
+        grid: int [X, Y, Z], the shapes to begin with.
+        rows: int [M], the blocks of the problem that may change.
+        scores: float32 [N, S], what each shape gains in each block; -inf where it may not stand.
+        problem: what is wanted.
+        shapes: the set.
+    """
+    contact = touching(shapes)[:, : shapes.free]
+    posts, stairs = shapes.kinds == "post", shapes.kinds == "stairs"
+    padded = np.pad(grid, 1)
+    places = tuple((problem.cells + 1).T)
+    rows = rows[padded[places][rows] > 0]
+    odd = problem.cells[rows].sum(1) % 2
+    moved = [True, True]
+    for turn in range(2 * ROUNDS):
+        mine = rows[odd == turn % 2]
+        energy = scores[mine, : shapes.free].copy()
+        for way, step in enumerate(WAYS):
+            other = padded[tuple((problem.cells[mine] + 1 + step).T)]
+            asked = problem.flows[way, mine] & (other > 0)
+            cost = np.where(posts[other], LEG_BROKEN, BROKEN).astype(np.float32)
+            energy -= cost[:, None] * (~contact[way][:, other].T & asked[:, None])
+            if step[2]:
+                energy -= np.float32(STACKED) * (stairs[other][:, None] & stairs[: shapes.free])
+        best = energy.argmax(1)
+        here = tuple(axis[mine] for axis in places)
+        moved[turn % 2] = bool((padded[here] != best).any())
+        padded[here] = best
+        if not any(moved):
+            break
+    return padded[1:-1, 1:-1, 1:-1].copy()
+
+
+def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
+    """Return the share of the joints of the wanted at which shapes [X, Y, Z] do not touch."""
+    contact, padded = touching(shapes), np.pad(grid, 1)
+    held = broken = 0
+    for way in (0, 2, 4):
+        mine = problem.flows[way]
+        here = problem.cells[mine] + 1
+        own, other = padded[tuple(here.T)], padded[tuple((here + WAYS[way]).T)]
+        held += len(own)
+        broken += int((~contact[way][own, other]).sum())
+    return broken / max(held, 1)
+
+
+def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
+    """Return the part, int32 [X, Y, Z], of each block: blocks that touch by faces are one part."""
+    contact = touching(shapes)
+    # A board of blocks and, between them, the joints: labelled at twice the size.
+    board = np.zeros([2 * side - 1 for side in grid.shape], bool)
+    board[::2, ::2, ::2] = grid > 0
+    for axis in range(3):
+        inner, outer, between = ([slice(None)] * 3 for _ in range(3))
+        inner[axis], outer[axis] = slice(None, -1), slice(1, None)
+        between = [slice(None, None, 2)] * 3
+        between[axis] = slice(1, None, 2)
+        meet = contact[2 * axis][grid[tuple(inner)], grid[tuple(outer)]]
+        board[tuple(between)] = meet
+    return label_components(board, corners=False)[0][::2, ::2, ::2]
+
+
+# What stands on nothing, but should, gets posts under it: a table top whose legs were too thin.
+
+LEAST_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
+LEAST_SPAN = 2  # Blocks from which a part stands on its corners; a narrower one has one post.
+MOST_POSTS = 4
+
+
+def grounded(
+    grid: np.ndarray,
+    parts: np.ndarray,
+    shapes: ShapeSet,
+    stands: bool,
+    held: np.ndarray | None = None,
+    floor: int = 0,
+) -> np.ndarray:
+    """Return which parts touch the floor or something that holds them, bool [parts + 1].
+
+    Args:
+        grid: int [X, Y, Z], the shapes.
+        parts: int32 [X, Y, Z], as of ``parts_of_shapes``.
+        shapes: the set.
+        stands: whether a floor lies under the lowest layer.
+        held: bool [X, Y, Z], the blocks with a wall or a ceiling beside them.
+        floor: the sub-cell of the lowest layer at which that floor lies.
+    """
+    found = np.zeros(int(parts.max(initial=0)) + 1, bool)
+    if held is not None:
+        found[parts[held]] = True
+    if stands:
+        lowest = grid[:, :, 0]
+        stood = shapes.faces[lowest, 2, 0].any((2, 3)) if floor == 0 else lowest > 0
+        found[parts[:, :, 0][stood]] = True
+    found[0] = False
+    return found
+
+
+def on_stilts(
+    grid: np.ndarray,
+    problem: Problem,
+    scores: np.ndarray,
+    shapes: ShapeSet,
+    held: np.ndarray | None = None,
+) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], with posts under the parts that nothing carries.
+
+    A post stands where the wanted has a leg, else under the corners of the part; the block over
+    it takes the best shape that touches it. Where no way down is free, but the wanted runs up to
+    what holds it, as the cord of a lamp does, the posts go up. Else nothing is done.
+
+    Args:
+        grid: the shapes.
+        problem: what is wanted.
+        scores: float32 [N, S], what each shape gains in each block of the problem.
+        shapes: the set; without posts nothing is done.
+        held: bool [X, Y, Z], the blocks with a wall or a ceiling beside them.
+    """
+    posts = np.flatnonzero(shapes.kinds == "post")
+    if not len(posts):
+        return grid
+    result = grid.copy()
+    parts = parts_of_shapes(grid, shapes)
+    volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
+    carried = grounded(grid, parts, shapes, True, held, problem.floor)
+    filled = np.zeros(problem.shape, bool)
+    filled[problem.at] = True
+    hovering = ~carried & (volumes >= LEAST_VOLUME)
+    hovering[0] = False
+    for number in np.flatnonzero(hovering):
+        part = parts == number
+        ways, side = _ways(result, part, filled), 0
+        if not ways and held is not None:
+            ways, side = _cords(result, part, filled, held), 1
+        for x, y, level in ways:
+            shape = _touching_shape(result, (x, y, level), side, problem, scores, shapes)
+            if shape:
+                result[x, y, level] = shape
+                result[x, y, slice(0, level) if side == 0 else slice(level + 1, None)] = posts[0]
+    return result
+
+
+def _cords(
+    grid: np.ndarray, part: np.ndarray, filled: np.ndarray, held: np.ndarray
+) -> list[tuple[int, int, int]]:
+    """Return the column in which a part hangs from the ceiling, and its highest block there."""
+    last = np.where(part.any(2), part.shape[2] - 1 - part[:, :, ::-1].argmax(2), -1)
+    ways = [
+        (int(x), int(y), int(last[x, y]))
+        for x, y in np.argwhere(last >= 0)
+        if held[x, y, -1]
+        and filled[x, y, last[x, y] + 1 :].all()
+        and not grid[x, y, last[x, y] + 1 :].any()
+    ]
+    middle = np.argwhere(part)[:, :2].mean(0)
+    return sorted(ways, key=lambda way: float(np.abs(np.array(way[:2]) - middle).sum()))[:1]
+
+
+def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[int, int, int]]:
+    """Return the columns in which a part gets posts, and the layer of its lowest block there."""
+    first = np.where(part.any(2), part.argmax(2), 0)
+    ways = [
+        (int(x), int(y), int(first[x, y]))
+        for x, y in np.argwhere(first > 0)
+        if not grid[x, y, : first[x, y]].any()
+    ]
+    if not ways:
+        return []
+    spots = np.array(ways)
+    legs = [n for n, (x, y, top) in enumerate(ways) if filled[x, y, :top].all()]
+    if 0 < len(legs) <= MOST_POSTS:
+        return [ways[n] for n in legs]
+    among = np.array(legs or range(len(ways)))
+    span = np.ptp(spots[among, :2], axis=0).max() + 1
+    if span < LEAST_SPAN:
+        apart = np.abs(spots[among, :2] - spots[:, :2].mean(0)).sum(1)
+        return [ways[int(among[apart.argmin()])]]
+    corners = {
+        int(among[(spots[among, 0] * a + spots[among, 1] * b).argmax()])
+        for a in (1, -1)
+        for b in (1, -1)
+    }
+    return [ways[n] for n in sorted(corners)]
+
+
+def _touching_shape(
+    grid: np.ndarray,
+    place: tuple[int, int, int],
+    side: int,
+    problem: Problem,
+    scores: np.ndarray,
+    shapes: ShapeSet,
+) -> int:
+    """Return the best shape for a block over (side 0) or under (1) a post; 0 where there is none.
+
+    It touches the post, and every neighbour that the shape touched that stands there now.
+    """
+    core = slice(SUB // 2 - 1, SUB // 2 + 1)
+    able = np.asarray(shapes.faces[:, 2, side, core, core].any((1, 2)))
+    padded, (x, y, z) = np.pad(grid, 1), (axis + 1 for axis in place)
+    now = int(grid[place])
+    contact = touching(shapes)
+    for way, (i, j, k) in enumerate(WAYS.tolist()):
+        other = int(padded[x + i, y + j, z + k])
+        if contact[way][now, other]:
+            able &= contact[way][:, other]
+    if able[now]:
+        return now
+    row = int(problem.rows[x, y, z])
+    able[shapes.free :] = False
+    gains = np.where(able, scores[row], -np.inf)
+    best = int(gains.argmax())
+    return best if row >= 0 and np.isfinite(gains[best]) else 0
+
+
+# Shapes that stay as they are: what the game would change at the next update is changed here.
+#
+# Stairs beside stairs become corners; carpets lie on something; a single post stays single.
+
+STEPS = np.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)])  # East, north, west, south.
+JOINING = ("full", "stairs", "post")  # What a fence would reach out to.
+
+
+def with_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], with the stair corners that the game makes of neighbours.
+
+    Stairs whose front neighbour is turned by a quarter become outer corners, those whose back
+    neighbour is, inner ones; unless they carry on a row of their like on that side.
+    """
+    code = np.pad(shapes.stairs[numbers], 1, constant_values=-1)
+    at = np.argwhere(code >= 0)
+    if not len(at):
+        return numbers
+    own = code[tuple(at.T)]
+    facing, half = own // 2, own % 2
+
+    def beside(side: np.ndarray) -> np.ndarray:
+        return code[tuple((at + STEPS[side % 4]).T)]
+
+    corner = np.zeros(len(at), np.intp)
+    for inner, way in ((1, facing + 2), (0, facing)):  # What is in front wins: it comes last.
+        other = beside(way)
+        side = other // 2
+        crosses = (other >= 0) & (other % 2 == half) & ((side + facing) % 2 == 1)
+        crosses &= beside(side + 2 * (not inner)) != own
+        left = side == (facing + 1) % 4
+        corner = np.where(crosses, np.where(left, 1, 2) + 2 * (not inner), corner)
+    result = numbers.copy()
+    result[tuple((at - 1).T)] = shapes.corners[own, corner]
+    return result
+
+
+def settled(
+    gains: Gains,
+    cells: np.ndarray,
+    shape: tuple[int, ...],
+    shapes: ShapeSet,
+    lam: float | None = None,
+    barred: np.ndarray | None = None,
+    ground: int | None = 0,
+) -> tuple[np.ndarray, float]:
+    """Return the best stable shape of each block, intp [X, Y, Z], and the lam that chose it.
+
+    Args:
+        gains: of N blocks.
+        cells: int [N, 3], where they are; every other block stays empty.
+        shape: of the whole box.
+        shapes: what may be chosen.
+        lam: see ``choose``.
+        barred: bool [N, S], what may not stand where.
+        ground: the layer whose blocks stand on something already; None for no such layer.
+    """
+    shut = np.zeros((len(cells), len(shapes)), bool) if barred is None else barred.copy()
+    guarded = np.isin(shapes.kinds, ("carpet", "post"))
+    chosen, lam = choose(gains, shapes, lam, shut | guarded)
+    scores = gains.scores(lam)
+    rows, is_stairs = np.arange(len(cells)), shapes.stairs >= 0
+    grid = np.zeros(shape, np.intp)
+    at = tuple(cells.T)
+    for _ in range(ROUNDS):
+        grid[at] = chosen
+        grid = with_corners(grid, shapes)
+        made = grid[at]
+        bent = (made != chosen) & is_stairs[chosen]
+        plain = np.where(shut | guarded | is_stairs, -np.inf, scores)
+        plain[:, shapes.free :] = -np.inf
+        worse = bent & (scores[rows, made] < plain.max(1))
+        if not worse.any():
+            break
+        shut[worse] |= is_stairs
+        chosen = np.where(worse, plain.argmax(1), chosen)
+    if guarded.any():
+        _add_posts(grid, at, scores, shapes, shut)
+        _add_carpets(grid, cells, scores, shapes, shut, ground)
+    return grid, lam
+
+
+def _add_posts(grid, at, scores, shapes, shut) -> None:
+    """Set single posts, in place, where they gain and nothing beside them would join them."""
+    for number in np.flatnonzero(shapes.kinds == "post"):
+        joins = np.isin(shapes.kinds, JOINING)
+        gain = np.where(shut[:, number], -np.inf, scores[:, number])
+        order = np.argsort(-gain, kind="stable")
+        for row in order[gain[order] > 0].tolist():
+            place = tuple(axis[row] for axis in at)
+            if gain[row] <= scores[row, grid[place]]:
+                continue
+            x, y, z = place
+            around = [
+                grid[x + dx, y + dy, z]
+                for dx, dy, _ in STEPS.tolist()
+                if 0 <= x + dx < grid.shape[0] and 0 <= y + dy < grid.shape[1]
+            ]
+            if not joins[around].any() and not shapes.stairs[grid[place]] >= 0:
+                grid[place] = number
+
+
+def _add_carpets(grid, cells, scores, shapes, shut, ground) -> None:
+    """Set carpets, in place, where they gain and lie on something; lower layers first."""
+    for number in np.flatnonzero(shapes.kinds == "carpet"):
+        for row in np.argsort(cells[:, 2], kind="stable").tolist():
+            x, y, z = cells[row].tolist()
+            held = z == ground or (z > 0 and grid[x, y, z - 1] > 0)
+            now = grid[x, y, z]
+            if shut[row, number] or not held or shapes.stairs[now] >= 0:
+                continue
+            if scores[row, number] > max(scores[row, now], 0):
+                grid[x, y, z] = number
+
+
+LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
+POLE_FILL, POLE_SPAN = 0.2, 4  # A pole is half a block thick at most, both ways.
+CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left out.
+
+
+def finished(
+    problem: Problem, shapes: ShapeSet, rules: Rules, held: np.ndarray | None = None
+) -> tuple[np.ndarray, float]:
+    """Return the shape of each block, intp [X, Y, Z], and the lam that chose it.
+
+    Args:
+        problem: what is wanted.
+        shapes: what may be chosen.
+        rules: how.
+        held: bool [X, Y, Z], the blocks that have a wall or a ceiling beside them; None for none.
+    """
+    barred = _barred(problem, shapes, rules)
+    ground = 0 if rules.stands else None
+    grid, lam = settled(
+        problem.gains, problem.cells, problem.shape, shapes, rules.lam, barred, ground
+    )
+    grid = evened(grid, shapes, rules.even)
+    scores = problem.gains.scores(lam)
+    scores[barred] = -np.inf
+    apart = np.isin(shapes.kinds, ("carpet", "post"))
+    scores[:, apart] = -np.inf
+    if rules.stands and rules.legs:
+        _add_legs(grid, problem, shapes)
+    movable = np.flatnonzero(~apart[grid[problem.at]])
+    grid = joined(grid, movable, scores, problem, shapes)
+    grid = with_corners(evened(grid, shapes, rules.even), shapes)
+    if rules.stands:
+        grid = on_stilts(grid, problem, scores, shapes, held)
+    grid = without_crumbs(grid, shapes, rules.stands, held, problem.floor)
+    return with_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
+
+
+def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
+    """Return what may not stand where, bool [N, S]."""
+    barred = np.zeros((len(problem.cells), len(shapes)), bool)
+    for axis in (0, 1):  # On a mirror plane, only what is its own mirror image.
+        if rules.even[axis] and problem.shape[axis] % 2:
+            on = problem.cells[:, axis] == problem.shape[axis] // 2
+            barred |= on[:, None] & (shapes.mirrors[axis] != np.arange(len(shapes)))
+    poles = _poles(problem)
+    if (shapes.kinds == "post").any():
+        barred |= ~poles[:, None] & (shapes.kinds == "post")
+        barred |= (poles & rules.legs)[:, None] & shapes.is_upright
+    if rules.flush:
+        barred |= shapes.is_low
+    return barred
+
+
+def evened(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], with the high half made the mirror image of the low one."""
+    result = grid.copy()
+    for axis in (0, 1):
+        if even[axis]:
+            half = result.shape[axis] // 2
+            low, high = [slice(None)] * 3, [slice(None)] * 3
+            low[axis], high[axis] = slice(0, half), slice(result.shape[axis] - half, None)
+            result[tuple(high)] = shapes.mirrors[axis][np.flip(result[tuple(low)], axis)]
+    return result
+
+
+def _poles(problem: Problem) -> np.ndarray:
+    """Return which blocks hold a leg or a pole, bool [N]: upright, thin both ways, or its foot."""
+    filled = problem.wanted.reshape(-1, SUB, SUB, SUB) > POLE_FILL
+    upright = filled.any((1, 2)).sum(1) >= SUB - 1
+    along, across = (np.asarray(filled.any(axes)) for axes in ((2, 3), (1, 3)))
+    slim = np.maximum(_span(along), _span(across)) <= POLE_SPAN
+    foot = np.median(filled.sum((1, 2)), axis=1) <= POLE_SPAN**2
+    foot &= problem.cells[:, 2] == 0
+    thin = problem.thin.sum(1) > LEG_SHARE * problem.wanted.sum(1)
+    return upright & (slim | foot) & thin
+
+
+def _span(rows: np.ndarray) -> np.ndarray:
+    """Return how far apart the first and the last set cells of rows, bool [N, 8], are, int [N]."""
+    first, last = rows.argmax(1), SUB - 1 - rows[:, ::-1].argmax(1)
+    return np.where(rows.any(1), last - first + 1, 0)
+
+
+def _add_legs(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
+    """Set posts, in place, where legs or a pole run from the floor to what was chosen."""
+    numbers = np.flatnonzero(shapes.kinds == "post")
+    if not len(numbers):
+        return
+    poles, runs = (np.zeros(problem.shape, bool) for _ in range(2))
+    poles[problem.at] = _poles(problem)
+    runs[problem.at] = problem.flows[UP]
+    tall = np.logical_and.accumulate(poles & runs, axis=2).sum(2)
+    for x, y in np.argwhere(tall):
+        top = int(tall[x, y])
+        if top < grid.shape[2] and grid[x, y, top]:
+            grid[x, y, :top] = numbers[0]
+
+
+def without_crumbs(
+    grid: np.ndarray,
+    shapes: ShapeSet,
+    stands: bool,
+    held: np.ndarray | None = None,
+    floor: int = 0,
+) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without the parts that touch neither floor, wall nor rest.
+
+    Of what does not stand the larger parts stay, and something always does. ``floor`` is the
+    sub-cell of the lowest layer on which it stands.
+    """
+    parts = parts_of_shapes(grid, shapes)
+    volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
+    volumes[0] = 0
+    if not volumes.any():
+        return grid
+    keep = grounded(grid, parts, shapes, stands, held, floor)
+    if not stands:
+        keep |= volumes >= CRUMB_SHARE * volumes.sum()
+    keep[0] = False
+    if not keep.any():
+        keep[int(volumes.argmax())] = True
+    return np.where(keep[parts], grid, 0)
+
+
+def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without carpets under which nothing is left."""
+    bare = np.zeros(grid.shape, bool)
+    bare[:, :, 1:] = grid[:, :, :-1] == 0
+    bare[:, :, 0] = ground is None
+    return np.where(bare & (shapes.kinds[grid] == "carpet"), 0, grid)
+
+
+def without_loose(grid: np.ndarray, shapes: ShapeSet, held: np.ndarray) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without single blocks that touch nothing and are not held."""
+    parts = parts_of_shapes(grid, shapes)
+    sizes = np.bincount(parts.ravel())
+    keep = (sizes > 1) | np.isin(np.arange(len(sizes)), parts[held])
+    return np.where(keep[parts] & (parts > 0), grid, 0)

@@ -1,0 +1,244 @@
+"""Light for a room: invisible light blocks in free air, so that no floor and no corner is dark.
+
+A lattice of lights comes first; where it leaves a place one stands at, or any air of the room, too
+dark, more are set. Lamps and glowing furniture that stand already count.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.canvas import AIR, LIGHT, Canvas
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.connected_components import label_face_components
+from world2minecraft.geometry.morphology import nearest_set_cells
+from world2minecraft.minecraft.rules.light import (
+    BRIGHTEST,
+    lets_light_through,
+    light_of,
+    spread_light,
+)
+
+# Lamps that a builder would hang: over tables, and over the middle of what stays dark.
+#
+# A lamp hangs from the ceiling by chains where there is room to walk under it, and else lies flush
+# in the ceiling. Where no ceiling was built nothing can hang, and the hidden lights do all.
+
+LAMP_M = 0.3  # A shade's width.
+CORD_M = 0.35
+WALK_M, WALK_BLOCKS = 2.0, 2  # What stays free under a lamp: a person, and a player.
+TABLE_M = 1.45  # Over a table nobody walks.
+REACH_M = 2.6  # How far one lamp is taken to light. A guess: about 4 m between two.
+WALL_M = 0.5  # No lamp hangs nearer to a wall, unless the room is that narrow.
+MOST = 24  # Lamps a storey.
+CHAIN = "minecraft:chain[axis=y,waterlogged=false]"
+LANTERN = "minecraft:lantern[hanging=true,waterlogged=false]"
+SHADE = "minecraft:sea_lantern"
+DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
+
+
+class _Room(NamedTuple):
+    """Where lamps may hang in a storey: its first layer, the ceiling's layer, and the columns."""
+
+    ground: int
+    level: int
+    columns: np.ndarray  # bool [X, Y]
+
+
+def hang_lamps(canvas: Canvas, footprints: tuple[np.ndarray, ...], palette: Palette) -> int:
+    """Hang lamps, in place, in every storey that has a ceiling.
+
+    Args:
+        canvas: its finished blocks.
+        footprints: bool [X, Y] for each storey, the columns within its rooms.
+        palette: what may be used; none hangs where it leaves out what lamps are made of.
+
+    Returns:
+        How many hang.
+    """
+    if not all(map(palette.allows, (CHAIN, LANTERN, SHADE, DOWNLIGHT))):
+        return 0
+    count = 0
+    for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        room = _room(canvas, footprint, ground, end)
+        if room is None:
+            continue
+        for x, y in _places(canvas, room):
+            _hang(canvas, room, x, y)
+            count += 1
+    return count
+
+
+def _room(canvas: Canvas, footprint: np.ndarray, ground: int, end: int) -> _Room | None:
+    ceiling = canvas.semantic[:, :, ground : end + 1] == SemanticClass.CEILING
+    if end < canvas.states.shape[2]:
+        # The floor over a storey is its ceiling where no other was seen.
+        ceiling |= canvas.semantic[:, :, ground : end + 1] == SemanticClass.FLOOR
+    layers = (ceiling & footprint[:, :, None]).sum((0, 1))
+    if not layers.any():
+        return None
+    level = ground + int(layers.argmax())
+    return _Room(ground, level, footprint & ceiling[:, :, level - ground])
+
+
+def _places(canvas: Canvas, room: _Room) -> list[tuple[int, int]]:
+    """Return the columns of lamps: tables first, then the middles of what stays dark."""
+    scale = canvas.lattice.blocks_per_metre
+    free = canvas.mask_of(AIR)[:, :, : room.level]
+    clear = room.columns & free[:, :, -max(1, round(CORD_M * scale) + 1) :].all(2)
+    away = nearest_set_cells(~np.pad(room.columns, 1))[1][1:-1, 1:-1]
+    places: list[tuple[int, int]] = []
+    for middle in _tables(canvas, room):
+        _take(places, clear, middle)
+    reach = REACH_M * scale
+    dark = clear & (away >= min(WALL_M * scale, away.max()))
+    while len(places) < MOST:
+        for place in places:
+            dark &= _distance(dark.shape, place) > reach
+        if not dark.any():
+            return places
+        best = np.unravel_index(int(np.where(dark, away, -1).argmax()), dark.shape)
+        places.append((int(best[0]), int(best[1])))
+    return places
+
+
+def _tables(canvas: Canvas, room: _Room) -> list[np.ndarray]:
+    """Return the middles, float64 [2] each, of a storey's tables, the largest first."""
+    layers = slice(room.ground, room.level)
+    tables = canvas.semantic[:, :, layers] == SemanticClass.TABLE
+    plan = np.where(tables, canvas.instance[:, :, layers], 0).max(2)
+    numbers, counts = np.unique(plan[plan > 0], return_counts=True)
+    order = np.lexsort((numbers, -counts))
+    return [np.argwhere(plan == numbers[i]).mean(0) for i in order]
+
+
+def _take(places: list[tuple[int, int]], clear: np.ndarray, middle: np.ndarray) -> None:
+    """Add the column nearest to a table's middle, where one is free within a block."""
+    x, y = np.floor(middle + 0.5).astype(int).tolist()
+    if clear[x, y] and (x, y) not in places:
+        places.append((x, y))
+
+
+def _distance(shape: tuple[int, ...], place: tuple[int, int]) -> np.ndarray:
+    x, y = np.indices(shape, sparse=True)
+    return np.hypot(x - place[0], y - place[1])
+
+
+def _hang(canvas: Canvas, room: _Room, x: int, y: int) -> None:
+    scale = canvas.lattice.blocks_per_metre
+    wide = max(1, round(LAMP_M * scale))
+    tall = max(1, round(wide / 2))
+    column = canvas.semantic[x, y, room.ground : room.level]
+    under = TABLE_M if (column == SemanticClass.TABLE).any() else WALK_M
+    lowest = room.ground + max(WALK_BLOCKS, int(np.ceil(under * scale)))
+    cord = min(round(CORD_M * scale), room.level - tall - lowest)
+    kind = int(SemanticClass.OBJS)
+    if cord < 0 or (wide > 1 and not _fits(canvas, room, x, y, wide, tall + cord)):
+        canvas.put((x, y, room.level), canvas.id_of(DOWNLIGHT), int(SemanticClass.CEILING))
+        return
+    for z in range(room.level - cord, room.level):
+        canvas.put((x, y, z), canvas.id_of(CHAIN), kind)
+    low = room.level - cord - tall
+    start = (x - (wide - 1) // 2, y - (wide - 1) // 2)
+    box = (*(slice(a, a + wide) for a in start), slice(low, low + tall))
+    canvas.put(box, canvas.id_of(LANTERN if wide == 1 else SHADE), kind)
+
+
+def _fits(canvas: Canvas, room: _Room, x: int, y: int, wide: int, depth: int) -> bool:
+    """Whether a wide shade has air around it."""
+    low_x, low_y = x - (wide - 1) // 2, y - (wide - 1) // 2
+    if min(low_x, low_y) < 0:
+        return False
+    box = canvas.mask_of(AIR)[
+        low_x : low_x + wide, low_y : low_y + wide, room.level - depth : room.level
+    ]
+    return box.shape[:2] == (wide, wide) and bool(box.all())
+
+
+LEVEL = BRIGHTEST
+LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
+LEAST_CORNER = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
+ABOVE_FLOOR = 2  # Over the head of a player that stands.
+SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
+APART = 6  # Blocks between lights that are added in one round.
+
+
+def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
+    """Light a canvas in place, storey by storey.
+
+    Args:
+        canvas: its finished blocks.
+        footprints: bool [X, Y] for each storey, the columns within its rooms.
+    """
+    gives = np.array([light_of(state) for state in canvas.palette], np.uint8)[canvas.states]
+    clear = passes_light(canvas.palette)[canvas.states]
+    air = canvas.mask_of(AIR)
+    for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        _light_storey(canvas, gives, air, clear, footprint, ground, end)
+    canvas.states[(gives == LEVEL) & air] = canvas.id_of(LIGHT)
+
+
+def _light_storey(canvas, gives, air, clear, footprint, ground, end) -> None:
+    """Choose, in place, the lights of one storey: its first layer over the floor and its end."""
+    offset = SPACING // 2
+    top = min(_top_of(canvas, ground), end - 1)
+    spots = np.zeros_like(air)
+    for z in {ground + ABOVE_FLOOR, *range(ground + ABOVE_FLOOR + SPACING, top, SPACING)}:
+        spots[offset::SPACING, offset::SPACING, min(z, top)] = True
+    spots &= air & footprint[:, :, None]
+    if (gives > 0).any():
+        spots &= spread_light(gives, clear) < LEAST  # Where a lamp shines none is needed.
+    gives[spots] = LEVEL
+    walkable = walkable_cells(canvas.states, canvas.palette, footprint, ground)
+    least = np.zeros(air.shape, np.uint8)
+    least[_air_of(air, walkable, footprint, (ground, top))] = LEAST_CORNER
+    least[:, :, ground][walkable] = LEAST
+    _light_the_dark(gives, least, air, clear)
+
+
+def _air_of(air, walkable, footprint, layers) -> np.ndarray:
+    """Return the air, bool [X, Y, Z], of a storey that one sees into: none within cupboards."""
+    ground, top = layers
+    room = np.zeros_like(air)
+    inside = slice(ground, top + 1)
+    room[:, :, inside] = air[:, :, inside] & footprint[:, :, None]
+    parts, _ = label_face_components(room)
+    seen = np.unique(parts[:, :, ground][walkable])
+    return np.isin(parts, seen[seen > 0])
+
+
+def _light_the_dark(gives, least, air, clear) -> None:
+    """Add lights, in place, until every cell has its least light."""
+    while True:
+        dark = spread_light(gives, clear) < least
+        if not dark.any():
+            return
+        # One for each box of a few blocks, so that few rounds are needed.
+        cells = np.argwhere(dark)
+        _, first = np.unique(cells // APART, axis=0, return_index=True)
+        for x, y, z in cells[first].tolist():
+            above = z + 1 < air.shape[2] and air[x, y, z + 1] and not air[x, y, z]
+            gives[x, y, z + 1 if above else z] = LEVEL
+
+
+def _top_of(canvas: Canvas, ground: int) -> int:
+    """Return the highest layer under the highest visible block, at least that over the floor."""
+    layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
+    least = ground + ABOVE_FLOOR
+    return min(max(int(layers.max()) - 1 if len(layers) else 0, least), canvas.states.shape[2] - 1)
+
+
+def passes_light(palette: tuple[str, ...]) -> np.ndarray:
+    """Return which states let block light through, bool [N]: those that fill no whole cube."""
+    return np.array([lets_light_through(state) for state in palette], bool)
+
+
+def walkable_cells(
+    states: np.ndarray, palette: tuple[str, ...], footprint: np.ndarray, ground: int
+) -> np.ndarray:
+    """Return the columns, bool [X, Y], where a player stands on the floor: two blocks of air."""
+    numbers = [i for i, state in enumerate(palette) if state in (AIR, LIGHT)]
+    free = np.isin(states[:, :, ground : ground + 2], numbers).all(2)
+    floor = states[:, :, ground - 1] != 0
+    return free & floor & footprint

@@ -1,0 +1,230 @@
+"""The unit of work: one shard, made of one scene, by whatever process is told to.
+
+What is made depends on the unit alone. Samples that lie in the shard already, from an earlier try,
+are kept as they are.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.minecraftocc.building.cpu_clock import StageClock
+from world2minecraft.minecraftocc.building.process_registry import of_the_crew
+from world2minecraft.minecraftocc.building.recorded_views import recorded, screenshot
+from world2minecraft.minecraftocc.building.scenes import (
+    check_digest,
+    poses_path,
+    read_facts,
+    source_of,
+)
+from world2minecraft.minecraftocc.camera_records import camera_record
+from world2minecraft.minecraftocc.labels.labels import cast_depth, label_image
+from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
+from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, SceneSpec
+from world2minecraft.minecraftocc.store.folder import read_classes, shard_name
+from world2minecraft.minecraftocc.store.index import shard_rows
+from world2minecraft.minecraftocc.store.sample_files import pack_sample
+from world2minecraft.minecraftocc.store.shard import ShardWriter
+from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
+from world2minecraft.minecraftocc.tours import PlannedView, read_views
+from world2minecraft.minecraftocc.values import OccSample, SceneVoxels
+from world2minecraft.rendering import BlockScene, LookLight, prepare_scene, render_volume
+from world2minecraft.rendering.presentation.shot_frames import exposed
+from world2minecraft.rendering.views import Shot
+
+# A scene made ready: from a planned view to a sample, with the CPU time of each stage.
+
+COLOUR = ("colour", "depth")
+
+
+@dataclass(frozen=True, eq=False)
+class Studio:
+    """A scene with all that its samples are made of."""
+
+    spec: SceneSpec
+    recipe: Recipe
+    scene: BlockScene  # with one exposure for all views
+    voxels: SceneVoxels
+    views: list[PlannedView]
+    light: LookLight
+    rule: RegionRule
+    block_to_room: np.ndarray
+    screenshots: tuple[Path, ...] = ()
+
+    def key(self, number: int) -> str:
+        """Return the key of a view's sample."""
+        view = self.views[number]
+        return f"{self.spec.scene_id}-{view.tour_id}-{view.frame:06d}"
+
+    def sample(self, number: int, clock: StageClock) -> OccSample:
+        """Take a view's picture and label it."""
+        view, colour = self.views[number], None
+        pose, camera = view.camera_to_room, view.camera
+        with clock.of("render"):
+            if self.recipe.pictures and self.screenshots:
+                picture = render_volume(self.scene, camera, pose, outputs=("depth",))
+                colour = screenshot(self.screenshots[number], camera)
+                depth_m, seen_by = picture.depth_m, camera
+            elif self.recipe.pictures:
+                picture = render_volume(self.scene, camera, pose, outputs=COLOUR, light=self.light)
+                colour, depth_m, seen_by = picture.colour, picture.depth_m, camera
+            else:
+                seen_by, depth_m = cast_depth(self.scene, camera, pose)
+        with clock.of("labels"):
+            region = region_in(self.voxels, pose, self.rule)
+            occ = label_image(self.voxels, region, seen_by, pose, depth_m)
+        return OccSample(
+            key=self.key(number),
+            scene_id=self.spec.scene_id,
+            tour_id=view.tour_id,
+            frame=view.frame,
+            camera=camera,
+            camera_to_room=pose,
+            occ=occ,
+            fine_classes=self.voxels.fine_classes,
+            colour=colour,
+            depth_m=depth_m if self.recipe.pictures else None,
+            split=self.spec.split,
+            facts=self._facts(view),
+        )
+
+    def _facts(self, view: PlannedView) -> dict[str, Any]:
+        pose = view.pose
+        return {
+            "block_to_room": self.block_to_room.tolist(),
+            "game_pose": {
+                "x": pose.x,
+                "y": pose.y,
+                "z": pose.z,
+                "yaw": pose.yaw_deg,
+                "pitch": pose.pitch_deg,
+                "at": pose.at,
+            },
+            "t_s": view.t_s,
+            **(self._as_printed(view) if self.recipe.paper_compat else {}),
+            "hour": self.light.hour,
+        }
+
+    def _as_printed(self, view: PlannedView) -> dict[str, Any]:
+        """Return K and E as the paper prints them; they do not meet the image."""
+        record = camera_record(
+            view.camera, view.camera_to_room, self.block_to_room, paper_compat=True
+        )
+        return {"paper_compat": {name: record[name] for name in ("K", "E")}}
+
+
+@lru_cache(maxsize=1)
+def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
+    """Make a scene ready; the last one is kept, for its next shard.
+
+    Raises:
+        ConflictError: the scene has changed since its views were planned.
+    """
+    root = Path(folder)
+    facts = read_facts(root, spec.scene_id)
+    source = source_of(root, spec, recipe)
+    volume = source.volume()
+    check_digest(facts, volume, spec)
+    views = read_views(poses_path(root, spec.scene_id), volume.block_to_room)[: spec.images]
+    light = LookLight(hour=facts.hour)
+    plain = prepare_scene(volume)
+    shots = [Shot(view.camera, view.camera_to_room) for view in views]
+    scene = exposed(plain, light, shots) if recipe.pictures else plain
+    rule = recipe.region
+    if recipe.is_block_cells:
+        rule = replace(rule, voxel_m=facts.metres_per_block)
+    voxels = scene_voxels(
+        volume,
+        source.designs(),
+        voxel_m=None if recipe.is_block_cells else rule.voxel_m,
+        scene=plain,
+    )
+    shot_files: tuple[Path, ...] = ()
+    if spec.given is not None and spec.given.is_screenshots:
+        shot_files = tuple(one.image for one in recorded(spec.given))
+    return Studio(spec, recipe, scene, voxels, views, light, rule, volume.block_to_room, shot_files)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A shard to make: the views ``first`` to ``last``, the last not included, of a scene."""
+
+    folder: str
+    name: str
+    spec: SceneSpec
+    recipe: Recipe
+    first: int
+    last: int
+
+
+def units_of(folder: Path, plan: DatasetPlan) -> list[Unit]:
+    """Return the units of a plan, in the order of the data set: split, scene, view."""
+    scenes = sorted(plan.scenes, key=lambda scene: list(plan.images).index(scene.split))
+    return [
+        Unit(
+            str(folder),
+            shard_name(scene.split, scene.scene_id, number),
+            scene,
+            plan.recipe,
+            first,
+            min(first + SHARD_SAMPLES, scene.images),
+        )
+        for scene in scenes
+        for number, first in enumerate(range(0, scene.images, SHARD_SAMPLES))
+    ]
+
+
+@of_the_crew
+def make_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[int, dict[str, float]]:
+    """Make a shard, or what is missing of it; return how many samples were made, and CPU seconds.
+
+    Raises:
+        OutputError: the disk is full. ConflictError: another process writes it, or the scene has
+        changed. InputError: the scene cannot be read.
+    """
+    path, clock, count = Path(unit.folder) / unit.name, StageClock(), unit.last - unit.first
+    if path.exists():
+        tick(count)
+        return 0, {}
+    with clock.of("scenes"):
+        studio = studio_of(unit.folder, unit.spec, unit.recipe)
+        table = read_classes(Path(unit.folder))
+    numbers = range(unit.first, unit.last)
+    with ShardWriter(path, [studio.key(number) for number in numbers]) as shard:
+        found = shard.done
+        tick(found)
+        for number in numbers[found:]:
+            sample = studio.sample(number, clock)
+            with clock.of("encode"):
+                members = pack_sample(sample, table, unit.recipe.files)
+            with clock.of("write"):
+                shard.append(members)
+            tick(1)
+        with clock.of("write"):
+            shard.finish()
+    return count - found, dict(clock.seconds)
+
+
+def index_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[list[dict[str, Any]], float]:
+    """Return the index rows of a finished shard, and CPU seconds."""
+    clock = StageClock()
+    with clock.of("write"):
+        rows = shard_rows(Path(unit.folder) / unit.name, unit.name)
+    tick(len(rows))
+    return rows, clock.seconds["write"]
+
+
+def in_order(results: Iterator[tuple[int, Any]]) -> Iterator[Any]:
+    """Give results by their numbers, though they come as they are done."""
+    held: dict[int, Any] = {}
+    following = 0
+    for number, result in results:
+        held[number] = result
+        while following in held:
+            yield held.pop(following)
+            following += 1

@@ -1,0 +1,228 @@
+"""A pool of processes: each takes an item, tells how far it is, and gives its result.
+
+A process that dies (out of memory, killed) is replaced and its item begun again: what it had
+written to disk is found there. Processes end with their parent, however that ends: a thread of each
+waits for that.
+"""
+
+import os
+import signal
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from threading import Thread
+from typing import Any
+
+from world2minecraft.core.errors import WorkerError
+from world2minecraft.rendering.batch.workers import sendable
+
+# What a process of the pool does: it takes orders through a pipe until that ends.
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """A task, an item, and the item's number."""
+
+    number: int
+    task: Callable[[Any, Callable[[int], None]], Any]
+    item: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Ticked:
+    """So many images more are done."""
+
+    count: int
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """An item is done."""
+
+    number: int
+    result: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Failed:
+    """An item has failed."""
+
+    error: Exception
+
+
+class _Deserted(BaseException):
+    """The one who gave the order is gone."""
+
+
+def serve(pipe: Connection) -> None:
+    """Do what comes through the pipe until it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and ends us.
+    Thread(target=_end_with_parent, daemon=True).start()
+    one_thread()
+
+    def tick(count: int) -> None:
+        try:
+            pipe.send(Ticked(count))
+        except OSError:
+            raise _Deserted from None
+
+    try:
+        while True:
+            order: Order = pipe.recv()
+            pipe.send(_answer(order, tick))
+    except (EOFError, OSError, _Deserted):
+        return
+
+
+def end_if_deserted() -> None:
+    """End what is being done, in a worker of a pool whose parent has ended."""
+    parent = parent_process()
+    if parent is not None and not parent.is_alive():
+        raise _Deserted
+
+
+def one_thread() -> None:
+    """Let libraries use one thread: there is a process for each core."""
+    from threadpoolctl import threadpool_limits  # noqa: PLC0415
+
+    threadpool_limits(1)
+
+
+def _end_with_parent() -> None:
+    """End this process with its parent, in the middle of whatever it does."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
+    try:
+        return Done(order.number, order.task(order.item, tick))
+    except Exception as error:
+        return Failed(sendable(error))
+
+
+# Not by concurrent.futures: when a process of ProcessPoolExecutor is killed, every item that waits
+# fails with BrokenProcessPool, and which one killed it cannot be told.
+
+
+MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
+PATIENCE_S = 5.0
+
+
+@dataclass(eq=False)
+class _Hand:
+    """A worker as the pool sees it."""
+
+    process: BaseProcess
+    pipe: Connection
+    number: int | None = None  # Of the item that it works on.
+
+
+class PoolEngine:
+    """Processes that call a task; a context manager."""
+
+    def __init__(self, jobs: int):
+        """Name how many; they are started with the first item."""
+        self.notes: list[str] = []
+        self._jobs = jobs
+        self._hands: list[_Hand] = []
+
+    def __enter__(self) -> "PoolEngine":
+        """Return the engine."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End all workers at once: what they have written is whole."""
+        for hand in self._hands:
+            hand.pipe.close()
+            if hand.number is not None:
+                hand.process.terminate()
+        for hand in self._hands:
+            hand.process.join(PATIENCE_S)
+            if hand.process.is_alive():
+                hand.process.kill()
+                hand.process.join()
+        self._hands.clear()
+
+    def run(
+        self,
+        task: Callable[[Any, Callable[[int], None]], Any],
+        items: Sequence[Any],
+        tick: Callable[[int], None],
+    ) -> Iterator[tuple[int, Any]]:
+        """Give each item's number and result as they are done.
+
+        Raises:
+            WorkerError: workers have died over one item again and again. Whatever the task raises.
+        """
+        waiting, deaths = deque(range(len(items))), Counter[int]()
+        while waiting or any(hand.number is not None for hand in self._hands):
+            self._hand_out(task, items, waiting)
+            busy = {hand.pipe: hand for hand in self._hands if hand.number is not None}
+            for pipe in wait(list(busy)):
+                hand = busy[pipe]  # type: ignore[index]
+                message = self._heard(hand)
+                if isinstance(message, Ticked):
+                    tick(message.count)
+                elif isinstance(message, Failed):
+                    hand.number = None
+                    raise message.error
+                elif isinstance(message, Done):
+                    hand.number = None
+                    yield message.number, message.result
+                else:
+                    self._replace(hand, waiting, deaths, len(items))
+
+    def _hand_out(
+        self, task: Callable[..., Any], items: Sequence[Any], waiting: deque[int]
+    ) -> None:
+        while waiting and len(self._hands) < min(self._jobs, len(items)):
+            self._hands.append(_started())
+        for hand in self._hands:
+            if hand.number is None and waiting:
+                number = waiting.popleft()
+                with suppress(OSError):  # It has died; that is heard with its pipe's end.
+                    hand.pipe.send(Order(number, task, items[number]))
+                hand.number = number
+
+    def _heard(self, hand: _Hand) -> Ticked | Done | Failed | None:
+        """Return what a worker says; None where it has died."""
+        try:
+            return hand.pipe.recv()
+        except (EOFError, OSError):
+            return None
+
+    def _replace(self, hand: _Hand, waiting: deque[int], deaths: Counter[int], count: int) -> None:
+        number = hand.number if hand.number is not None else 0
+        hand.pipe.close()
+        hand.process.join(PATIENCE_S)
+        self._hands.remove(hand)
+        code, deaths[number] = hand.process.exitcode, deaths[number] + 1
+        how = f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
+        if deaths[number] == MOST_DEATHS:
+            raise WorkerError(
+                f"{MOST_DEATHS} workers in turn have ended {how} over part {number + 1} of {count};"
+                " is memory short? Try fewer --jobs, then run the same command again to go on"
+            )
+        self.notes.append(f"A worker ended {how}; another went on where it was.")
+        waiting.appendleft(number)
+
+
+def _started() -> _Hand:
+    """Start a worker: a new interpreter on every system, so that all behave alike."""
+    # Late: a worker reads this file too, and begins faster without the renderer.
+    from world2minecraft.rendering.batch.workers import deaf_to_interrupts  # noqa: PLC0415
+
+    context = get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=serve, args=(theirs,), name="w2m-dataset", daemon=True)
+    with deaf_to_interrupts():
+        process.start()
+    theirs.close()  # So that the pipe ends with the worker.
+    return _Hand(process, ours)

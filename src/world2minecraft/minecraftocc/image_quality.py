@@ -1,0 +1,310 @@
+"""Picture quality of a data set: NIQE, PIQE and LV over a sample, beside the paper's table.
+
+The paper measures 100 pictures of each set, chosen by chance, and names no variant. Here each
+figure says its own: the NIQE model, the kernel of the Laplacian, the size of the pictures.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.images import SUFFIXES, read_colour, read_header
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.metrics.image_quality import NiqeModel, laplacian_variance, piqe
+from world2minecraft.evaluation.metrics.image_quality.niqe import (
+    distance,
+    has_patches,
+    patch_features,
+)
+from world2minecraft.minecraftocc.statistics.other_data_sets import (
+    PAPER,
+    PUBLISHED_QUALITY,
+    PublishedQuality,
+)
+from world2minecraft.minecraftocc.statistics.tables import columns
+from world2minecraft.minecraftocc.store import OccStore, open_store
+from world2minecraft.minecraftocc.store.folder import META
+
+# The pictures of a data set, or of any folder, by their keys.
+
+
+@dataclass(frozen=True)
+class PictureSource:
+    """Pictures to be read one at a time."""
+
+    name: str
+    keys: tuple[str, ...]
+    read: Callable[[str], np.ndarray]  # returns uint8 [H, W, 3]
+    is_picture: Callable[[str], bool] | None = None  # Where some keys may be none.
+
+
+def pictures_at(path: str | Path) -> PictureSource:
+    """Return the pictures of a stored data set or of a folder, its subfolders too.
+
+    Raises:
+        InputError: there are none. DamagedFileError: the data set is damaged.
+    """
+    place = Path(path)
+    if (place / META).is_file():
+        return _of_store(open_store(place))
+    return _of_folder(place)
+
+
+def _of_store(store: OccStore) -> PictureSource:
+    def read(key: str) -> np.ndarray:
+        colour = store[key].colour
+        if colour is None:
+            raise InputError(store.folder, f"sample {key} has labels alone, no picture")
+        return colour
+
+    return PictureSource(store.folder.resolve().name, tuple(store.keys()), read)
+
+
+def _of_folder(folder: Path) -> PictureSource:
+    if not folder.is_dir():
+        raise InputError(folder, "is no folder of pictures and no data set")
+    found = sorted(
+        place.relative_to(folder).as_posix()
+        for place in folder.rglob("*")
+        if place.suffix.lower() in SUFFIXES and place.is_file()
+    )
+    if not found:
+        raise InputError(folder, f"holds no pictures ({', '.join(SUFFIXES)})")
+
+    def is_picture(key: str) -> bool:
+        return not read_header(folder / key).mode.startswith(("I", "F"))  # Depth and the like.
+
+    def read(key: str) -> np.ndarray:
+        return read_colour(folder / key)
+
+    return PictureSource(folder.resolve().name, tuple(found), read, is_picture)
+
+
+KERNELS = (1, 5)
+PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
+NATIVE = "native"
+MOST_PX = 16_384  # Of a side that pictures are resized to.
+CAVEATS = (
+    "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
+    "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
+    "The paper names no variant; its values are such as scikit-video's NIQE and LV at k=5 give.",
+)
+
+
+@dataclass(frozen=True)
+class PictureQuality:
+    """The figures of one picture at one size; ``niqe`` is by model, ``laplacian`` by kernel."""
+
+    niqe: Mapping[str, float]
+    piqe: float
+    laplacian: Mapping[int, float]
+
+
+@dataclass(frozen=True)
+class QualityRow:
+    """Means over pictures at one size: None where no picture has a figure."""
+
+    size: str  # "native" or "640x480"
+    pictures: int
+    niqe: Mapping[str, float | None]
+    piqe: float | None
+    laplacian: Mapping[int, float | None]
+    without_niqe: int  # Pictures that are too small or too flat for it.
+
+
+@dataclass(frozen=True)
+class QualityReport:
+    """What a sample of a data set gave."""
+
+    name: str
+    rows: tuple[QualityRow, ...]
+    variants: tuple[str, ...]
+    sizes_px: tuple[str, ...]  # of the pictures as they are
+
+
+def choose(
+    keys: Sequence[str], count: int, seed: int, is_wanted: Callable[[str], bool] | None = None
+) -> list[str]:
+    """Return a sample of keys, all where there are no more; the same for the same seed.
+
+    Args:
+        keys: in any order.
+        count: how many.
+        seed: which.
+        is_wanted: whether a key may be taken; any may where None. Few are asked.
+
+    Example:
+        >>> choose(["a", "b", "c", "d"], 2, seed=0)
+        ['a', 'c']
+    """
+    if count < 1:
+        raise UsageError(f"--sample must be 1 or more, not {count}")
+    ordered = sorted(keys)
+    shuffled = (ordered[n] for n in np.random.default_rng(seed).permutation(len(ordered)))
+    return sorted(islice((key for key in shuffled if not is_wanted or is_wanted(key)), count))
+
+
+def size_of(text: str) -> tuple[int, int] | None:
+    """Return the width and height that a text says, None for ``none``.
+
+    Raises:
+        UsageError: it says none.
+
+    Example:
+        >>> size_of("640x480"), size_of("none")
+        ((640, 480), None)
+    """
+    if text == "none":
+        return None
+    width, _, height = text.partition("x")
+    try:
+        size = (int(width), int(height))
+    except ValueError:
+        size = (0, 0)
+    if min(size) < 1 or max(size) > MOST_PX:
+        raise UsageError(f"--resize is WIDTHxHEIGHT, such as 640x480, or none, not {text!r}")
+    return size
+
+
+def picture_quality(picture: np.ndarray, models: Sequence[NiqeModel]) -> PictureQuality:
+    """Return the figures of a picture, uint8 [H, W, 3]; NIQE is nan where it has none."""
+    return PictureQuality(
+        _niqe(picture, models),
+        piqe(picture),
+        {kernel: laplacian_variance(picture, kernel) for kernel in KERNELS},
+    )
+
+
+def measure_quality(
+    name: str,
+    keys: Sequence[str],
+    read: Callable[[str], np.ndarray],
+    models: Sequence[NiqeModel],
+    resize: tuple[int, int] | None = None,
+    *,
+    progress: Progress = silent,
+) -> QualityReport:
+    """Measure pictures as they are, and resized.
+
+    Args:
+        name: of the data set.
+        keys: of the pictures.
+        read: returns a picture of a key, uint8 [H, W, 3].
+        models: of NIQE.
+        resize: width and height to measure at too; None for none.
+        progress: told after each picture.
+    """
+    found: dict[str, list[PictureQuality]] = {NATIVE: []}
+    sizes = set()
+    for done, key in enumerate(keys):
+        progress("quality", done, len(keys), key)
+        picture = read(key)
+        size = (picture.shape[1], picture.shape[0])
+        sizes.add(size)
+        found[NATIVE].append(picture_quality(picture, models))
+        if resize is not None:
+            same = size == resize
+            small = found[NATIVE][-1] if same else picture_quality(resized(picture, resize), models)
+            found.setdefault("x".join(map(str, resize)), []).append(small)
+    progress("quality", len(keys), len(keys))
+    if resize is not None and sizes == {resize}:
+        del found["x".join(map(str, resize))]  # It would say the same again.
+    variants = tuple(model.name for model in models)
+    rows = tuple(_row(size, figures, variants) for size, figures in found.items())
+    return QualityReport(name, rows, variants, tuple(f"{w}x{h}" for w, h in sorted(sizes)))
+
+
+def resized(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    """Return a picture at a width and height, each pixel the mean of what it covers.
+
+    A picture of other proportions is cut to those of the size, about its middle.
+    """
+    image = Image.fromarray(picture)
+    share = max(size[0] / image.width, size[1] / image.height)
+    width, height = size[0] / share, size[1] / share
+    left, top = (image.width - width) / 2, (image.height - height) / 2
+    box = (left, top, left + width, top + height)
+    method = Image.Resampling.BOX if share < 1 else Image.Resampling.BICUBIC
+    return np.array(image.resize(size, method, box), np.uint8)
+
+
+def quality_text(report: QualityReport) -> str:
+    """Return the table, the paper's rows above, and what to heed in reading it."""
+    shown = _shown(report)
+    head = ["data set", "size", "pictures", *(f"NIQE {name}" for name in shown)]
+    head += ["PIQE", *(f"LV k={kernel}" for kernel in KERNELS)]
+    rows = [tuple(head)]
+    rows += [_published_row(row, shown) for row in PUBLISHED_QUALITY]
+    for row in report.rows:
+        size = _sizes(report.sizes_px) if row.size == NATIVE else row.size
+        figures = [_figure(row.niqe.get(name), 2) for name in shown]
+        figures += [_figure(row.piqe, 2), *(_figure(row.laplacian[k], 0) for k in KERNELS)]
+        rows.append((report.name, size, f"{row.pictures:,}", *figures))
+    lines = [*columns(rows), ""]
+    lines += [f"note: {caveat}" for caveat in CAVEATS]
+    without = max((row.without_niqe for row in report.rows), default=0)
+    if without:
+        lines.append(f"note: {without:,} pictures are too small or too flat for NIQE.")
+    return "\n".join(lines)
+
+
+def quality_json(report: QualityReport) -> dict[str, Any]:
+    """Return everything, the paper's rows and the caveats too, as JSON values."""
+    return {
+        **asdict(report),
+        "published": {"source": PAPER, "rows": [asdict(row) for row in PUBLISHED_QUALITY]},
+        "caveats": list(CAVEATS),
+    }
+
+
+def _niqe(picture: np.ndarray, models: Sequence[NiqeModel]) -> dict[str, float]:
+    """Return NIQE by model; what models have in common is computed once."""
+    if has_patches(picture):
+        manners = {model.manner for model in models}
+        features = {manner: patch_features(picture, manner)[0] for manner in manners}
+        return {model.name: distance(features[model.manner], model) for model in models}
+    return {model.name: float("nan") for model in models}  # Too small: told below the table.
+
+
+def _row(size: str, figures: Sequence[PictureQuality], variants: Sequence[str]) -> QualityRow:
+    by_model = {name: [one.niqe[name] for one in figures] for name in variants}
+    missing = max((int(np.isnan(values).sum()) for values in by_model.values()), default=0)
+    return QualityRow(
+        size,
+        len(figures),
+        {name: _mean(values) for name, values in by_model.items()},
+        _mean([one.piqe for one in figures]),
+        {kernel: _mean([one.laplacian[kernel] for one in figures]) for kernel in KERNELS},
+        missing,
+    )
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    known = [value for value in values if not np.isnan(value)]
+    return float(np.mean(known)) if known else None
+
+
+def _shown(report: QualityReport) -> tuple[str, ...]:
+    """Return the variants that have a column: what is measured, and what the paper's is like."""
+    more = () if PAPER_VARIANT in report.variants else (PAPER_VARIANT,)
+    return (*report.variants, *more)
+
+
+def _published_row(row: PublishedQuality, shown: Sequence[str]) -> tuple[str, ...]:
+    scores = [f"{row.niqe:.2f}" if variant == PAPER_VARIANT else "-" for variant in shown]
+    values = [f"{row.laplacian:,.0f}" if k == PAPER_KERNEL else "-" for k in KERNELS]
+    return (row.name, "?", "100", *scores, f"{row.piqe:.2f}", *values)
+
+
+def _sizes(sizes_px: Sequence[str]) -> str:
+    return sizes_px[0] if len(sizes_px) == 1 else f"{len(sizes_px)} sizes"
+
+
+def _figure(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:,.{digits}f}"

@@ -1,0 +1,240 @@
+"""A sample out of what other formats hold: labels in a world, a camera, pictures.
+
+They say nothing of single blocks or objects: the fine classes are the 12 classes, and there are no
+instances. Where there is depth, it tells which cells are seen first and through which empty ones
+one looks; else both masks are left empty, and the sample's facts say so.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.depth_images import check_depth_kind
+from world2minecraft.capture.images import read_colour, read_header, read_raw
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.types import Camera
+from world2minecraft.geometry.unprojection import unproject_depth
+from world2minecraft.minecraftocc.formats.cameras import Code, metres_of
+from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
+from world2minecraft.minecraftocc.values import (
+    DEFAULT_SHAPE,
+    DEFAULT_VOXEL_M,
+    FineClass,
+    LabelRegion,
+    OccLabels,
+    OccSample,
+)
+
+# A data set of another format: keys, and a sample for each, read when it is asked for.
+
+
+@dataclass(frozen=True)
+class ImportedSet:
+    """Samples of a folder, by key; it is read as a store is."""
+
+    path: Path
+    format: str
+    splits: dict[str, str]  # key to train, test or ""
+    read: Callable[[str], OccSample]
+    notes: tuple[str, ...] = field(default=())
+    sha256: str = ""  # The sum of all samples, where the data set tells it.
+
+    def keys(self, split: str | None = None) -> list[str]:
+        """Return the keys, of one split or of all."""
+        return [key for key, of in self.splits.items() if split in (None, of)]
+
+    def described(self) -> str:
+        """Return format and counts in words, such as ``nyu, 3 samples (1 test, 2 train)``."""
+        counts = Counter(self.splits.values())
+        told = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))
+        return f"{self.format}, {len(self):,} samples ({told})"
+
+    def samples(self, split: str | None = None) -> Iterator[OccSample]:
+        """Read the samples of one split, or all, one at a time."""
+        return (self.read(key) for key in self.keys(split))
+
+    def __getitem__(self, key: str) -> OccSample:
+        if key not in self.splits:
+            raise UnknownNameError("sample", key, self.splits)
+        return self.read(key)
+
+    def __iter__(self) -> Iterator[OccSample]:
+        return self.samples()
+
+    def __len__(self) -> int:
+        return len(self.splits)
+
+
+# The pictures beside labels: colour and depth, where they are there.
+
+
+def colour_at(path: Path) -> np.ndarray | None:
+    """Read uint8 [H, W, 3], or return None where there is no file."""
+    return read_colour(path) if path.is_file() else None
+
+
+def depth_at(path: Path, code: Code) -> np.ndarray | None:
+    """Read float32 [H, W] metres, or return None where there is no file.
+
+    Raises:
+        CaptureError: the image cannot hold depth.
+    """
+    if not path.is_file():
+        return None
+    check_depth_kind(path, read_header(path))
+    return metres_of(read_raw(path), code)
+
+
+def resized_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
+    """Return a picture at another size, as the loaders resize theirs."""
+    if pixels.shape[:2] == (height_px, width_px):
+        return pixels
+    image = Image.fromarray(pixels).resize((width_px, height_px), Image.Resampling.BILINEAR)
+    return np.asarray(image)
+
+
+CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
+INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
+SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
+HITS_FACT, FREE_FACT = "first seen, by depth", "centres in front of the depth"
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a format holds of one image."""
+
+    name: Path  # For messages.
+    labels: np.ndarray  # uint8 [60, 60, 36] as x, y, z up
+    origin_m: np.ndarray  # float64 [3]
+    camera_to_world: np.ndarray  # float64 [4, 4]
+    camera: Camera
+    colour: np.ndarray | None
+    depth_m: np.ndarray | None
+
+
+def sample_of(
+    found: Found, key: str, *, scene_id: str, tour_id: str, frame: int, split: str, format: str
+) -> OccSample:
+    """Return the sample, its world taken as the room.
+
+    Raises:
+        DamagedFileError: the labels or the pose are none.
+    """
+    region_to_room = np.eye(4)
+    region_to_room[:3, 3] = _checked_origin(found)
+    camera_to_room = _rigid(found)
+    region = LabelRegion(DEFAULT_SHAPE, DEFAULT_VOXEL_M, region_to_room)
+    facts: dict[str, Any] = {"format": format}
+    has_depth = found.depth_m is not None
+    facts["hits"] = HITS_FACT if has_depth else "none: there is no depth"
+    facts["free"] = FREE_FACT if has_depth else "none: there is no depth"
+    return OccSample(
+        key=key,
+        scene_id=scene_id,
+        tour_id=tour_id,
+        frame=frame,
+        camera=found.camera,
+        camera_to_room=camera_to_room,
+        occ=_labels_with_masks(found, region, camera_to_room),
+        fine_classes=CLASS_KINDS,
+        colour=found.colour,
+        depth_m=found.depth_m,
+        split=split,
+        facts=facts,
+    )
+
+
+def checked_labels(values: Any, shape: tuple[int, ...], name: Path) -> np.ndarray:
+    """Return class ids as uint8 of a shape.
+
+    Raises:
+        DamagedFileError: they are of another shape, or hold other ids.
+    """
+    labels = np.asarray(values)
+    if labels.shape != shape or labels.dtype.kind not in "biuf":
+        raise DamagedFileError(name, f"has labels {labels.shape} of {labels.dtype}, not {shape}")
+    whole = labels.astype(np.uint8)
+    if not (np.array_equal(whole, labels) and np.all((whole < CLASS_COUNT) | (whole == UNKNOWN))):
+        raise DamagedFileError(name, "has labels that are no class ids 0 to 11 or 255")
+    return whole
+
+
+def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) -> np.ndarray:
+    """Return finite float64 numbers of a shape. Raises DamagedFileError where they are none."""
+    try:
+        numbers = np.array(values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise DamagedFileError(name, f"has no numbers for {what}") from error
+    if numbers.shape != shape or not np.isfinite(numbers).all():
+        raise DamagedFileError(name, f"has a {what} of {numbers.shape}, not {shape} finite numbers")
+    return numbers
+
+
+def as_large_as(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return depth at a camera's size, of the nearest pixels."""
+    rows, columns = depth_m.shape
+    if (rows, columns) == (camera.height_px, camera.width_px):
+        return depth_m
+    down = (np.arange(camera.height_px) + 0.5) * rows / camera.height_px
+    across = (np.arange(camera.width_px) + 0.5) * columns / camera.width_px
+    return np.ascontiguousarray(depth_m[down.astype(int)[:, None], across.astype(int)])
+
+
+def _checked_origin(found: Found) -> np.ndarray:
+    return checked_numbers(found.origin_m, (3,), "voxel origin", found.name)
+
+
+def _rigid(found: Found) -> np.ndarray:
+    """Return the pose with its rotation exactly orthonormal."""
+    pose = checked_numbers(found.camera_to_world, (4, 4), "camera pose", found.name)
+    left, _, right = np.linalg.svd(pose[:3, :3])
+    turn = left @ right
+    if np.abs(turn - pose[:3, :3]).max() > SKEW or np.linalg.det(turn) < 0:
+        raise DamagedFileError(found.name, "has a camera pose that is no rotation and shift")
+    result = np.eye(4)
+    result[:3, :3], result[:3, 3] = turn, pose[:3, 3]
+    return result
+
+
+def _labels_with_masks(found: Found, region: LabelRegion, camera_to_room: np.ndarray) -> OccLabels:
+    labels, depth_m = found.labels, found.depth_m
+    region_to_camera = invert_rigid(camera_to_room) @ region.region_to_room
+    inside, pixels, centre_m = cells_in_image(
+        region.shape, region.voxel_m, region_to_camera, found.camera
+    )
+    hits = np.zeros(region.shape, np.uint32)
+    free = np.zeros(region.shape, bool)
+    if depth_m is not None:
+        hits = _hits(found, region, invert_rigid(region_to_camera))
+        seen_to = depth_m[pixels[..., 1], pixels[..., 0]]
+        free = inside & (labels == 0) & (centre_m < seen_to - region.voxel_m / 2)
+    return OccLabels(
+        region=region,
+        labels=labels,
+        fine=np.where(labels == UNKNOWN, 0, labels).astype(np.uint16),
+        instance=np.zeros(region.shape, np.uint16),
+        in_frustum=inside,
+        hits=hits,
+        free=free,
+    )
+
+
+def _hits(found: Found, region: LabelRegion, camera_to_region: np.ndarray) -> np.ndarray:
+    """Count the pixels whose point, a little behind its depth, lies in each occupied cell."""
+    if found.depth_m is None:
+        return np.zeros(region.shape, np.uint32)
+    behind = np.where(found.depth_m > 0, found.depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
+    points, _ = unproject_depth(behind.astype(np.float32), found.camera, camera_to_region)
+    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int32)
+    inside = np.all((cells >= 0) & (cells < region.shape), axis=1)
+    flat = np.ravel_multi_index(tuple(cells[inside].T), region.shape)
+    counts = np.bincount(flat, minlength=found.labels.size).reshape(region.shape)
+    occupied = (found.labels > 0) & (found.labels != UNKNOWN)
+    return np.where(occupied, counts, 0).astype(np.uint32)

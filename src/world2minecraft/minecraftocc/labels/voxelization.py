@@ -1,0 +1,240 @@
+"""A world of blocks to the cells that images are labelled with.
+
+A cell is occupied where a solid shape reaches more than ``SLACK_M`` into it. Shapes are those that
+the renderer draws (``minecraftocc.labels.voxelization``), display entities among them, so that what a ray meets lies
+in an occupied cell. A cell's class, object and fine class are those of the block that fills most of
+it. Blocks that are not drawn, as barriers are, leave their cells empty.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraftocc.labels.box_kernels import NOBODY, ROUND, fill_slab
+from world2minecraft.minecraftocc.labels.materials import Designs, FineNames, fine_names
+from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, SceneVoxels
+from world2minecraft.rendering import BlockScene, prepare_scene
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, TURN, SceneTables
+
+# The solid shapes of a scene, as its pictures show them: boxes, straight or turned.
+#
+# In: the tables of ``rendering.scene``, so that what is labelled is what is seen. Out: for each element
+# of its table a box in blocks. A hole in a texture is no hole here: a pane, a plant, leaves and bars
+# are the boxes that their textures are drawn on. A shape thinner than ``LEAST_THICK_M`` is taken as
+# that thick, so that a plate without depth lies in a cell too.
+
+LEAST_THICK_M = 0.004
+_STRAIGHT = 1e-6  # Blocks: what an edge may lean and still count as straight.
+
+
+class SolidBoxes(NamedTuple):
+    """The boxes of E elements, in blocks of the frame that each element is told in."""
+
+    low: np.ndarray  # float64 [E, 3], of the straight box around each
+    high: np.ndarray  # float64 [E, 3]
+    centre: np.ndarray  # float64 [E, 3]
+    half: np.ndarray  # float64 [E, 3, 3]: row a is half the edge along the box's own axis a
+    straight: np.ndarray  # bool [E], whether the box is the straight one
+    there: np.ndarray  # bool [E], whether it has a face
+
+
+def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
+    """Return the boxes of a scene's elements.
+
+    Args:
+        tables: the scene.
+        metres_per_block: the size of its blocks.
+    """
+    low, high = tables.boxes[:, :3].astype(np.float64), tables.boxes[:, 3:].astype(np.float64)
+    axes = np.tile(np.eye(3), (len(low), 1, 1))
+    shift = np.zeros((len(low), 3))
+    turned = np.flatnonzero(tables.traits[:, TURN] >= 0)
+    if len(turned):
+        to_frame = np.tile(np.eye(4), (len(turned), 1, 1))
+        to_frame[:, :3] = tables.turns[tables.traits[turned, TURN]]
+        back = np.linalg.inv(to_frame)
+        axes[turned], shift[turned] = back[:, :3, :3].transpose(0, 2, 1), back[:, :3, 3]
+    centre = np.einsum("ea,eab->eb", (low + high) / 2, axes) + shift
+    lengths = np.linalg.norm(axes, axis=2)
+    reach = np.maximum((high - low) / 2 * lengths, LEAST_THICK_M / 2 / metres_per_block)
+    half = axes / np.maximum(lengths, 1e-12)[..., None] * reach[..., None]
+    around = np.abs(half).sum(axis=1)
+    leaning = np.sort(np.abs(half), axis=2)[..., :2].max(axis=(1, 2), initial=0.0)
+    return SolidBoxes(
+        low=centre - around,
+        high=centre + around,
+        centre=centre,
+        half=np.ascontiguousarray(half),
+        straight=leaning < _STRAIGHT,
+        there=np.any(tables.layers >= 0, axis=1).astype(bool),
+    )
+
+
+SLACK_M = 0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
+LEAST_VOXEL_M = 0.01
+MOST_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
+SLAB_CELLS = 4_000_000  # That are filled at a time.
+_EVEN = 1e-6  # Cells: borders nearer than this are one.
+
+
+@dataclass(frozen=True)
+class _Lattice:
+    """Cells along the block axes, and how they lie in the room."""
+
+    start: np.ndarray  # float64 [3], minimum corner in the scene's grid of blocks
+    step: float  # blocks
+    origin_m: np.ndarray  # float64 [3], minimum corner in the room
+    shape: tuple[int, int, int]  # along the room's axes
+    axes: tuple[int, int, int]  # the room's axis of each block axis
+    flips: tuple[bool, bool, bool]  # whether a block axis runs against it
+
+    def in_block_axes(self, values: np.ndarray) -> np.ndarray:
+        """Return a view of room-ordered values in block axes."""
+        turned = np.transpose(values, self.axes)
+        return turned[tuple(slice(None, None, -1 if flip else None) for flip in self.flips)]
+
+
+def scene_voxels(
+    volume: BlockVolume,
+    designs: Designs | None = None,
+    *,
+    voxel_m: float | None = DEFAULT_VOXEL_M,
+    within_m: Sequence[Sequence[float]] | None = None,
+    scene: BlockScene | None = None,
+) -> SceneVoxels:
+    """Return the cells of a world.
+
+    Args:
+        volume: the blocks, with class and object of each.
+        designs: which furniture design each block is a part of, and the designs' names.
+        voxel_m: a cell's side; None for one cell a block.
+        within_m: low and high corner of the part of the room that is wanted; None for all.
+        scene: the volume's ``prepare_scene``, where there is one already.
+
+    Raises:
+        UsageError: the cells are too small, or more than ``MOST_CELLS``, or the world does not
+            stand along the room's axes.
+
+    Example:
+        >>> from world2minecraft.procgen import generate_room
+        >>> SLACK_M < LEAST_VOXEL_M
+        True
+    """
+    if voxel_m is not None and not voxel_m >= LEAST_VOXEL_M:
+        raise UsageError(f"a cell is {LEAST_VOXEL_M} m or more, not {voxel_m}")
+    scene = prepare_scene(volume) if scene is None else scene
+    lattice, voxel_m = _lattice(volume, scene, voxel_m, within_m)
+    names = fine_names(volume, designs)
+    result = SceneVoxels(
+        *_filled(volume, scene, lattice, names), names.classes, voxel_m, lattice.origin_m
+    )
+    return result
+
+
+def _lattice(
+    volume: BlockVolume,
+    scene: BlockScene,
+    voxel_m: float | None,
+    within_m: Sequence[Sequence[float]] | None,
+) -> tuple[_Lattice, float]:
+    """Lay cells over a scene: on whole multiples of their size, or on its blocks."""
+    grid_to_room = np.linalg.inv(scene.room_to_grid)
+    side = 1 / scene.cells_per_metre
+    turn = grid_to_room[:3, :3] / side
+    axes = np.abs(turn).argmax(axis=0)
+    if np.abs(np.abs(turn) - np.eye(3)[axes].T).max() > 1e-6:
+        raise UsageError("labels need a world that stands along the axes of its room")
+    flips = turn[axes, range(3)] < 0
+    ends = np.array([np.zeros(3), scene.tables.space.shape]) @ grid_to_room[:3, :3].T
+    ends += grid_to_room[:3, 3]
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    size = side if voxel_m is None else float(voxel_m)
+    zero = low if voxel_m is None else np.zeros(3)
+    if within_m is not None:
+        low, high = np.maximum(low, within_m[0]), np.minimum(high, within_m[1])
+    first = np.floor((low - zero) / size + _EVEN).astype(np.int64)
+    last = np.maximum(np.ceil((high - zero) / size - _EVEN).astype(np.int64), first + 1)
+    shape = _checked_shape(last - first, size)
+    origin = zero + first * size
+    corners = np.array([origin, origin + np.array(shape) * size])
+    start = (corners @ scene.room_to_grid[:3, :3].T + scene.room_to_grid[:3, 3]).min(axis=0)
+    lattice = _Lattice(
+        start=np.where(np.abs(start - np.round(start)) < _EVEN, np.round(start), start),
+        step=1.0 if voxel_m is None else size / side,
+        origin_m=origin,
+        shape=shape,
+        axes=(int(axes[0]), int(axes[1]), int(axes[2])),
+        flips=(bool(flips[0]), bool(flips[1]), bool(flips[2])),
+    )
+    return lattice, size
+
+
+def _checked_shape(shape: np.ndarray, voxel_m: float) -> tuple[int, int, int]:
+    count = float(np.prod(shape.astype(float)))
+    if count > MOST_CELLS:
+        raise UsageError(
+            f"{'x'.join(map(str, shape))} cells of {voxel_m:g} m take {count * 5 / 1e9:.0f} GB; "
+            f"{MOST_CELLS:,} cells are allowed: take larger cells, one a block, or a part of it"
+        )
+    return int(shape[0]), int(shape[1]), int(shape[2])
+
+
+def _filled(
+    volume: BlockVolume, scene: BlockScene, lattice: _Lattice, names: FineNames
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return labels, fine classes and objects of a lattice's cells, in room order."""
+    labels = np.zeros(lattice.shape, np.uint8)
+    fine, instance = (np.zeros(lattice.shape, np.uint16) for _ in range(2))
+    views = [lattice.in_block_axes(values) for values in (labels, fine, instance)]
+    boxes = solid_boxes(scene.tables, 1 / scene.cells_per_metre)
+    depth, wide, high = views[0].shape
+    thick = max(SLAB_CELLS // (wide * high), 1)
+    for first in range(0, depth, thick):
+        owner = _owners(scene, boxes, lattice, first, (min(thick, depth - first), wide, high))
+        taken = np.nonzero(owner != NOBODY)
+        what = _described(owner[taken], volume, scene, names)
+        for view, values in zip(views, what, strict=True):
+            view[first : first + thick][taken] = values
+    return labels, fine, instance
+
+
+def _owners(
+    scene: BlockScene,
+    boxes: SolidBoxes,
+    lattice: _Lattice,
+    first: int,
+    shape: tuple[int, int, int],
+) -> np.ndarray:
+    """Return who has each cell of a slab, int32, as ``solid_kernels`` numbers them."""
+    tables = scene.tables
+    standing = np.flatnonzero((tables.traits[:, FLAGS] & ABSOLUTE > 0) & boxes.there)
+    side = int(np.ceil((1 + 2 * ROUND) / lattice.step)) + 1
+    owner = np.full(shape, NOBODY, np.int32)
+    fill_slab(
+        tables.space, tables.looks, tables.look_start, tables.refs, tables.traits, tables.window,
+        boxes, standing, lattice.start, lattice.step, SLACK_M * scene.cells_per_metre, first,
+        np.zeros(shape, np.float32), owner, np.zeros((side, side, side)),
+    )  # fmt: skip
+    return owner
+
+
+def _described(
+    owner: np.ndarray, volume: BlockVolume, scene: BlockScene, names: FineNames
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return label, fine class and object of each owner; without a class it is unknown."""
+    is_cell = owner >= 0
+    cells, things = owner[is_cell], -2 - owner[~is_cell]
+    labels = np.empty(len(owner), np.uint8)
+    fine, instance = np.empty(len(owner), np.uint16), np.empty(len(owner), np.uint16)
+    labels[is_cell] = volume.semantic.reshape(-1)[cells]
+    labels[~is_cell] = scene.things.semantic[things]
+    instance[is_cell] = volume.instance.reshape(-1)[cells]
+    instance[~is_cell] = scene.things.instance[things]
+    fine[is_cell], fine[~is_cell] = names.of_cells(cells), names.of_thing[things]
+    labels[labels == 0] = UNKNOWN
+    return labels, fine, instance

@@ -1,0 +1,142 @@
+"""Residual blocks of cells whose 3x3x3 kernel is three kernels of one axis each (DDR, CVPR 2019).
+
+The first kernel runs along z, the second along y, the third along x, each seeing what those before
+it found. Shortcuts between them are plain where the grid stays; where it is halved they are pooled
+and carried by kernels of one cell. The published code owns such kernels in the blocks that halve
+nothing too, where nothing flows through them: here they are left out.
+"""
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.networks.layers.normalization import DilatedConv3d, Norm, conv3d, norm3d
+
+
+class AxisBlock(nn.Module):
+    """A bottleneck of DDR: a quarter of the channels, three axes, and back.
+
+    Args:
+        channels: what comes in.
+        norm: how layers are normalised.
+        dilation: of the three kernels.
+        halve: the grid is halved and the channels are doubled.
+    """
+
+    def __init__(self, channels: int, norm: Norm, *, dilation: int = 1, halve: bool = False):
+        super().__init__()
+        inner, made = max(channels // 4, 1), channels * (2 if halve else 1)
+        self.reduce = conv3d(channels, inner, norm, kernel=1)
+        self.along = nn.ModuleList(
+            _along(axis, inner, norm, dilation, 2 if halve else 1) for axis in (2, 1, 0)
+        )
+        self.expand = conv3d(inner, made, norm, kernel=1)
+        self.halve = halve
+        if halve:
+            self.second = _Halved(inner, inner, norm, (False, True, False))
+            self.third = _Halved(inner, inner, norm, (True, False, False))
+            self.fourth = _Halved(inner, inner, norm, (True, False, False))
+            self.around = _Halved(channels, made, norm, (True, True, True))
+
+    def forward(self, cells: Tensor) -> Tensor:
+        """Return [B, C, X, Y, Z], or [B, 2 C, ...] with half the sides, rounded up."""
+        first, second, third = self.along
+        up = first(torch.relu(self.reduce(cells)))
+        side = second(torch.relu(up))
+        up = self.second(up) if self.halve else up
+        side = side + up
+        deep = third(torch.relu(side))
+        deep = deep + (self.third(up) + self.fourth(side) if self.halve else up + side)
+        out = self.expand(torch.relu(deep))
+        return torch.relu(out + (self.around(cells) if self.halve else cells))
+
+
+def axis_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)) -> nn.Sequential:
+    """Return blocks with growing reach."""
+    return nn.Sequential(*(AxisBlock(channels, norm, dilation=reach) for reach in dilations))
+
+
+class Double(nn.Module):
+    """Doubles the sides of a grid, or one less where that is what was halved before."""
+
+    def __init__(self, channels: int, made: int, norm: Norm):
+        super().__init__()
+        self.up = nn.ConvTranspose3d(channels, made, 3, stride=2, padding=1)
+        self.norm = norm3d(norm, made)
+
+    def forward(self, cells: Tensor, sides: Sequence[int]) -> Tensor:
+        """Return [B, C', ...] of these sides, each twice what came in or one less."""
+        wanted = [int(side) for side in sides]
+        return torch.relu(self.norm(self.up(cells, output_size=wanted)))
+
+
+class _Halved(nn.Module):
+    """Means of two along some axes, the last cell of an odd side counting twice; then a kernel."""
+
+    def __init__(self, channels: int, made: int, norm: Norm, axes: tuple[bool, bool, bool]):
+        super().__init__()
+        self.axes = axes
+        self.sides = tuple(2 if halved else 1 for halved in axes)
+        self.carry = conv3d(channels, made, norm, kernel=1)
+
+    def forward(self, cells: Tensor) -> Tensor:
+        odd = [
+            int(halved and side % 2)
+            for halved, side in zip(self.axes, cells.shape[2:], strict=True)
+        ]
+        if any(odd):
+            cells = nn.functional.pad(cells, (0, odd[2], 0, odd[1], 0, odd[0]), mode="replicate")
+        return self.carry(nn.functional.avg_pool3d(cells, self.sides, self.sides))
+
+
+def _along(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> nn.Sequential:
+    def only(value: int, other: int) -> tuple[int, int, int]:
+        return tuple(value if k == axis else other for k in range(3))  # type: ignore[return-value]
+
+    kind = DilatedConv3d if stride == 1 else nn.Conv3d
+    conv = kind(
+        channels, channels, only(3, 1), only(stride, 1), only(dilation, 0), only(dilation, 1),
+        bias=False,
+    )  # fmt: skip
+    return nn.Sequential(conv, norm3d(norm, channels))
+
+
+# Several reaches at once (ASPP), and the head that names the cells.
+
+
+class Reaches(nn.Module):
+    """Pairs of 3x3x3 kernels of several dilations, summed and added to what came in."""
+
+    def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
+        super().__init__()
+        self.branches = nn.ModuleList(
+            nn.Sequential(
+                conv3d(channels, channels, norm, dilation=reach),
+                nn.ReLU(),
+                conv3d(channels, channels, norm, dilation=reach),
+            )
+            for reach in dilations
+        )
+
+    def forward(self, cells: Tensor) -> Tensor:
+        """Return [B, C, X, Y, Z] of the same shape."""
+        found = cells
+        for branch in self.branches:
+            found = found + branch(cells)
+        return torch.relu(found)
+
+
+class ClassHead(nn.Module):
+    """From features of cells to the logits of the 12 classes."""
+
+    def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
+        super().__init__()
+        self.enter = nn.Conv3d(channels, channels, 3, padding=1)
+        self.reaches = Reaches(channels, norm, dilations)
+        self.classes = nn.Conv3d(channels, CLASS_COUNT, 3, padding=1)
+
+    def forward(self, cells: Tensor) -> Tensor:
+        """Return float [B, 12, X, Y, Z]."""
+        return self.classes(self.reaches(torch.relu(self.enter(cells))))

@@ -1,0 +1,289 @@
+"""A trained network leaves PyTorch as one ONNX file of the contract in docs/networks-onnx.md.
+
+It is written only where it says what the network says: both are asked about the same picture, and
+no logit may differ by more than ``MOST_DIFFERENCE``. Weights may then be stored small, as
+``weight_storage`` does it; by how much that moves the logits is measured, not bounded: whether it
+may, a score must say.
+"""
+
+import importlib.util
+import io
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import onnx
+import onnxruntime
+import torch
+from onnx import numpy_helper
+from torch import Tensor, nn
+
+from world2minecraft.core.errors import MissingExtraError, OutputError, UnknownNameError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.networks.batch import OccInput
+from world2minecraft.reconstruction.occupancy.onnx_network import OUTPUT, NetworkFacts
+
+# Weights of an ONNX model kept small in the file: as bytes or halves, whole again when it is run.
+#
+# Only what multiplies is kept so: the weights of convolutions and of matrix products. Biases, norms
+# and what a network knows of its grid stay as they are. ``int8`` has one scale an output channel, so
+# that a channel of small weights keeps its digits. Activations are never rounded: onnxruntime turns
+# the weights back as it loads the file, and runs the same float32 network as ever.
+
+KINDS = ("float", "half", "int8")
+SMALL = 64  # Weights of fewer numbers are not worth a node.
+MOST = 127  # Symmetric: -128 is not used.
+# Which input of a node is weights, and which of its axes counts output channels.
+_WEIGHTS = {"Conv": 0, "ConvTranspose": 1, "MatMul": -1, "Gemm": -1}
+
+
+def with_stored_weights(model: Any, kind: str) -> Any:
+    """Return an ONNX model whose weights are stored as one of ``KINDS``.
+
+    Args:
+        model: an ``onnx.ModelProto`` with float32 weights; it is left as it was.
+        kind: ``float`` changes nothing; ``half`` takes half the room, ``int8`` a quarter.
+
+    Raises:
+        UnknownNameError: there is no such kind.
+    """
+    if kind not in KINDS:
+        raise UnknownNameError("way to store weights", kind, KINDS)
+    result = onnx.ModelProto()
+    result.CopyFrom(model)
+    axes = _axes_of_weights(result.graph)
+    widening = []
+    for weight in list(result.graph.initializer):
+        if kind == "float" or weight.name not in axes:
+            continue
+        values = numpy_helper.to_array(weight)
+        if values.dtype == np.float32 and values.size >= SMALL:
+            widen = _as_halves if kind == "half" else _as_bytes
+            widening.append(widen(result.graph, weight, values, axes[weight.name]))
+    nodes = [*widening, *result.graph.node]
+    del result.graph.node[:]
+    result.graph.node.extend(nodes)
+    onnx.checker.check_model(result)
+    return result
+
+
+def rounded(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return int8 of the weights' shape, and float32 [C], the scale of each channel.
+
+    Args:
+        values: float32 weights.
+        axis: of the channels. What comes back times its scale is off by half a scale at most.
+
+    Example:
+        >>> whole, scales = rounded(np.float32([[0.5, -1.27], [0.0, 0.0]]), 0)
+        >>> whole.tolist(), [round(float(scale), 4) for scale in scales]
+        ([[50, -127], [0, 0]], [0.01, 1.0])
+    """
+    others = tuple(n for n in range(values.ndim) if n != axis % values.ndim)
+    most = np.abs(values).max(axis=others)
+    scales = np.where(most > 0, most / np.float32(MOST), np.float32(1)).astype(np.float32)
+    whole = np.rint(values / np.expand_dims(scales, others))
+    return np.clip(whole, -MOST, MOST).astype(np.int8), scales
+
+
+def _axes_of_weights(graph: Any) -> dict[str, int]:
+    """Return the axis of output channels for each tensor that is weights, and nothing else."""
+    axes, elsewhere = {}, set()
+    for node in graph.node:
+        for place, name in enumerate(node.input):
+            if node.op_type in _WEIGHTS and place == 1:
+                axes[name] = _axis(node)
+            else:
+                elsewhere.add(name)
+    return {name: axis for name, axis in axes.items() if name not in elsewhere}
+
+
+def _axis(node: Any) -> int:
+    turned = any(one.name == "transB" and one.i for one in node.attribute)
+    return 0 if turned else _WEIGHTS[node.op_type]
+
+
+def _as_halves(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+    name = weight.name
+    weight.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_half"))
+    return onnx.helper.make_node("Cast", [f"{name}_half"], [name], to=onnx.TensorProto.FLOAT)
+
+
+def _as_bytes(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+    name = weight.name
+    whole, scales = rounded(values, axis)
+    weight.CopyFrom(numpy_helper.from_array(whole, f"{name}_int8"))
+    graph.initializer.append(numpy_helper.from_array(scales, f"{name}_scales"))
+    return onnx.helper.make_node(
+        "DequantizeLinear",
+        [f"{name}_int8", f"{name}_scales"],
+        [name],
+        axis=axis % values.ndim,
+    )
+
+
+OPSET = 17
+MOST_DIFFERENCE = 1e-3
+TURN_DEG = 10.0  # How far the camera of the question looks down.
+
+
+class Exported(NamedTuple):
+    """What a written file came to, asked about one picture."""
+
+    difference: float  # the most that a logit differs from the network's, weights whole
+    moved: float  # the most that storing the weights small moves a logit by
+    moved_mean: float  # and on the mean, beside ``spread``, the standard deviation of all logits
+    spread: float
+    renamed: float  # share of the cells that take another class by it
+    size: int  # bytes of the file
+
+
+def export_network(
+    network: nn.Module,
+    path: str | Path,
+    facts: NetworkFacts,
+    *,
+    weights: str = "float",
+    seed: int = 0,
+) -> Exported:
+    """Write a network as ONNX, and return how much the file's answers differ.
+
+    Args:
+        network: maps ``OccInput`` to ``OccOutput``. It is asked in evaluation, and left as it was.
+        path: the file.
+        facts: what the file states: its grid, its picture's size, whether it wants depth.
+        weights: float, half or int8: how they are stored (``weight_storage.KINDS``).
+        seed: of the picture that both are asked about.
+
+    Raises:
+        OutputError: the file would say something else, or cannot be written.
+        UnknownNameError: weights are not stored so.
+        MissingExtraError: onnx is not installed.
+    """
+    _check_onnx()
+
+    example = _question(facts, np.random.default_rng(seed))
+    trained = network.training
+    network.eval()
+    try:
+        with torch.no_grad():
+            said = network(example).logits.float().cpu().numpy()
+            model = _traced(network, example, facts)
+    finally:
+        network.train(trained)
+    whole = _asked(model.SerializeToString(), example)
+    difference = float(np.abs(whole - said).max())
+    if not difference <= MOST_DIFFERENCE:  # Holds for what is no number too.
+        raise OutputError(
+            path,
+            f"the ONNX file's logits would differ by {difference:.3g} from the network's, and "
+            f"{MOST_DIFFERENCE:g} is the most; no file is written",
+        )
+    data = with_stored_weights(model, weights).SerializeToString()
+    stored = whole if weights == "float" else _asked(data, example)
+    if not np.isfinite(stored).all():
+        raise OutputError(path, f"weights stored as {weights} would give what is no number")
+    write_bytes(Path(path), data)
+    return Exported(difference, *_moves(whole, stored), len(data))
+
+
+def _moves(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, float, float]:
+    moved = np.abs(stored - whole)
+    renamed = stored.argmax(axis=1) != whole.argmax(axis=1)
+    return float(moved.max()), float(moved.mean()), float(whole.std()), float(renamed.mean())
+
+
+class _Named(nn.Module):
+    """The network with the inputs and the output of the contract."""
+
+    def __init__(self, network: nn.Module, facts: NetworkFacts):
+        super().__init__()
+        self.network, self.facts = network, facts
+
+    def forward(
+        self,
+        image: Tensor,
+        intrinsics: Tensor,
+        camera_to_grid: Tensor,
+        depth_m: Tensor | None = None,
+    ) -> Tensor:
+        """Return logits [1, 12, X, Y, Z]."""
+        facts = self.facts
+        inputs = OccInput(
+            image, intrinsics, camera_to_grid, facts.grid_shape, facts.voxel_m, depth_m
+        )
+        return self.network(inputs).logits.float()
+
+
+def _check_onnx() -> None:
+    if importlib.util.find_spec("onnx") is None:
+        raise MissingExtraError("writing ONNX files", "train")
+
+
+def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
+    """Return the network as an ``onnx.ModelProto``."""
+    import onnx  # noqa: PLC0415
+
+    given = _by_name(example)
+    written: Any = io.BytesIO()  # It takes a stream, and says that it does not.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Of sides that become constants, as they are meant to.
+        torch.onnx.export(
+            _Named(network, facts),
+            tuple(given.values()),
+            written,
+            input_names=list(given),
+            output_names=[OUTPUT],
+            opset_version=OPSET,
+            dynamo=False,
+        )
+    model = onnx.load_from_string(written.getvalue())
+    onnx.helper.set_model_props(model, facts.metadata())
+    return model
+
+
+def _asked(data: bytes, example: OccInput) -> np.ndarray:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    session: Any = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
+    wanted = {entry.name for entry in session.get_inputs()}
+    given = {name: one.cpu().numpy() for name, one in _by_name(example).items() if name in wanted}
+    return np.asarray(session.run([OUTPUT], given)[0])
+
+
+def _by_name(example: OccInput) -> dict[str, Tensor]:
+    given = {
+        "image": example.image,
+        "intrinsics": example.intrinsics,
+        "camera_to_grid": example.camera_to_grid,
+    }
+    return given if example.depth_m is None else {**given, "depth_m": example.depth_m}
+
+
+def _question(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:
+    """Return a picture of noise by a camera in the middle of the grid's near side."""
+    width, height = facts.image_size_px
+    lens = np.array([[0.81 * width, 0, width / 2], [0, 0.81 * width, height / 2], [0, 0, 1]])
+    sides_m = np.array(facts.grid_shape) * facts.voxel_m
+    down = np.deg2rad(TURN_DEG)
+    pose = np.eye(4)
+    pose[:3, 2] = [0, np.cos(down), -np.sin(down)]
+    pose[:3, 1] = [0, -np.sin(down), -np.cos(down)]
+    pose[:3, 3] = [sides_m[0] / 2, 0, 0.6 * sides_m[2]]
+    depth_m = rng.uniform(0.5, sides_m[1], (1, height, width))
+    depth_m[rng.random(depth_m.shape) < 0.1] = 0
+    image = rng.random((1, 3, height, width))
+    return OccInput(
+        _single(image),
+        _single(lens[None]),
+        _single(pose[None]),
+        facts.grid_shape,
+        facts.voxel_m,
+        _single(depth_m) if facts.wants_depth else None,
+    )
+
+
+def _single(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(values).float()
