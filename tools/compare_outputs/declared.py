@@ -24,6 +24,9 @@ KEYS: dict[str, str] = {}
 # Pieces of text: in reports, READMEs, instructions, string values, and what commands print.
 TEXTS: dict[str, str] = {}
 
+# Pictures that are drawn in another way now, and looked at by a person: only that they are there.
+REDRAWN: tuple[str, ...] = ()
+
 # ---- What differs by nature, on one side as on both. Found by running the base twice.
 
 # Text that is replaced before texts are compared: a pattern, and what stands in its place.
