@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.rows import Row
 from world2minecraft.navigation.environment.action_spaces import Continuous
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.moves import moved
+from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.scene import VlnScene, open_scene
 from world2minecraft.navigation.values import Move
 from world2minecraft.procgen.worlds import generate_world, write_house
@@ -93,7 +93,7 @@ def _bodies(scene: VlnScene) -> Callable[[], int]:
     def work() -> int:
         stance = scene.start
         for move in moves:
-            stance, _ = moved(scene, stance, move)
+            stance, _ = apply_move(scene, stance, move)
         return MOVES
 
     return work

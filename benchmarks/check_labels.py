@@ -31,7 +31,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraftocc.labels.labels import (
+from world2minecraft.minecraftocc.labels.image_labels import (
     cells_of_pixels,
     label_image,
     resized,

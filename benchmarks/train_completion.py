@@ -17,7 +17,7 @@ import torch
 from safetensors.torch import load_file
 
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
-from world2minecraft.networks.completion.augment import cropped
+from world2minecraft.networks.completion.augmentation import cropped
 from world2minecraft.networks.completion.export import export_completion
 from world2minecraft.networks.completion.network import MULTIPLE, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool

@@ -35,7 +35,7 @@ from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
 from world2minecraft.networks.csv_logger import METRICS, read_rows
 from world2minecraft.networks.data.cache import Frames
-from world2minecraft.networks.data.opening import CachePlace, open_frames, open_run_data, rule_of
+from world2minecraft.networks.data.run_data import CachePlace, open_frames, open_run_data, rule_of
 from world2minecraft.networks.data.splits import split_rows
 from world2minecraft.networks.models import NETWORKS
 from world2minecraft.networks.scoring import SaidOfFrame, protocol_scores, said_by_network

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.construction.block_designs import DYES
 from world2minecraft.construction.cell_colours import gains_of, group_medians, spread
-from world2minecraft.construction.paint import calm, choose_few, neighbour_table, paint
 from world2minecraft.construction.palettes import load_palette
+from world2minecraft.construction.surface_painting import calm, choose_few, neighbour_table, paint
 from world2minecraft.geometry.colour import (
     linear_to_oklab,
     linear_to_srgb,

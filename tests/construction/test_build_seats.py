@@ -4,8 +4,8 @@ import numpy as np
 
 from world2minecraft.construction.fitted_objects import LOWER
 from world2minecraft.construction.lattice import lattice_over
-from world2minecraft.construction.parts import design_of
-from world2minecraft.construction.seats import chair_paints, lit_colour
+from world2minecraft.construction.surface_painting import chair_paints, lit_colour
+from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import srgb_to_oklab
@@ -69,7 +69,7 @@ def test_a_seat_rests_on_its_posts_at_every_turn():
         placement = Placement(1, 5, "chair", [1.0, 1.0, 0.44], [0.48, 0.48, 0.88], turns, 0.5)
         parts = chair.parts(placement.size_m, placement.parameters)
         lattice = lattice_over(chairs((BROWN, SHADE))[0], np.array([0.0, 2.0]), 4.0, 2.0)
-        design = design_of(placement, parts, lattice)
+        design = half_block_design(placement, parts, lattice)
         seat = next(n for n, part in enumerate(parts, 1) if part.role == "seat")
         seats = np.argwhere(design.part == seat)
         assert len(seats) and (design.halves[tuple(seats.T)] == LOWER).all()

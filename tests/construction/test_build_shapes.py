@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.cell_objects import shape_of_cells
 from world2minecraft.construction.lattice import face_shares, lattice_over, memberships, overlaps
-from world2minecraft.construction.parts import design_of
+from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.construction.worktops import top_cells
 from world2minecraft.furniture import TEMPLATES, template
 
@@ -92,7 +92,7 @@ def design(name, turns=0, center=(2.0, 1.0), scale=4.0):
     found = template(name)
     size = np.array(found.typical_m)
     place = placement(name, found.class_id, (*center, size[2] / 2), size, turns)
-    return design_of(place, found.parts(size), lattice(scale))
+    return half_block_design(place, found.parts(size), lattice(scale))
 
 
 @pytest.mark.parametrize("name", TEMPLATES.names())
@@ -117,7 +117,7 @@ def test_the_front_of_a_counter_stays_within_half_a_block_of_where_it_is(turns, 
     found = template("counter")
     size = np.array(found.typical_m)
     place = placement("counter", FURN, (2.0 + away_m, 1.0 + away_m, size[2] / 2), size, turns)
-    made = design_of(place, found.parts(size), lattice(4.0))
+    made = half_block_design(place, found.parts(size), lattice(4.0))
     turned = size[[1, 0]] if turns % 2 else size[:2]
     low = lattice(4.0).coordinates_of(np.array([2.0 + away_m, 1.0 + away_m, 0.0]))[:2] - turned * 2
     assert np.abs(made.low[:2] - low).max() <= 0.5 + 1e-5

@@ -27,7 +27,7 @@ from world2minecraft.minecraftocc.block_map.context import (
     columns,
     joined_parts,
 )
-from world2minecraft.minecraftocc.block_map.rooms import NONE, next_above
+from world2minecraft.minecraftocc.block_map.room_detection import NONE, next_above
 from world2minecraft.minecraftocc.block_map.rules import Rule
 from world2minecraft.minecraftocc.values import FineClass
 

@@ -27,7 +27,7 @@ from world2minecraft.minecraftocc.building import scenes as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
 from world2minecraft.minecraftocc.building.shard_rendering import units_of
 from world2minecraft.minecraftocc.engine import opened_engine
-from world2minecraft.minecraftocc.labels.labels import label_image
+from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.plan import (

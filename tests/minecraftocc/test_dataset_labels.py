@@ -9,7 +9,7 @@ from label_worlds import CAMERA, poses_in, room_of_things
 
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.labels.labels import (
+from world2minecraft.minecraftocc.labels.image_labels import (
     cast_depth,
     cells_of_pixels,
     label_image,
@@ -20,8 +20,8 @@ from world2minecraft.minecraftocc.labels.labels import (
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
-from world2minecraft.minecraftocc.showing import label_image_of
 from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.visualization import label_image_of
 from world2minecraft.rendering import prepare_scene, render_volume
 
 RULE = RegionRule(shape=(24, 22, 20))

@@ -8,7 +8,7 @@ from label_worlds import poses_in, room_of_things
 
 from world2minecraft.core.coordinates import apply, invert, look_at, rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraftocc.labels.labels import gathered, is_on_cells
+from world2minecraft.minecraftocc.labels.image_labels import gathered, is_on_cells
 from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, region_of
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.values import FineClass, SceneVoxels

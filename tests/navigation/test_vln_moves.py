@@ -15,13 +15,13 @@ from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.minecraft.physics.walk_graph import solid_of
 from world2minecraft.navigation.moves import (
     BodySize,
+    apply_move,
     forward_blocks,
-    moved,
-    named_set,
-    walked,
-    wrapped_yaw,
+    get_move_set,
+    move_body,
+    wrap_yaw,
 )
-from world2minecraft.navigation.oracle import expert
+from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
 
 SIZE = BodySize(0.3, 1.8, 0.6, 3.0)
@@ -55,7 +55,7 @@ def floor_with(*blocks, holes=(), semantic=None):
 def walk(volume, begin, way, sliding=False):
     corner = np.array(volume.corner, np.int64)
     feet = tuple(float(a + b) for a, b in zip(begin, volume.corner, strict=True))
-    x, y, z, stopped = walked(solid_of(volume), corner, *feet, *way, SIZE, sliding)
+    x, y, z, stopped = move_body(solid_of(volume), corner, *feet, *way, SIZE, sliding)
     return tuple(
         round(float(a - b), 6) for a, b in zip((x, y, z), volume.corner, strict=True)
     ), stopped
@@ -124,34 +124,34 @@ def test_a_body_never_ends_in_a_block_nor_in_the_air(blocks, angle, length, slid
 
 @given(st.lists(st.sampled_from([Move.LEFT, Move.RIGHT]), max_size=60), st.floats(-180, 179.9))
 def test_turns_there_and_back_are_exact(flat, turns, yaw_deg):
-    begin = Stance(3.0, 65.0, 3.0, wrapped_yaw(yaw_deg))
+    begin = Stance(3.0, 65.0, 3.0, wrap_yaw(yaw_deg))
     stance = begin
     back = [Move.LEFT if turn == Move.RIGHT else Move.RIGHT for turn in turns]
     for turn in turns + back[::-1]:
-        stance, collided = moved(flat, stance, turn)
+        stance, collided = apply_move(flat, stance, turn)
         assert not collided and -180 <= stance.yaw_deg < 180
     assert stance == begin
 
 
 def test_left_is_counter_clockwise_from_above(flat):
     south = Stance(3.0, 65.0, 3.0, 0.0)  # Left of one who looks south, to +z, is east, +x.
-    stance, _ = moved(flat, south, Move.LEFT, "block")
-    ahead, collided = moved(flat, stance, Move.FORWARD, "block")
+    stance, _ = apply_move(flat, south, Move.LEFT, "block")
+    ahead, collided = apply_move(flat, stance, Move.FORWARD, "block")
     assert not collided and ahead.feet == pytest.approx((4.0, 65.0, 3.0))
-    assert moved(flat, south, Move.STOP) == (south, False)
+    assert apply_move(flat, south, Move.STOP) == (south, False)
 
 
 def test_a_step_has_the_length_of_its_set(flat):
-    lengths = {name: forward_blocks(flat, named_set(name)) for name in MOVE_SETS}
+    lengths = {name: forward_blocks(flat, get_move_set(name)) for name in MOVE_SETS}
     assert lengths == {"vlnce": 0.5, "rxr": 0.5, "block": 1.0, "macro": 0.5}
     with pytest.raises(UnknownNameError, match="no set of moves is named 'vlncee'; did you mean"):
-        named_set("vlncee")
+        get_move_set("vlncee")
 
 
 def test_one_ends_before_a_wall(flat):
     stance, steps = Stance(3.0, 65.0, 3.0, 90.0), 0  # Looks west; the wall's face is at x = 1.
     while True:
-        stance, collided = moved(flat, stance, Move.FORWARD)
+        stance, collided = apply_move(flat, stance, Move.FORWARD)
         if collided:
             break
         steps += 1
@@ -167,7 +167,7 @@ def test_the_oracle_comes_to_every_thing_from_everywhere(flat, move_set):
         for place in rng.choice(flat.main_places, 8):
             x, y, z = flat.graph.feet[place].tolist()
             stance = Stance(x, y, z, 90.0 * float(rng.integers(4)) - 180)
-            way = expert(flat, stance, goals, move_set)
+            way = plan_expert_path(flat, stance, goals, move_set)
             if way is None and move_set == "block":
                 continue  # Steps of a block may miss a doorway of two.
             assert way is not None and way.moves[-1] == Move.STOP
@@ -181,11 +181,11 @@ def test_the_oracle_comes_to_every_thing_from_everywhere(flat, move_set):
 
 def test_the_oracle_says_the_way_again_from_any_of_its_places(flat):
     goals = flat.goals_at(flat.landmark("piano"))
-    way = expert(flat, flat.start, goals)
-    assert way is not None and way == expert(flat, flat.start, goals)
+    way = plan_expert_path(flat, flat.start, goals)
+    assert way is not None and way == plan_expert_path(flat, flat.start, goals)
     stance, steps = flat.start, 0
-    while (move := expert(flat, stance, goals).moves[0]) != Move.STOP:
-        stance, collided = moved(flat, stance, move)
+    while (move := plan_expert_path(flat, stance, goals).moves[0]) != Move.STOP:
+        stance, collided = apply_move(flat, stance, move)
         steps += 1
         assert not collided and steps < 2 * len(way.moves)
     assert flat.distance_m(stance.feet, goals) <= 0.25
@@ -194,13 +194,13 @@ def test_the_oracle_says_the_way_again_from_any_of_its_places(flat):
 def test_the_oracle_looks_at_what_it_went_to(flat):
     piano = flat.landmark("piano")
     middle = (15.5, 66.0, 8.0)
-    way = expert(flat, flat.start, flat.goals_at(piano), facing=middle)
+    way = plan_expert_path(flat, flat.start, flat.goals_at(piano), facing=middle)
     assert way is not None and len(way.stances) == len(way.moves)
     last = way.stances[-1]
     wanted = math.degrees(math.atan2(-(middle[0] - last.x), middle[2] - last.z))
-    assert abs(wrapped_yaw(wanted - last.yaw_deg)) <= 7.5 + 1e-6
+    assert abs(wrap_yaw(wanted - last.yaw_deg)) <= 7.5 + 1e-6
 
 
 def test_where_no_way_leads_the_oracle_says_so(flat):
     roof = [tuple(flat.graph.feet[flat.graph.feet[:, 1].argmax()].tolist())]
-    assert expert(flat, flat.start, roof) is None
+    assert plan_expert_path(flat, flat.start, roof) is None

@@ -11,7 +11,13 @@ from scipy.sparse.csgraph import dijkstra
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.physics.any_angle_paths import lattice_of, straight_m
 from world2minecraft.navigation.landmarks import colour_name
-from world2minecraft.navigation.scene import LEVEL, REACH, camera_of, distance_over, open_scene
+from world2minecraft.navigation.scene import (
+    LEVEL_SIZES,
+    REACH_SPACINGS,
+    camera_of,
+    distance_from_field,
+    open_scene,
+)
 from world2minecraft.navigation.values import Stance
 
 
@@ -89,11 +95,11 @@ def test_distances_between_places_join_the_field(flat):
 def test_the_table_of_the_floor_finds_what_a_look_at_all_places_does(flat, x, y, z):
     field = flat.way_field_m(flat.goals_at(flat.landmark("table")))
     apart = flat.ways.feet - [x, y, z]
-    level = np.abs(apart[:, 1]) <= LEVEL * flat.scale
-    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH * flat.ways.spacing)
+    level = np.abs(apart[:, 1]) <= LEVEL_SIZES * flat.scale
+    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH_SPACINGS * flat.ways.spacing)
     ways = np.linalg.norm(apart, axis=1) * flat.metres_per_block + field
     slow = ways[near].min(initial=np.inf)
-    assert distance_over(flat.floor, field, x, y, z) == pytest.approx(slow)
+    assert distance_from_field(flat.floor, field, x, y, z) == pytest.approx(slow)
 
 
 def test_a_picture_shows_what_is_ahead(flat):

@@ -12,14 +12,14 @@ from open_field import OpenField, an_episode
 from PIL import Image
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.browser_window import Window
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.environment.observations import Eyes
 from world2minecraft.navigation.environment.play import play
-from world2minecraft.navigation.free_walk import stroll
+from world2minecraft.navigation.free_walk import walk_freely
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.running.human_agent import HumanAgent
 from world2minecraft.navigation.values import Move
-from world2minecraft.navigation.window import Window
 
 
 @pytest.fixture
@@ -97,7 +97,7 @@ def test_a_stroll_goes_where_the_keys_say(flat, window):
     shown = []
     window.show = lambda frame, text: shown.append((frame, text))
     with pytest.raises(UsageError, match="nobody pressed a key"):
-        stroll(flat, window, patience_s=0.05)
+        walk_freely(flat, window, patience_s=0.05)
     assert len(shown) == 5 and all("living room" in text for _, text in shown)
     assert not np.array_equal(shown[0][0], shown[1][0])
     np.testing.assert_array_equal(shown[0][0], shown[3][0])  # Space led back.

@@ -5,7 +5,7 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
-from world2minecraft.networks.completion.augment import augmented, cropped, turned
+from world2minecraft.networks.completion.augmentation import augmented, cropped, turned
 from world2minecraft.networks.completion.samples import (
     cut,
     make_samples,

@@ -18,7 +18,7 @@ from world2minecraft.networks.data.batches import (
 from world2minecraft.networks.data.cache import StreamedFrames, cached_frames, frames_bytes
 from world2minecraft.networks.data.class_weights import class_counts, class_weights
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.opening import CachePlace, open_run_data
+from world2minecraft.networks.data.run_data import CachePlace, open_run_data
 from world2minecraft.networks.data.splits import evenly, split_rows
 
 RULE = FrameRule(GRIDS["0.16"], 40, 30)

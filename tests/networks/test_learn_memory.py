@@ -14,7 +14,7 @@ from world2minecraft.networks import scene_memory as memory
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.opening import CachePlace
+from world2minecraft.networks.data.run_data import CachePlace
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.scene_memory import add_memory_scores, memory_scores, true_scene
 from world2minecraft.networks.scoring import MEMORY

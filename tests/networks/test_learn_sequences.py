@@ -23,7 +23,7 @@ from world2minecraft.networks.data.batches import (
 )
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.opening import CachePlace
+from world2minecraft.networks.data.run_data import CachePlace
 from world2minecraft.networks.data.sequences import Companions, count_of, looks_into, seen_from
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.training import train_run

@@ -23,7 +23,7 @@ from world2minecraft.networks.checkpoints import (
 )
 from world2minecraft.networks.config import RunConfig, read_config
 from world2minecraft.networks.csv_logger import read_rows
-from world2minecraft.networks.data.opening import CachePlace
+from world2minecraft.networks.data.run_data import CachePlace
 from world2minecraft.networks.lightning_module import rate_of
 from world2minecraft.networks.training import train_run, trained_network
 

@@ -10,13 +10,14 @@ import torch
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.batch import OccInput, OccOutput, OccTarget
 from world2minecraft.networks.layers.depth_bins import least_depth
-from world2minecraft.networks.losses import LossWeights, occupancy_losses
-from world2minecraft.networks.losses_one import (
+from world2minecraft.networks.losses import (
+    LossWeights,
     coarse_labels,
     cross_entropy,
     depth_loss,
     frustum_loss,
     geometric_affinity,
+    occupancy_losses,
     relation_loss,
     relations_of,
     semantic_affinity,

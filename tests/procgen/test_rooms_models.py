@@ -7,9 +7,8 @@ from world2minecraft.procgen.houses.plan import railing
 from world2minecraft.procgen.rooms import bathroom as washing
 from world2minecraft.procgen.rooms import decor, seating, storage
 from world2minecraft.procgen.rooms import play_and_hall as playing
+from world2minecraft.procgen.rooms.clutter_models import ODD, ON_BEDS, ON_FLOORS, ON_TABLES
 from world2minecraft.procgen.rooms.furniture_model import Part, shade, whole
-from world2minecraft.procgen.rooms.odd import ODD
-from world2minecraft.procgen.rooms.small import ON_BEDS, ON_FLOORS, ON_TABLES
 
 WOOD, CLOTH = (180, 140, 90), (70, 90, 130)
 

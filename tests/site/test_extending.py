@@ -118,11 +118,11 @@ def test_the_network_learns():
 def test_the_agent_walks_turns_and_stops():
     pytest.importorskip("gymnasium", reason="gymnasium is not installed")
     from world2minecraft.navigation.agents import Sight, Task
-    from world2minecraft.navigation.moves import named_set
+    from world2minecraft.navigation.moves import get_move_set
     from world2minecraft.navigation.values import Move, Stance
 
     agent = AGENTS.load("wall_follower")()
-    agent.begin(Task("Go to the table", named_set("vlnce"), 0.25, 5, 0.25))
+    agent.begin(Task("Go to the table", get_move_set("vlnce"), 0.25, 5, 0.25))
     stance, picture = Stance(0, 0, 0, 0), np.zeros((4, 4, 3), np.uint8)
     met = ((Move.FORWARD, True),)
     decided = [

@@ -12,10 +12,9 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.construction.paint import FADED, costs_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surfaces import painted
+from world2minecraft.construction.surface_painting import FADED, costs_of, painted
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import Placement

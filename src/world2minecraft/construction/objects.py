@@ -32,7 +32,6 @@ from world2minecraft.construction.cell_objects import (
     well_fitted,
 )
 from world2minecraft.construction.colour_sources import Coats, Hues
-from world2minecraft.construction.dressing import Dresser
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     Design,
@@ -46,11 +45,15 @@ from world2minecraft.construction.lattice import volume_shares
 from world2minecraft.construction.lattice_fitting import best_place, best_step
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.parts import design_of
-from world2minecraft.construction.places import LAST, in_order, within_storeys
-from world2minecraft.construction.seats import chair_paints
 from world2minecraft.construction.substitutes import known_by_shape
-from world2minecraft.construction.surfaces import block_colours
+from world2minecraft.construction.surface_painting import block_colours, chair_paints
+from world2minecraft.construction.template_blocks import (
+    LAST,
+    Dresser,
+    half_block_design,
+    in_order,
+    within_storeys,
+)
 from world2minecraft.construction.worktops import Plates
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
@@ -250,7 +253,7 @@ class ObjectBuilder:
         if kinds & BULKY:
             design = design_of_parts(placement, parts, self.lattice, kinds)
         else:
-            coarse = design_of(placement, parts, self.lattice)
+            coarse = half_block_design(placement, parts, self.lattice)
             design = of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design)
         guessed = not forced and placement.iou < SURE_IOU

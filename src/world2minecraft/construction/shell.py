@@ -10,7 +10,7 @@ from world2minecraft.construction.cell_colours import spread
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
-from world2minecraft.construction.surfaces import block_colours, painted, put_painted
+from world2minecraft.construction.surface_painting import block_colours, painted, put_painted
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate
 

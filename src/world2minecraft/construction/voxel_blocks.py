@@ -7,7 +7,7 @@ from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
-from world2minecraft.construction.surfaces import painted
+from world2minecraft.construction.surface_painting import painted
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.geometry.morphology import dilate, fill_holes
 

@@ -1,1 +1,1 @@
-"""What everything else stands on: value types, coordinates, classes, errors, files, compilation."""
+"""Foundation: value types, coordinates, classes, errors, files, registries, compilation."""

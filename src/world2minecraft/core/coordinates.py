@@ -1,4 +1,4 @@
-"""The only file that knows axis conventions.
+"""Axis conventions and transforms; no other file knows them.
 
 - **Room frame**: metres, right-handed, z up, walls along x and y; the floor's top face is z = 0.
 - **Camera**: OpenCV axes (x right, y down, z forward); pixel centres at +0.5.
@@ -212,7 +212,7 @@ def fov_deg_of_focal_px(side_px: int, focal_px: float) -> float:
     return float(np.degrees(2 * np.arctan(side_px / (2 * focal_px))))
 
 
-# The paper's own reading, kept for ``paper_compat``; docs/conventions.md tells its two slips.
+# The paper's own formulas, for ``paper_compat``; docs/conventions.md describes their two errors.
 
 
 def paper_rotation(game_yaw_deg: float, game_pitch_deg: float) -> np.ndarray:

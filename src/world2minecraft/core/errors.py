@@ -30,10 +30,10 @@ class World2MinecraftError(Exception):
     exit_code = 1
 
     def __reduce__(self):  # So that one process can send it to another, whatever makes it.
-        return _again, (type(self), str(self), self.__dict__)
+        return _restore, (type(self), str(self), self.__dict__)
 
 
-def _again(kind: type[World2MinecraftError], text: str, facts: dict[str, Any]) -> Exception:
+def _restore(kind: type[World2MinecraftError], text: str, facts: dict[str, Any]) -> Exception:
     error = kind.__new__(kind)
     error.args = (text,)
     error.__dict__.update(facts)
@@ -46,7 +46,7 @@ class UsageError(World2MinecraftError):
     exit_code = 2
 
 
-MOST_KNOWN, FIRST_KNOWN = 60, 20  # Of more names than a terminal's screen, the first are told.
+MAX_LISTED, FIRST_LISTED = 60, 20  # Of more names than a terminal's screen, the first are listed.
 
 
 class UnknownNameError(UsageError):
@@ -55,9 +55,9 @@ class UnknownNameError(UsageError):
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         choices = sorted(known)
         near = difflib.get_close_matches(name, choices, n=1)
-        told = choices if len(choices) <= MOST_KNOWN else choices[:FIRST_KNOWN]
-        more = f" and {len(choices) - len(told)} more" if len(told) < len(choices) else ""
-        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(told)}{more}"
+        listed = choices if len(choices) <= MAX_LISTED else choices[:FIRST_LISTED]
+        more = f" and {len(choices) - len(listed)} more" if len(listed) < len(choices) else ""
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(listed)}{more}"
         super().__init__(f"no {kind} is named {name!r}; {hint}")
 
 
@@ -69,7 +69,7 @@ class MissingExtraError(UsageError):
 
 
 class ServerError(World2MinecraftError):
-    """A running server cannot be reached, refuses, or does not do what it was told."""
+    """A running server cannot be reached, refuses, or does not do what it was asked to."""
 
 
 class WorkerError(World2MinecraftError):

@@ -1,4 +1,4 @@
-"""numba with the project's settings: compiled once, kept in the user's cache folder.
+"""Compile kernels by numba with the project's settings, cached in the user's cache folder.
 
 Import ``njit``, ``lean`` and its like from here and never from numba, so that every kernel is
 cached, releases the GIL and computes the same bits on every run (no fast-math).
@@ -39,7 +39,7 @@ def kernel_sources_digest() -> str:
 
 
 def kernel_cache_dir() -> Path:
-    """Make and return the folder of compiled kernels; a passing one where the user's is closed.
+    """Make and return the folder of compiled kernels; a temporary one where the user's cannot be written.
 
     What lies in it is run as code, so it is never a folder that others could have filled.
     """
@@ -54,7 +54,7 @@ def kernel_cache_dir() -> Path:
 
 
 def is_compiled(kernel: str) -> bool:
-    """Whether an earlier run has kept a kernel, named by its module and its own name: ``a.b``."""
+    """Whether an earlier run has cached a kernel, named by its module and its own name: ``a.b``."""
     return any(KERNEL_CACHE.rglob(f"{kernel}-*.nbi"))
 
 

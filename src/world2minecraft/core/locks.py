@@ -1,7 +1,7 @@
-"""Who works on a folder: a lock that the system lets go of when its process ends, however it ends.
+"""Locks on folders; the system releases them when their process ends, however it ends.
 
-The file holds ``{"pid", "host"}`` of the one that has it, for the others to tell. On Windows they
-cannot read it while it is locked, and tell of another process.
+The file holds ``{"pid", "host"}`` of the holder, for the messages of other processes. On Windows
+they cannot read it while it is locked, and report "another process".
 """
 
 import contextlib
@@ -14,7 +14,7 @@ from filelock import FileLock, Timeout
 
 from world2minecraft.core.errors import ConflictError, OutputError
 
-_held: set[FileLock] = set()  # filelock lets go of those that nothing refers to.
+_acquired: set[FileLock] = set()  # filelock releases those that nothing refers to.
 
 
 class Lock:
@@ -24,7 +24,11 @@ class Lock:
         """Name the lock and what is done under it; nothing is taken."""
         self.path, self._work = path, work
         self._lock = FileLock(
-            path, blocking=False, thread_local=False, fallback_to_soft=False, on_acquired=_tell
+            path,
+            blocking=False,
+            thread_local=False,
+            fallback_to_soft=False,
+            on_acquired=_write_holder,
         )
 
     def take(self) -> None:
@@ -36,12 +40,12 @@ class Lock:
         try:
             self._lock.acquire()
         except Timeout:
-            told = f"is being {self._work} by {self.holder()}"
-            raise ConflictError(self.path.parent, told) from None
+            reason = f"is being {self._work} by {self.holder()}"
+            raise ConflictError(self.path.parent, reason) from None
         except OSError as error:
             reason = f"cannot be written: {error.strerror or error}"
             raise OutputError(self.path, reason) from error
-        _held.add(self._lock)
+        _acquired.add(self._lock)
 
     def let_go(self) -> None:
         """Let go of the lock, where it is held."""
@@ -63,8 +67,8 @@ class Lock:
     def holder(self) -> str:
         """Return who has the lock, in words."""
         try:
-            told = json.loads(self.path.read_bytes()[:4096])
-            pid, host = int(told["pid"]), str(told["host"])
+            holder = json.loads(self.path.read_bytes()[:4096])
+            pid, host = int(holder["pid"]), str(holder["host"])
         except (OSError, ValueError, TypeError, KeyError):
             return "another process"
         where = "" if host in ("", socket.gethostname()) else f" on {host}"
@@ -72,13 +76,13 @@ class Lock:
 
     def _release(self) -> None:
         self._lock.release()
-        _held.discard(self._lock)
+        _acquired.discard(self._lock)
 
 
-def _tell(handle: int) -> None:
+def _write_holder(handle: int) -> None:
     """Write who has the lock into its file."""
-    told = json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode()
+    data = json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode()
     with contextlib.suppress(OSError):  # A full disk: the lock holds all the same.
         os.ftruncate(handle, 0)
         os.lseek(handle, 0, os.SEEK_SET)
-        os.write(handle, told)
+        os.write(handle, data)

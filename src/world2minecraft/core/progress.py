@@ -1,4 +1,4 @@
-"""How long work tells its caller how far it is."""
+"""Progress reports of long work to its caller."""
 
 from typing import Protocol
 

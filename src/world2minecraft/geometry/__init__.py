@@ -1,1 +1,1 @@
-"""See DESIGN."""
+"""Geometry on points, masks and pictures: planes, boxes, morphology, colour, rotations."""

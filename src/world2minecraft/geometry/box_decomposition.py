@@ -23,7 +23,7 @@ REACH = 2  # Cells between boxes that may be joined; a box over a wider gap chan
 MAX_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.
 RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label.
 MAX_COVER_SHARE = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
-MIN_COVER_BOXES = 8  # With fewer boxes a partition is always taken: no boxes meet there.
+MIN_COVER_BOXES = 8  # With fewer boxes a partition is always taken.
 MAX_COVER_SEARCH_CELLS = 1_000_000
 # The orders in which a box grows from a cell, along both ways of each axis in turn.
 _ORDERS = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])

@@ -17,12 +17,12 @@ from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
-from world2minecraft.minecraftocc.labels.labels import label_image
+from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import region_in
 from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
 from world2minecraft.procgen import Room, generate_room
-from world2minecraft.procgen.rooms.kinds import KINDS
-from world2minecraft.procgen.sensors.exposure import (
+from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.sensors.photo import (
     TexturedScene,
     developed,
     exposed,

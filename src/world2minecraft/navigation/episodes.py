@@ -1,6 +1,6 @@
 """Episodes of a scene: from somewhere to a thing that has a name, with the oracle's way.
 
-``random_episodes`` draws them; ``score`` tells how a walk through one went. Files of episodes are
+``random_episodes`` draws them; ``score_walk`` tells how a walk through one went. Files of episodes are
 read and written by ``navigation.records``.
 """
 
@@ -12,14 +12,14 @@ import numpy as np
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.moves import named_set
-from world2minecraft.navigation.oracle import ORACLE_VERSION, Way, expert
+from world2minecraft.navigation.moves import get_move_set
+from world2minecraft.navigation.oracle import ORACLE_VERSION, ExpertPath, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
 from world2minecraft.navigation.values import Episode, Instruction, MoveSet, Stance
 
-LEAST_M, MOST_M = 1.0, 25.0  # Of the way on foot; shorter is no walk.
-HUNG_M = 1.2  # What hangs so high over the floor is nothing to walk to.
+MIN_PATH_M, MAX_PATH_M = 1.0, 25.0  # Of the way on foot; shorter is no walk.
+MAX_HEIGHT_M = 1.2  # What hangs so high over the floor is nothing to walk to.
 TRIES = 40  # Of places for one episode.
 
 
@@ -42,7 +42,7 @@ def targets_of(scene: VlnScene) -> tuple[Target, ...]:
     for landmark in scene.landmarks:
         goals = scene.goals_at(landmark) if landmark.is_told else ()
         floors = scene.to_room_m(np.array(goals))[:, 2] if goals else np.zeros(0)
-        if len(floors) and landmark.low_m[2] - floors.min() <= HUNG_M:
+        if len(floors) and landmark.low_m[2] - floors.min() <= MAX_HEIGHT_M:
             things.append(target_of(scene, landmark, goals))
     rooms = [Target(room.name, (room.center,)) for room in scene.rooms]
     if not things and len(rooms) < 2:
@@ -67,8 +67,8 @@ def random_episodes(
     seed: int = 0,
     *,
     move_set: str = "vlnce",
-    least_m: float = LEAST_M,
-    most_m: float = MOST_M,
+    least_m: float = MIN_PATH_M,
+    most_m: float = MAX_PATH_M,
     split: str = "train",
 ) -> list[Episode]:
     """Return episodes that the oracle solves; the same for the same seed, a longer list begins so.
@@ -90,7 +90,7 @@ def random_episodes(
             f"episodes are 1 or more with ways of 0 <= least < most metres, not {count} of "
             f"{least_m:g} to {most_m:g}"
         )
-    named_set(move_set)
+    get_move_set(move_set)
     targets = targets_of(scene)
     made = []
     for number in range(count):
@@ -108,7 +108,7 @@ def random_episode(
     episode_id: str,
     *,
     move_set: str = "vlnce",
-    span_m: tuple[float, float] = (LEAST_M, MOST_M),
+    span_m: tuple[float, float] = (MIN_PATH_M, MAX_PATH_M),
     split: str = "train",
 ) -> Episode:
     """Draw one episode to one of some targets.
@@ -116,7 +116,7 @@ def random_episode(
     Raises:
         UsageError: no place and target were found that a way of this length leads between.
     """
-    turn_deg = named_set(move_set).turn_deg
+    turn_deg = get_move_set(move_set).turn_deg
     for _ in range(TRIES):
         target = targets[int(rng.integers(len(targets)))]
         away = scene.field_m(target.goals)[scene.main_places]
@@ -126,7 +126,7 @@ def random_episode(
         x, y, z = scene.graph.feet[scene.main_places[int(rng.choice(fit))]].tolist()
         yaw_deg = float(rng.integers(round(360 / turn_deg))) * turn_deg - 180.0
         stance = Stance(x, y, z, yaw_deg)
-        way = expert(scene, stance, target.goals, move_set, facing=target.point)
+        way = plan_expert_path(scene, stance, target.goals, move_set, facing=target.point)
         if way is not None:
             return episode_of(scene, way, target, episode_id, move_set, split)
     raise UsageError(
@@ -136,7 +136,12 @@ def random_episode(
 
 
 def episode_of(
-    scene: VlnScene, way: Way, target: Target, episode_id: str, move_set: str, split: str = "train"
+    scene: VlnScene,
+    way: ExpertPath,
+    target: Target,
+    episode_id: str,
+    move_set: str,
+    split: str = "train",
 ) -> Episode:
     """Return the episode of the oracle's way to a target."""
     called = target.name if target.name[-1:].isdigit() else f"the {target.name}"  # "Go to room 2."
@@ -159,7 +164,7 @@ def episode_of(
     )
 
 
-def score(
+def score_walk(
     scene: VlnScene,
     episode: Episode,
     stances: Sequence[Stance],
@@ -185,7 +190,7 @@ def score(
     """
     reference = episode.reference
     if not reference:
-        way = expert(scene, episode.start, episode.goals, moves_of(episode))
+        way = plan_expert_path(scene, episode.start, episode.goals, moves_of(episode))
         reference = way.stances if way else (episode.start,)
     walked = Walked(
         scene.to_room_m([stance.feet for stance in stances]),
@@ -200,4 +205,4 @@ def score(
 
 def moves_of(episode: Episode) -> MoveSet:
     """Return the moves of an episode."""
-    return named_set(episode.move_set)
+    return get_move_set(episode.move_set)

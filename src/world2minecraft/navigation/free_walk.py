@@ -1,14 +1,14 @@
 """A stroll through a scene: a person walks as agents walk and sees as they see, with no task."""
 
-from world2minecraft.navigation.moves import moved
+from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
+from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Move
-from world2minecraft.navigation.window import PATIENCE_S, Window, pressed_move
 
 VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
 
 
-def stroll(
+def walk_freely(
     scene: VlnScene, window: Window, *, move_set: str = "vlnce", patience_s: float = PATIENCE_S
 ) -> None:
     """Walk where the keys say until nobody presses one; space leads back to the start.
@@ -21,15 +21,15 @@ def stroll(
     while True:
         seen = scene.picture(stance, camera, outputs=("colour",)).colour
         if seen is not None:
-            window.show(seen, _told(scene, stance.feet, collided))
-        move = pressed_move(window, patience_s)
+            window.show(seen, _caption(scene, stance.feet, collided))
+        move = wait_for_move(window, patience_s)
         if move == Move.STOP:
             stance, collided = scene.start, False
         else:
-            stance, collided = moved(scene, stance, move, move_set, sliding=True)
+            stance, collided = apply_move(scene, stance, move, move_set, sliding=True)
 
 
-def _told(scene: VlnScene, feet: tuple[float, float, float], collided: bool) -> str:
+def _caption(scene: VlnScene, feet: tuple[float, float, float], collided: bool) -> str:
     room = scene.room_at(feet)
     name = scene.rooms[room].name if 0 <= room < len(scene.rooms) else "no room"
     return f"{scene.scene_id}, {name}" + (": something is in the way" if collided else "")

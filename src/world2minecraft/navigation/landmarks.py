@@ -18,7 +18,7 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 
 BESIDE_M = 1.5  # What stands nearer than this is "beside".
-LEAST_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.
+MIN_SIZE_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.
 
 # What people call a class where nothing better is known of a thing.
 NOUNS = {
@@ -53,7 +53,7 @@ _BLOCK_NOUNS = {
     "loom": "loom",
     "brewing_stand": "brewing stand",
 }
-_NOBODYS = NOUNS[int(SemanticClass.OBJS)]  # Says nothing, whatever else is said of it.
+_UNSPECIFIC_NOUN = NOUNS[int(SemanticClass.OBJS)]  # Says nothing, whatever else is said of it.
 _COLOURS = {
     "white": (235, 235, 235),
     "grey": (130, 130, 130),
@@ -127,17 +127,17 @@ def landmarks_of(
     numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
     found = []
     for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=True):
-        class_id = _most(volume.semantic.reshape(-1)[cells])
+        class_id = _mode(volume.semantic.reshape(-1)[cells])
         if class_id not in OBJECT_CLASSES:
             continue
-        design = names[_most(codes.reshape(-1)[cells])]
-        landmark = _measured(volume, int(number), cells, class_id, design, titles)
-        if np.sort(landmark.size_m)[1] >= LEAST_M:
+        design = names[_mode(codes.reshape(-1)[cells])]
+        landmark = _measure_landmark(volume, int(number), cells, class_id, design, titles)
+        if np.sort(landmark.size_m)[1] >= MIN_SIZE_M:
             found.append(replace(landmark, room=room_of(landmark.center_m)))
-    return named_apart(found)
+    return assign_unique_names(found)
 
 
-def named_apart(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """Return landmarks with names that differ: noun, colour, neighbour, and a number at last."""
     nouns = Counter(one.noun for one in landmarks)
     coloured = Counter((one.colour, one.noun) for one in landmarks)
@@ -146,7 +146,7 @@ def named_apart(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     total, seen, result = Counter(phrases), Counter[str](), []
     for one, phrase in zip(landmarks, phrases, strict=True):
         if total[phrase] == 1:
-            result.append(replace(one, name=phrase, is_told=one.noun != _NOBODYS))
+            result.append(replace(one, name=phrase, is_told=one.noun != _UNSPECIFIC_NOUN))
             continue
         seen[phrase] += 1
         result.append(replace(one, name=f"{phrase} {seen[phrase]}", is_told=False))
@@ -165,7 +165,7 @@ def colour_name(rgb: np.ndarray) -> str:
     return tuple(_COLOURS)[int(nearest_oklab(own, table)[0])]
 
 
-def _measured(
+def _measure_landmark(
     volume: BlockVolume,
     number: int,
     cells: np.ndarray,
@@ -206,6 +206,6 @@ def _gap(one: Landmark, other: Landmark) -> np.ndarray:
     return np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
 
 
-def _most(values: np.ndarray) -> int:
+def _mode(values: np.ndarray) -> int:
     found, counts = np.unique(values, return_counts=True)
     return int(found[counts.argmax()])

@@ -22,8 +22,11 @@ from world2minecraft.navigation.values import MOVE_SETS, Move, MoveSet, Stance
 # each piece only its end is looked at: the body fits there, or fits on top of what is in the way.
 # Places are feet in world blocks. ``moves.moved`` is the door to this file.
 
-PIECE = 0.4  # Of half a body's width: how long the pieces of a way are.
-CHAIR, FURN = 5, 10  # The classes of furniture, from the first to the last: no ground to walk on.
+SUBSTEP = 0.4  # Of half a body's width: how long the pieces of a way are.
+FIRST_FURNITURE, LAST_FURNITURE = (
+    5,
+    10,
+)  # The classes of furniture, from the first to the last: no ground to walk on.
 
 
 class BodySize(NamedTuple):
@@ -36,13 +39,13 @@ class BodySize(NamedTuple):
 
 
 @njit
-def walked(solid, corner, x, y, z, dx, dz, size, sliding):
+def move_body(solid, corner, x, y, z, dx, dz, size, sliding):
     """Return the feet after a way along the ground, and whether something stopped it.
 
     ``solid`` is a volume's ``Solid``, ``corner`` int64 [3] the world place of its first cell,
     ``size`` a ``BodySize``. One who does not slide either goes the whole way or stays.
     """
-    pieces = max(1, int(np.ceil(np.sqrt(dx * dx + dz * dz) / (size.half * PIECE))))
+    pieces = max(1, int(np.ceil(np.sqrt(dx * dx + dz * dz) / (size.half * SUBSTEP))))
     px, pz = dx / pieces, dz / pieces
     here_x, here_y, here_z, stopped = x, y, z, False
     for _ in range(pieces):
@@ -81,7 +84,7 @@ def _ground_at(solid, corner, x, y, z, px, pz, size):
     ground, kind = _under(solid, at_x, level, at_z, size)
     if level - ground > size.drop + TOUCH or kind == WET:
         return False, y
-    if CHAIR <= kind <= FURN and abs(ground - at_y) > TOUCH:
+    if FIRST_FURNITURE <= kind <= LAST_FURNITURE and abs(ground - at_y) > TOUCH:
         return False, y
     return True, ground + corner[1]
 
@@ -143,10 +146,10 @@ def _under(solid, x, y, z, size):
     return best, found
 
 
-_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
+_YAW_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
 
 
-def moved(
+def apply_move(
     scene: VlnScene,
     stance: Stance,
     move: Move,
@@ -167,20 +170,20 @@ def moved(
         UnknownNameError: no set of moves has this name.
 
     Example:
-        >>> moved(scene, Stance(3.0, 65.0, 3.0), Move.LEFT)               # doctest: +SKIP
+        >>> apply_move(scene, Stance(3.0, 65.0, 3.0), Move.LEFT)               # doctest: +SKIP
         (Stance(x=3.0, y=65.0, z=3.0, yaw_deg=-15.0, pitch_deg=0.0), False)
     """
-    how = named_set(move_set)
+    how = get_move_set(move_set)
     if move == Move.FORWARD:
         return _forward(scene, stance, forward_blocks(scene, how), sliding)
     if move == Move.STOP:
         return stance, False
     turn = how.turn_deg if move == Move.RIGHT else -how.turn_deg
-    yaw_deg = wrapped_yaw(stance.yaw_deg + turn)
+    yaw_deg = wrap_yaw(stance.yaw_deg + turn)
     return Stance(stance.x, stance.y, stance.z, yaw_deg, stance.pitch_deg), False
 
 
-def named_set(move_set: str | MoveSet) -> MoveSet:
+def get_move_set(move_set: str | MoveSet) -> MoveSet:
     """Return a set of moves by its name. Raises UnknownNameError: none has it."""
     if isinstance(move_set, MoveSet):
         return move_set
@@ -194,12 +197,12 @@ def forward_blocks(scene: VlnScene, move_set: MoveSet) -> float:
     return move_set.forward_m * scene.blocks_per_metre or 1.0
 
 
-def wrapped_yaw(yaw_deg: float) -> float:
+def wrap_yaw(yaw_deg: float) -> float:
     """Return an angle from -180 up to 180, rounded so that turns there and back are exact."""
-    return round((yaw_deg + 180.0) % 360.0 - 180.0, _DIGITS)
+    return round((yaw_deg + 180.0) % 360.0 - 180.0, _YAW_DIGITS)
 
 
-def heading(yaw_deg: float) -> tuple[float, float]:
+def heading_vector(yaw_deg: float) -> tuple[float, float]:
     """Return where one looks along the ground: x and z, of length 1."""
     return -math.sin(math.radians(yaw_deg)), math.cos(math.radians(yaw_deg))
 
@@ -211,8 +214,8 @@ def body_size(scene: VlnScene) -> BodySize:
 
 
 def _forward(scene: VlnScene, stance: Stance, length: float, sliding: bool) -> tuple[Stance, bool]:
-    x, z = heading(stance.yaw_deg)
-    at_x, at_y, at_z, collided = walked(
+    x, z = heading_vector(stance.yaw_deg)
+    at_x, at_y, at_z, collided = move_body(
         scene.solid, scene.corner, stance.x, stance.y, stance.z,
         x * length, z * length, body_size(scene), sliding,
     )  # fmt: skip

@@ -1,7 +1,7 @@
 """The oracle: from where one stands to a goal by discrete moves, as short as they allow.
 
 Its moves are searched with the very steps that the walker makes, so what it says can be walked:
-``expert`` walks it once more before it answers. Files that hold its moves name ``ORACLE_VERSION``.
+``plan_expert_path`` walks it once more before it answers. Files that hold its moves name ``ORACLE_VERSION``.
 """
 
 import math
@@ -12,15 +12,15 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.navigation.moves import (
+    apply_move,
     body_size,
     forward_blocks,
-    heading,
-    moved,
-    named_set,
-    walked,
-    wrapped_yaw,
+    get_move_set,
+    heading_vector,
+    move_body,
+    wrap_yaw,
 )
-from world2minecraft.navigation.scene import VlnScene, distance_over
+from world2minecraft.navigation.scene import VlnScene, distance_from_field
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
 # The search behind the oracle, compiled: A* over real moves, each tried as the walker makes it.
@@ -33,7 +33,7 @@ SHARE = 0.98  # Between places the field is too long by little: by so much at mo
 
 
 @njit
-def searched(solid, corner, floor, field, begin, ways, size, step_m, goal_m, turn_m, fine, most):
+def search_path(solid, corner, floor, field, begin, ways, size, step_m, goal_m, turn_m, fine, most):
     """Return the headings, int64 [T], of the steps from a place to a goal, and whether one is.
 
     Args:
@@ -62,29 +62,29 @@ def searched(solid, corner, floor, field, begin, ways, size, step_m, goal_m, tur
     heap[0], keys[0] = 0, 0.0
     while waiting > 0:
         here = heap[0]
-        waiting = _lifted(heap, keys, waiting)
-        if _taken(seen, feet[here], cell):
+        waiting = _heap_pop(heap, keys, waiting)
+        if _visit(seen, feet[here], cell):
             continue
         x, y, z = feet[here]
-        if distance_over(floor, field, x, y, z) <= goal_m:
+        if distance_from_field(floor, field, x, y, z) <= goal_m:
             return _headings(before, turned, here), True
         for n in range(count):
             if used == most:
                 return np.zeros(0, np.int64), False
             way = (turned[here] + n) % count
-            to_x, to_y, to_z, stopped = walked(
+            to_x, to_y, to_z, stopped = move_body(
                 solid, corner, x, y, z, ways[way, 0], ways[way, 1], size, False
             )
             if stopped:
                 continue
-            left = distance_over(floor, field, to_x, to_y, to_z)
+            left = distance_from_field(floor, field, to_x, to_y, to_z)
             if not np.isfinite(left):
                 continue
             feet[used, 0], feet[used, 1], feet[used, 2] = to_x, to_y, to_z
             cost[used] = cost[here] + step_m + turn_m * min(n, count - n)
             before[used], turned[used] = here, way
             keys[used] = cost[used] + SHARE * left
-            waiting = _laid(heap, keys, waiting, used)
+            waiting = _heap_push(heap, keys, waiting, used)
             used += 1
     return np.zeros(0, np.int64), False
 
@@ -101,7 +101,7 @@ def _headings(before, turned, last):
 
 
 @njit
-def _taken(seen, feet, cell):
+def _visit(seen, feet, cell):
     """Whether a place nearly the same was followed before; it is from now on."""
     i, k = int(np.floor(feet[0] / cell)), int(np.floor(feet[2] / cell))
     j = int(np.floor(feet[1] * 4))
@@ -116,12 +116,12 @@ def _taken(seen, feet, cell):
 
 
 @njit
-def _laid(heap, keys, waiting, node):
+def _heap_push(heap, keys, waiting, node):
     """Put a node into the heap; of equal keys the earlier node comes first."""
     n = waiting
     while n > 0:
         up = (n - 1) // 2
-        if not _sooner(keys, node, heap[up]):
+        if not _precedes(keys, node, heap[up]):
             break
         heap[n] = heap[up]
         n = up
@@ -130,15 +130,15 @@ def _laid(heap, keys, waiting, node):
 
 
 @njit
-def _lifted(heap, keys, waiting):
+def _heap_pop(heap, keys, waiting):
     """Take the first node out of the heap."""
     waiting -= 1
     node, n = heap[waiting], 0
     while 2 * n + 1 < waiting:
         low = 2 * n + 1
-        if low + 1 < waiting and _sooner(keys, heap[low + 1], heap[low]):
+        if low + 1 < waiting and _precedes(keys, heap[low + 1], heap[low]):
             low += 1
-        if _sooner(keys, node, heap[low]):
+        if _precedes(keys, node, heap[low]):
             break
         heap[n] = heap[low]
         n = low
@@ -147,7 +147,7 @@ def _lifted(heap, keys, waiting):
 
 
 @njit
-def _sooner(keys, one, other):
+def _precedes(keys, one, other):
     return keys[one] < keys[other] or (keys[one] == keys[other] and one < other)
 
 
@@ -156,11 +156,11 @@ GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success
 GOAL_STEPS = 0.75  # or so many steps, where steps are long.
 TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
 FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the first finds none.
-MOST_NODES = 400_000
+MAX_NODES = 400_000
 
 
 @dataclass(frozen=True)
-class Way:
+class ExpertPath:
     """The oracle's way: moves, STOP last, and where each but STOP comes to, the start first."""
 
     moves: tuple[Move, ...]
@@ -168,14 +168,14 @@ class Way:
     length_m: float
 
 
-def expert(
+def plan_expert_path(
     scene: VlnScene,
     stance: Stance,
     goals: Sequence[tuple[float, float, float]],
     move_set: str | MoveSet = "vlnce",
     *,
     facing: tuple[float, float, float] | None = None,
-) -> Way | None:
+) -> ExpertPath | None:
     """Return the oracle's way to the nearest goal; None where moves of this set do not lead there.
 
     Args:
@@ -189,33 +189,33 @@ def expert(
         UnknownNameError: no set of moves has this name.
 
     Example:
-        >>> way = expert(scene, scene.start, scene.goals_at(scene.landmark("piano")))
+        >>> way = plan_expert_path(scene, scene.start, scene.goals_at(scene.landmark("piano")))
         ... # doctest: +SKIP
         >>> way.moves[-1]                                                 # doctest: +SKIP
         <Move.STOP: 0>
     """
-    how = named_set(move_set)
+    how = get_move_set(move_set)
     field = scene.way_field_m(goals)
     if not np.isfinite(scene.distance_m(stance.feet, goals)):
         return None
     step = forward_blocks(scene, how)
     count = max(1, round(360 / how.turn_deg))
-    turned = [wrapped_yaw(stance.yaw_deg + n * how.turn_deg) for n in range(1, count)]
-    ways = np.array([heading(yaw) for yaw in (stance.yaw_deg, *turned)]) * step
+    turned = [wrap_yaw(stance.yaw_deg + n * how.turn_deg) for n in range(1, count)]
+    ways = np.array([heading_vector(yaw) for yaw in (stance.yaw_deg, *turned)]) * step
     step_m = step * scene.metres_per_block
     near_m = max(GOAL_M, GOAL_STEPS * step_m)
     for fine in FINENESS:
-        headings, found = searched(
+        headings, found = search_path(
             scene.solid, scene.corner, scene.floor, field, np.array(stance.feet), ways,
-            body_size(scene), step_m, near_m, TURN_M, fine, MOST_NODES,
+            body_size(scene), step_m, near_m, TURN_M, fine, MAX_NODES,
         )  # fmt: skip
         if found:
-            way = _walked(scene, stance, _moves(headings.tolist(), count), how)
-            return _faced(scene, way, facing, how) if way and facing else way
+            way = _make_path(scene, stance, _moves_of_headings(headings.tolist(), count), how)
+            return _turn_to_face(scene, way, facing, how) if way and facing else way
     return None
 
 
-def _moves(headings: list[int], count: int) -> list[Move]:
+def _moves_of_headings(headings: list[int], count: int) -> list[Move]:
     """Return the moves of steps along headings, of which 0 is where one looks."""
     moves, now = [], 0
     for way in headings:
@@ -227,25 +227,29 @@ def _moves(headings: list[int], count: int) -> list[Move]:
     return [*moves, Move.STOP]
 
 
-def _walked(scene: VlnScene, stance: Stance, moves: list[Move], how: MoveSet) -> Way | None:
+def _make_path(
+    scene: VlnScene, stance: Stance, moves: list[Move], how: MoveSet
+) -> ExpertPath | None:
     """Return the way of moves; None where something is in the way after all."""
     stances, length = [stance], 0.0
     for move in moves[:-1]:
-        stance, collided = moved(scene, stance, move, how)
+        stance, collided = apply_move(scene, stance, move, how)
         if collided:
             return None
         length += float(np.linalg.norm(np.subtract(stance.feet, stances[-1].feet)))
         stances.append(stance)
-    return Way(tuple(moves), tuple(stances), length * scene.metres_per_block)
+    return ExpertPath(tuple(moves), tuple(stances), length * scene.metres_per_block)
 
 
-def _faced(scene: VlnScene, way: Way, facing: tuple[float, float, float], how: MoveSet) -> Way:
+def _turn_to_face(
+    scene: VlnScene, way: ExpertPath, facing: tuple[float, float, float], how: MoveSet
+) -> ExpertPath:
     """Return a way with turns at its end towards a place."""
     last, moves, stances = way.stances[-1], list(way.moves[:-1]), list(way.stances)
     x, z = facing[0] - last.x, facing[2] - last.z
-    off_deg = wrapped_yaw(math.degrees(math.atan2(-x, z)) - last.yaw_deg)
+    off_deg = wrap_yaw(math.degrees(math.atan2(-x, z)) - last.yaw_deg)
     turn = Move.RIGHT if off_deg > 0 else Move.LEFT
     for _ in range(round(abs(off_deg) / how.turn_deg)):
         moves.append(turn)
-        stances.append(moved(scene, stances[-1], turn, how)[0])
-    return Way((*moves, Move.STOP), tuple(stances), way.length_m)
+        stances.append(apply_move(scene, stances[-1], turn, how)[0])
+    return ExpertPath((*moves, Move.STOP), tuple(stances), way.length_m)

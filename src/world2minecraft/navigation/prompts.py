@@ -42,11 +42,11 @@ class Question:
                 yield "text", text
 
 
-def mark_in(text: str) -> str:
+def find_reserved_token(text: str) -> str:
     """Return what a trainer or a model would take for a picture or a turn's end; "" for nothing.
 
     Example:
-        >>> mark_in("Go to the <image>.")
+        >>> find_reserved_token("Go to the <image>.")
         '<image>'
     """
     found = _MARK.search(text)
@@ -74,7 +74,7 @@ def question_of(item: Item) -> Question:
     """
     words = [item.instruction.text, *(option.text for option in item.options)]
     for text in words:
-        if found := mark_in(text):
+        if found := find_reserved_token(text):
             raise UsageError(
                 f"item {item.item_id}: its words hold {found!r}, which trainers and models read "
                 "as a picture or the end of a turn; reword it"

@@ -50,11 +50,11 @@ from world2minecraft.rendering.views.cameras import GamePose
 
 # The walkable graph as a table, so that a place between those of the graph finds them at once.
 
-REACH = 1.5  # Spacings: places so near to a body are on its own side of any wall,
-LEVEL = 0.6  # and so near in height, in sizes of the body, are on its own floor.
+REACH_SPACINGS = 1.5  # Spacings: places so near to a body are on its own side of any wall,
+LEVEL_SIZES = 0.6  # and so near in height, in sizes of the body, are on its own floor.
 
 
-class Floor(NamedTuple):
+class FloorTable(NamedTuple):
     """The places of a graph by columns of a regular grid; of each column those in a row."""
 
     origin: np.ndarray  # float64 [2], x and z of the first column, world blocks
@@ -67,7 +67,7 @@ class Floor(NamedTuple):
     metres_per_block: float
 
 
-def floor_of(graph: WalkGraph) -> Floor:
+def build_floor_table(graph: WalkGraph) -> FloorTable:
     """Return the table of a graph with one place or more."""
     origin = graph.feet[:, [0, 2]].min(axis=0)
     at = np.round((graph.feet[:, [0, 2]] - origin) / graph.spacing).astype(np.int64)
@@ -76,18 +76,18 @@ def floor_of(graph: WalkGraph) -> Floor:
     counts = np.bincount(column, minlength=int(shape.prod()))
     start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     place = np.argsort(column, kind="stable").astype(np.int32)
-    return Floor(
-        origin, shape, start, place, graph.feet, graph.spacing, LEVEL * graph.scale,
+    return FloorTable(
+        origin, shape, start, place, graph.feet, graph.spacing, LEVEL_SIZES * graph.scale,
         1 / graph.blocks_per_metre,
     )  # fmt: skip
 
 
 @njit
-def distance_over(floor, field, x, y, z):
+def distance_from_field(floor, field, x, y, z):
     """Return the way in metres from feet by a field over places, float64 [N]; inf off the floor."""
     i = int(np.floor((x - floor.origin[0]) / floor.spacing))
     k = int(np.floor((z - floor.origin[1]) / floor.spacing))
-    reach = REACH * floor.spacing
+    reach = REACH_SPACINGS * floor.spacing
     best = np.inf
     for column_x in range(max(0, i - 1), min(floor.shape[0] - 1, i + 2) + 1):
         for column_z in range(max(0, k - 1), min(floor.shape[1] - 1, k + 2) + 1):
@@ -104,12 +104,12 @@ def distance_over(floor, field, x, y, z):
 
 
 BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
-LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
+MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
 STOREY_M = 2.8  # What is so far over a floor, or beside it, is not of its room.
 REACH_M = 1.0  # One stands before a thing where it is no farther than this,
 RING_M = 0.25  # and about as near as one can come.
-MOST_GOALS = 32
-MOST_FIELDS = 64  # Kept of those last used.
+MAX_GOALS = 32
+MAX_FIELDS = 64  # Kept of those last used.
 
 
 class VlnScene:
@@ -160,9 +160,9 @@ class VlnScene:
         return walk_graph(self.volume, WalkRule(scale=self.scale, at_corners=True))
 
     @cached_property
-    def floor(self) -> Floor:
+    def floor(self) -> FloorTable:
         """The ways as a table, for places between their own."""
-        return floor_of(self.ways)
+        return build_floor_table(self.ways)
 
     @cached_property
     def _lattice(self) -> Lattice:
@@ -250,7 +250,7 @@ class VlnScene:
         if not len(near):
             return ()
         ring = near[away[near] <= away[near].min() + RING_M]
-        picked = ring[np.linspace(0, len(ring) - 1, min(len(ring), MOST_GOALS)).round().astype(int)]
+        picked = ring[np.linspace(0, len(ring) - 1, min(len(ring), MAX_GOALS)).round().astype(int)]
         return tuple((float(x), float(y), float(z)) for x, y, z in feet[picked])
 
     def field_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
@@ -272,7 +272,7 @@ class VlnScene:
         places = np.array(sorted({self.ways.nearest(goal) for goal in goals}))
         field, _ = straight_distances_m(self.ways, self._lattice, places)
         self._fields[key] = field
-        if len(self._fields) > MOST_FIELDS:
+        if len(self._fields) > MAX_FIELDS:
             self._fields.popitem(last=False)
         return field
 
@@ -281,7 +281,7 @@ class VlnScene:
     ) -> float:
         """Return how far it is on foot from a place, also one between those of the graph."""
         field = self.way_field_m(goals)
-        over = distance_over(self.floor, field, *(float(value) for value in feet))
+        over = distance_from_field(self.floor, field, *(float(value) for value in feet))
         if np.isfinite(over) or not np.isfinite(field).any():
             return float(over)
         nearest = self.ways.nearest(feet)  # Off the floor: on furniture, or in the air.
@@ -326,7 +326,7 @@ class VlnScene:
             graph = walk_graph(self.volume, WalkRule(scale, opens_doors=self._opens_doors))
             rooms = find_rooms(self.volume, graph, self.solid, rule)
             floor_m2 = sum(room.floor_m2 for room in rooms)
-            if floor_m2 >= LEAST_FLOOR_M2 or (rooms and (body or size) == (body or BODIES[-1])):
+            if floor_m2 >= MIN_FLOOR_M2 or (rooms and (body or size) == (body or BODIES[-1])):
                 return size, graph, rooms
         size = min(BODIES) if body is None else body
         raise InputError(

@@ -2,7 +2,7 @@
 
 The walk's corners are aimed at one after the other from where the moves so far have led, so that
 what a turn or a step is off is made good by the next ones, never dropped. Each move is made by the
-world's physics (``Walker``): a way that meets a wall, or that ends elsewhere, is refused.
+world's physics (``StepFunction``): a way that meets a wall, or that ends elsewhere, is refused.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.navigation.values import Move, MoveSet, Stance
-from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrapped_deg
+from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
 # A path with the corners that matter alone: Ramer, Douglas and Peucker.
 
 EPSILON_M = 0.25  # A move: what lies nearer to a line cannot be walked otherwise.
 
 
-def corners_of(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
+def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
     """Return the indices, rising, of the points that keep a path within ``epsilon`` of itself.
 
     Args:
@@ -26,7 +26,7 @@ def corners_of(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
         epsilon: how far a left out point may lie from the line that stays.
 
     Example:
-        >>> corners_of(np.array([[0, 0], [1, 0.01], [2, 0], [2, 3]]), 0.25).tolist()
+        >>> simplify_path(np.array([[0, 0], [1, 0.01], [2, 0], [2, 3]]), 0.25).tolist()
         [0, 2, 3]
     """
     kept = np.zeros(len(path), bool)
@@ -36,7 +36,7 @@ def corners_of(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
         first, last = open_spans.pop()
         if last - first < 2:
             continue
-        away = _from_line(path[first + 1 : last], path[first], path[last])
+        away = _distances_from_segment(path[first + 1 : last], path[first], path[last])
         farthest = int(away.argmax())
         if away[farthest] > epsilon:
             middle = first + 1 + farthest
@@ -45,7 +45,7 @@ def corners_of(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
     return np.flatnonzero(kept)
 
 
-def _from_line(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
+def _distances_from_segment(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Return how far points lie from the line between two others, its ends included."""
     along = end - begin
     length2 = float(along @ along)
@@ -55,21 +55,23 @@ def _from_line(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.nda
     return np.linalg.norm(points - begin - share[:, None] * along, axis=1)
 
 
-Walker = Callable[[Stance, Move], tuple[Stance, bool]]
+StepFunction = Callable[[Stance, Move], tuple[Stance, bool]]
 """Where a move leads, and whether it met something."""
 
-Guide = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
+PathPlanner = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
 """Moves from a stance to feet in world blocks; none where it knows no way."""
 
-VERSION = "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
+DISCRETIZATION_VERSION = (
+    "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
+)
 SLACK_M = 0.1  # Of the end, beside half a step.
 CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
 MEETING_M = 0.15  # nor does an end that is met so near.
-MOST_MOVES = 500
+MAX_MOVES = 500
 
 
 @dataclass(frozen=True)
-class Walk:
+class DiscreteWalk:
     """Moves with the stances before each and after the last; ``refusal`` says why it is none."""
 
     moves: tuple[Move, ...] = ()
@@ -77,13 +79,13 @@ class Walk:
     refusal: str = ""
 
 
-def discretise(
+def discretize_walk(
     segment: Sequence[StreamFrame],
     move_set: MoveSet,
     blocks_per_metre: float,
-    walker: Walker,
-    guide: Guide | None = None,
-) -> Walk:
+    walker: StepFunction,
+    guide: PathPlanner | None = None,
+) -> DiscreteWalk:
     """Return a segment as moves, STOP last, or with the reason why it is none.
 
     It ends within half a step and 0.1 m of the recorded end and within half a turn of its heading.
@@ -100,8 +102,8 @@ def discretise(
     path = feet_m(segment, blocks_per_metre)[:, [0, 2]]
     refusal = ""
     for closeness_m in CLOSENESS_M:
-        follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
-        corners = path[corners_of(path, closeness_m)]
+        follower = _CornerFollower(segment[0].stance, move_set, blocks_per_metre, walker)
+        corners = path[simplify_path(path, closeness_m)]
         for number, corner in enumerate(corners[1:], 2):
             is_last = number == len(corners)
             follower.go_to(corner, min(closeness_m, MEETING_M) if is_last else closeness_m, is_last)
@@ -110,32 +112,34 @@ def discretise(
             return walk
         refusal = refusal or walk.refusal
     if guide is None:
-        return Walk(refusal=refusal)
-    follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
+        return DiscreteWalk(refusal=refusal)
+    follower = _CornerFollower(segment[0].stance, move_set, blocks_per_metre, walker)
     follower.make(guide(follower.stance, segment[-1].stance.feet))
     walk = _finished(follower, segment, path[-1])
-    return walk if not walk.refusal else Walk(refusal=refusal)
+    return walk if not walk.refusal else DiscreteWalk(refusal=refusal)
 
 
-def _finished(follower: "_Follower", segment: Sequence[StreamFrame], end_m: np.ndarray) -> Walk:
+def _finished(
+    follower: "_CornerFollower", segment: Sequence[StreamFrame], end_m: np.ndarray
+) -> DiscreteWalk:
     yaw_deg = segment[-1].stance.yaw_deg
     follower.face(yaw_deg)
-    refusal = follower.refusal or _off(follower, end_m, yaw_deg)
+    refusal = follower.refusal or _end_mismatch(follower, end_m, yaw_deg)
     if refusal:
-        return Walk(refusal=refusal)
-    return Walk((*follower.moves, Move.STOP), tuple(follower.stances))
+        return DiscreteWalk(refusal=refusal)
+    return DiscreteWalk((*follower.moves, Move.STOP), tuple(follower.stances))
 
 
-def _off(follower: "_Follower", end_m: np.ndarray, yaw_deg: float) -> str:
+def _end_mismatch(follower: "_CornerFollower", end_m: np.ndarray, yaw_deg: float) -> str:
     """Return how the end differs from the recorded one; nothing where it does not."""
     away_m = float(np.linalg.norm(follower.place_m - end_m))
-    turn_deg = abs(float(wrapped_deg(yaw_deg - follower.stance.yaw_deg)))
+    turn_deg = abs(float(wrap_deg(yaw_deg - follower.stance.yaw_deg)))
     if away_m > follower.step_m / 2 + SLACK_M:
         return "ends elsewhere"
     return "looks elsewhere" if turn_deg > follower.turn_deg / 2 + 1e-6 else ""
 
 
-class _Follower:
+class _CornerFollower:
     """Someone who walks to corners by moves."""
 
     def __init__(
@@ -143,7 +147,7 @@ class _Follower:
         start: Stance,
         move_set: MoveSet,
         blocks_per_metre: float,
-        walker: Walker,
+        walker: StepFunction,
     ):
         level = Stance(start.x, start.y, start.z, start.yaw_deg)
         self.stances, self.moves, self.refusal = [level], [], ""
@@ -182,20 +186,20 @@ class _Follower:
     def _aim(self, ahead_m: np.ndarray, passing_m: float) -> None:
         """Turn to what lies ahead, unless the present heading passes it as near as need be."""
         yaw_deg = float(np.degrees(np.arctan2(-ahead_m[0], ahead_m[1])))
-        off = np.radians(float(wrapped_deg(yaw_deg - self.stance.yaw_deg)))
+        off = np.radians(float(wrap_deg(yaw_deg - self.stance.yaw_deg)))
         if np.cos(off) < 0 or abs(np.sin(off)) * np.linalg.norm(ahead_m) > passing_m:
             self.face(yaw_deg)
 
     def face(self, yaw_deg: float) -> None:
         """Turn to the heading of whole turns that is nearest."""
-        off_deg = float(wrapped_deg(yaw_deg - self.stance.yaw_deg))
+        off_deg = float(wrap_deg(yaw_deg - self.stance.yaw_deg))
         turns = int(np.floor(abs(off_deg) / self.turn_deg + 0.5 - 1e-9))
         for _ in range(turns):
             self._make(Move.RIGHT if off_deg > 0 else Move.LEFT)
 
     def _make(self, move: Move) -> None:
-        if self.refusal or len(self.moves) >= MOST_MOVES:
-            self.refusal = self.refusal or f"takes over {MOST_MOVES} moves"
+        if self.refusal or len(self.moves) >= MAX_MOVES:
+            self.refusal = self.refusal or f"takes over {MAX_MOVES} moves"
             return
         stance, collided = self._walker(self.stance, move)
         if collided:

@@ -20,7 +20,7 @@ class StreamFrame:
     image: str = ""
 
 
-def frame_of(one: TourPose, eye: float) -> StreamFrame:
+def frame_of_pose(one: TourPose, eye: float) -> StreamFrame:
     """Return a line of a tour file as a frame; ``eye`` is its height over the feet, blocks."""
     pose = one.pose
     down = eye if pose.at == "eye" else 0.0
@@ -28,7 +28,7 @@ def frame_of(one: TourPose, eye: float) -> StreamFrame:
     return StreamFrame(one.t_s, stance, one.scene_id, one.tour_id, one.image)
 
 
-def timed(frames: Sequence[StreamFrame], every_s: float) -> list[StreamFrame]:
+def assign_even_times(frames: Sequence[StreamFrame], every_s: float) -> list[StreamFrame]:
     """Return the frames with times ``every_s`` apart: of files that say the order alone."""
     return [replace(frame, t_s=number * every_s) for number, frame in enumerate(frames)]
 
@@ -38,11 +38,11 @@ def feet_m(frames: Sequence[StreamFrame], blocks_per_metre: float) -> np.ndarray
     return np.array([frame.stance.feet for frame in frames]).reshape(-1, 3) / blocks_per_metre
 
 
-def wrapped_deg(angle_deg: np.ndarray | float) -> np.ndarray:
+def wrap_deg(angle_deg: np.ndarray | float) -> np.ndarray:
     """Return angles from -180 up to 180.
 
     Example:
-        >>> wrapped_deg(np.array([190.0, -180.0, 540.0])).tolist()
+        >>> wrap_deg(np.array([190.0, -180.0, 540.0])).tolist()
         [-170.0, -180.0, -180.0]
     """
     return (np.asarray(angle_deg, float) + 180.0) % 360.0 - 180.0

@@ -43,7 +43,7 @@ from world2minecraft.networks.checkpoints import (
 from world2minecraft.networks.config import OWN_FRAMES, RunConfig, read_config, write_config
 from world2minecraft.networks.data.batches import drawn_batches, plan_draws
 from world2minecraft.networks.data.class_weights import class_weights
-from world2minecraft.networks.data.opening import CachePlace, RunData, open_run_data
+from world2minecraft.networks.data.run_data import CachePlace, RunData, open_run_data
 from world2minecraft.networks.data.splits import evenly
 from world2minecraft.networks.lightning_module import Steps
 from world2minecraft.networks.models import make_network

@@ -9,7 +9,7 @@ from world2minecraft.procgen.capture import room_views, scan_room
 from world2minecraft.procgen.houses.house import generate_house
 from world2minecraft.procgen.preview import room_picture
 from world2minecraft.procgen.rooms.floor_shapes import SHAPES
-from world2minecraft.procgen.rooms.kinds import BASE_KINDS, KINDS
+from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS
 from world2minecraft.procgen.rooms.room import Room, generate_room
 from world2minecraft.procgen.sensors.depth_camera import SENSORS, Sensor
 from world2minecraft.procgen.stored import read_generated, write_generated

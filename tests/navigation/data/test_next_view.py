@@ -19,7 +19,7 @@ from world2minecraft.navigation.data.keyframes import marks_of
 from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, are_apart, unlike
 from world2minecraft.navigation.data.tasks import FOUND_OF, GRADES, MOST_FAR, view_question
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
-from world2minecraft.navigation.walk_discretization import Walk
+from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
 VLNCE = MOVE_SETS["vlnce"]
 F, L, R, STOP = Move.FORWARD, Move.LEFT, Move.RIGHT, Move.STOP
@@ -30,7 +30,7 @@ def way(*moves):
     walk, stances = free_walker(VLNCE, 1.0), [Stance(0.0, 0.0, 0.0)]
     for move in moves:
         stances.append(walk(stances[-1], move)[0])
-    return marks_of(Walk((*moves, STOP), tuple(stances)), VLNCE, 0.25)
+    return marks_of(DiscreteWalk((*moves, STOP), tuple(stances)), VLNCE, 0.25)
 
 
 WAY = way(*[R] * 4, *[F] * 4, *[L] * 3, *[F] * 8, *[R] * 6)

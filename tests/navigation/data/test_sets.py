@@ -32,7 +32,7 @@ from world2minecraft.navigation.data.statistics import (
 )
 from world2minecraft.navigation.data.tasks import action_steps
 from world2minecraft.navigation.language.parsing import told_in
-from world2minecraft.navigation.oracle import expert
+from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 from world2minecraft.navigation.values import Instruction, Item, Move, Option, Stance
 
@@ -225,7 +225,7 @@ def test_what_is_told_leads_to_the_end(small_set, flat):
                 continue
             last = told_in(instruction.text, names).landmarks[-1]
             goals = flat.goals_at(flat.landmark(last))
-            way = expert(flat, episode.start, goals)
+            way = plan_expert_path(flat, episode.start, goals)
             assert way is not None
             assert flat.distance_m(way.stances[-1].feet, goals) <= 0.5
             assert flat.distance_m(episode.reference[-1].feet, goals) <= 1.0

@@ -18,8 +18,8 @@ from world2minecraft.navigation.data.keyframes import (
 )
 from world2minecraft.navigation.data.stream_cleaning import segments_of
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
-from world2minecraft.navigation.walk_discretization import corners_of, discretise
-from world2minecraft.navigation.walk_stream import StreamFrame, frame_of
+from world2minecraft.navigation.walk_discretization import discretize_walk, simplify_path
+from world2minecraft.navigation.walk_stream import StreamFrame, frame_of_pose
 from world2minecraft.rendering.views.pose_file import read_tour
 
 VLNCE = MOVE_SETS["vlnce"]
@@ -62,7 +62,7 @@ def slow_corners(path, epsilon):
 @settings(max_examples=80, deadline=None)
 def test_corners_are_those_of_the_definition(points):
     path = np.array(points, float) / 3
-    assert corners_of(path, 0.4).tolist() == slow_corners(path, 0.4)
+    assert simplify_path(path, 0.4).tolist() == slow_corners(path, 0.4)
 
 
 def test_a_walk_without_a_stop_is_one_segment():
@@ -115,7 +115,7 @@ def test_gaps_scenes_and_looks_at_the_floor_end_walks():
 
 def test_a_corner_is_turned_and_a_heading_met():
     places = [*[(0.0, 0.2 * n) for n in range(11)], *[(-0.2 * n, 2.0) for n in range(1, 11)]]
-    walk = discretise(frames(places, [0.0] * 20 + [90.0]), VLNCE, 1.0, free_walker(VLNCE, 1.0))
+    walk = discretize_walk(frames(places, [0.0] * 20 + [90.0]), VLNCE, 1.0, free_walker(VLNCE, 1.0))
     assert walk.refusal == ""
     assert walk.moves.count(Move.RIGHT) - walk.moves.count(Move.LEFT) == 6
     assert walk.moves.count(Move.LEFT) <= 2
@@ -136,7 +136,7 @@ def test_a_corner_is_turned_and_a_heading_met():
 def test_what_is_accepted_ends_where_the_walk_ended(corners, yaw, name, scale):
     move_set = MOVE_SETS[name]
     places = [tuple(np.array(corner) * scale) for corner in corners]
-    walk = discretise(
+    walk = discretize_walk(
         frames(places, [yaw] * len(places)), move_set, scale, free_walker(move_set, scale)
     )
     assert walk.refusal in ("", "ends elsewhere")
@@ -156,7 +156,7 @@ def test_most_curves_are_accepted():
         heading = np.cumsum(rng.normal(0, 0.12, 60))
         steps = 0.1 * np.stack([np.cos(heading), np.sin(heading)], axis=1)
         places = [tuple(place) for place in np.cumsum(steps, axis=0)]
-        walk = discretise(frames(places), VLNCE, 1.0, free_walker(VLNCE, 1.0))
+        walk = discretize_walk(frames(places), VLNCE, 1.0, free_walker(VLNCE, 1.0))
         accepted += not walk.refusal
     assert accepted >= 45
 
@@ -166,12 +166,12 @@ def test_a_wall_refuses_a_walk():
         there, _ = free_walker(VLNCE, 1.0)(stance, move)
         return (stance, True) if there.z > 1 else (there, False)
 
-    assert discretise(frames(straight(12)), VLNCE, 1.0, walled).refusal == "meets something"
+    assert discretize_walk(frames(straight(12)), VLNCE, 1.0, walled).refusal == "meets something"
 
 
 def test_keyframes_stand_where_runs_end():
     places = [*[(0.0, 0.2 * n) for n in range(11)], *[(-0.2 * n, 2.0) for n in range(1, 11)]]
-    walk = discretise(frames(places, [0.0] * 20 + [90.0]), VLNCE, 1.0, free_walker(VLNCE, 1.0))
+    walk = discretize_walk(frames(places, [0.0] * 20 + [90.0]), VLNCE, 1.0, free_walker(VLNCE, 1.0))
     marks = marks_of(walk, VLNCE, 0.25)
     assert marks[0].stance == walk.stances[0]
     assert [mark.action for mark in marks[-1:]] == ["stop"]
@@ -200,7 +200,7 @@ def test_streams_are_read_with_feet_under_their_eyes(tmp_path):
     ]
     path = tmp_path / "walk.jsonl"
     path.write_text("".join(json.dumps(line) + "\n" for line in lines))
-    eye, feet = (frame_of(one, eye_height_blocks(4.0)) for one in read_tour(path))
+    eye, feet = (frame_of_pose(one, eye_height_blocks(4.0)) for one in read_tour(path))
     assert (feet.stance.y, eye.stance.y) == (70.0, pytest.approx(70.0 - 4 * 1.62))
     path.write_text("{}\n")
     with pytest.raises(DamagedFileError, match="line 1 has no x"):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances.merge_pieces import join_posts
+from world2minecraft.reconstruction.instances.merge_pieces import merge_lamp_parts
 from world2minecraft.reconstruction.instances.split_by_support import part_by_hosts
 
 SHAPE = (30, 30, 34)
@@ -96,7 +96,7 @@ def test_the_foot_and_the_cord_of_a_lamp_belong_to_its_shade():
     grid = _room(shade, foot, cord)
     owners = np.zeros(SHAPE, np.int32)
     owners[10:15, 10:15, 15:18], owners[11:14, 11:14, 1:2], owners[12, 12, 22:28] = 1, 2, 3
-    np.testing.assert_array_equal(join_posts(owners, grid), owners > 0)
+    np.testing.assert_array_equal(merge_lamp_parts(owners, grid), owners > 0)
 
 
 def test_a_box_on_the_floor_under_a_table_is_no_foot_of_the_vase_upon_it():
@@ -104,10 +104,10 @@ def test_a_box_on_the_floor_under_a_table_is_no_foot_of_the_vase_upon_it():
                  (11, GREEN, 11, 11, 1, 14, 14, 2))  # fmt: skip
     owners = np.zeros(SHAPE, np.int32)
     owners[11:14, 11:14, 10:14], owners[11:14, 11:14, 1:2] = 1, 2
-    np.testing.assert_array_equal(join_posts(owners, grid), owners)
+    np.testing.assert_array_equal(merge_lamp_parts(owners, grid), owners)
 
 
 def test_what_lies_within_the_floor_is_nothing():
     grid = _room((11, BEIGE, 10, 10, 0, 20, 11, 1))
     owners = (grid.labels == SemanticClass.OBJS).astype(np.int32)
-    assert not join_posts(owners, grid).any()
+    assert not merge_lamp_parts(owners, grid).any()

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import cells_of, surface, template
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.instances.denoise import without_specks
+from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 
 
@@ -76,7 +76,7 @@ def test_every_object_cell_has_an_instance_of_its_class_or_is_counted(seed, pape
     assert not (marked & ~objects).any()
     assert np.count_nonzero(objects & ~marked) == found.leftover
     assert sum(len(instance.cells) for instance in found.instances) == np.count_nonzero(marked)
-    taken = labels if paper_compat else without_specks(labels)
+    taken = labels if paper_compat else relabel_specks(labels)
     for instance in found.instances:
         cells = tuple(instance.cells.T)
         assert (taken[cells] == instance.class_id).all()

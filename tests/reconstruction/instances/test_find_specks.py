@@ -9,7 +9,7 @@ from tests.reconstruction.instances.test_find_objects import grid_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.instances.denoise import without_specks
+from world2minecraft.reconstruction.instances.denoise import relabel_specks
 
 TABLE, OBJS, FURN = SemanticClass.TABLE, SemanticClass.OBJS, SemanticClass.FURN
 
@@ -27,7 +27,7 @@ def _room():
 def test_a_speck_in_a_surface_is_of_it(cells):
     labels = _room()
     labels[8 : 8 + cells[0], 7 : 7 + cells[1], 10 - cells[2] : 10] = OBJS
-    np.testing.assert_array_equal(without_specks(labels), _room())
+    np.testing.assert_array_equal(relabel_specks(labels), _room())
 
 
 @pytest.mark.parametrize(
@@ -44,14 +44,14 @@ def test_a_speck_in_a_surface_is_of_it(cells):
 def test_what_stands_on_or_before_a_surface_stays(where):
     labels = _room()
     labels[where] = OBJS
-    np.testing.assert_array_equal(without_specks(labels), labels)
+    np.testing.assert_array_equal(relabel_specks(labels), labels)
 
 
 def test_a_speck_between_two_classes_stays():
     labels = _room()
     labels[18:20, 4:16, 8:10] = FURN
     labels[17:19, 8:10, 8:10] = OBJS
-    np.testing.assert_array_equal(without_specks(labels), labels)
+    np.testing.assert_array_equal(relabel_specks(labels), labels)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))
@@ -62,7 +62,7 @@ def test_turning_the_grid_turns_what_is_joined(seed, turns):
     noisy = (labels > 4) & (rng.random(labels.shape) < 0.05)
     labels[noisy] = rng.integers(5, 12, int(noisy.sum()))
     turned = np.ascontiguousarray(turn_grid(labels, turns))
-    np.testing.assert_array_equal(without_specks(turned), turn_grid(without_specks(labels), turns))
+    np.testing.assert_array_equal(relabel_specks(turned), turn_grid(relabel_specks(labels), turns))
 
 
 def test_the_object_has_the_specks_cells_and_the_grid_keeps_its_labels():

@@ -33,7 +33,7 @@ def run(
     """
     from world2minecraft.core.files import write_bytes
     from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.minecraftocc.showing import sample_picture, seen_in_cells
+    from world2minecraft.minecraftocc.visualization import sample_picture, seen_in_cells
     from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)

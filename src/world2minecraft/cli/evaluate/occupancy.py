@@ -144,7 +144,7 @@ class _Asked:
 
     def _frames(self, grid: Any, size: tuple[int, int], progress: "Progress") -> Any:
         from world2minecraft.networks.data.frames import FrameRule
-        from world2minecraft.networks.data.opening import CachePlace, open_frames
+        from world2minecraft.networks.data.run_data import CachePlace, open_frames
 
         place = CachePlace.named(self.cache)
         return open_frames(self.found, FrameRule(grid, *size), place, progress)

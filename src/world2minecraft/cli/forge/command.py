@@ -114,10 +114,10 @@ def _walk(source: Path | None, no_browser: bool) -> None:
     """Let a person walk in a world on the page that shows what agents see."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.navigation.free_walk import stroll
+    from world2minecraft.navigation.browser_window import Window
+    from world2minecraft.navigation.free_walk import walk_freely
     from world2minecraft.navigation.running.human_agent import VIEW_WIDTH_PX
     from world2minecraft.navigation.scene import open_scene
-    from world2minecraft.navigation.window import Window
 
     if source is None:
         raise UsageError("say where to walk, such as w2m forge OUT --walk")
@@ -128,7 +128,7 @@ def _walk(source: Path | None, no_browser: bool) -> None:
     if not no_browser:
         open_link(window.link)
     try:
-        stroll(scene, window)
+        walk_freely(scene, window)
     finally:
         window.close()
 

@@ -58,7 +58,7 @@ def run(
         changes["image"] = options.image_size(image)
     chosen = options.chosen_run(network, data or [], config, preset, changes)
     options.check_extra()
-    from world2minecraft.networks.data.opening import CachePlace
+    from world2minecraft.networks.data.run_data import CachePlace
     from world2minecraft.networks.training import score_run, train_run
 
     with shown() as progress:

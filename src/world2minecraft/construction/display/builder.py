@@ -29,9 +29,8 @@ from world2minecraft.construction.display.worktops import (
 )
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.places import LAST, in_order
-from world2minecraft.construction.seats import chair_paints
-from world2minecraft.construction.surfaces import painted
+from world2minecraft.construction.surface_painting import chair_paints, painted
+from world2minecraft.construction.template_blocks import LAST, in_order
 from world2minecraft.construction.worktops import Worktop, find_worktop, joined, top_cells
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from world2minecraft.construction.display.boxes import Frame
-from world2minecraft.construction.paint import FADED, costs_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.surface_painting import FADED, costs_of
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.furniture import Part, Template
 from world2minecraft.furniture.materials import FIXED, Material, swatches

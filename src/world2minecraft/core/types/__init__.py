@@ -1,4 +1,4 @@
-"""The values that cross between the stages: frozen, and checked in their constructors.
+"""Value types that pass between the stages: frozen, and checked in their constructors.
 
 Arrays are held as read-only views; a stage that changes something makes a new value with
 ``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.

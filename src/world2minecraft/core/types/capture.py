@@ -1,4 +1,4 @@
-"""What registration puts right in a scan: the pose and the depth scale of each frame."""
+"""Captures: cameras, posed views, the scan that they form, and the corrections of its frames."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -7,8 +7,6 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from world2minecraft.core.types import checks
-
-# What stage 1 gives: cameras, views and the scan they form.
 
 MAX_SIDE_PX = 20_000
 IDENTITY = np.eye(4)
@@ -178,7 +176,7 @@ class Scan:
 
 @dataclass(frozen=True, eq=False)
 class Corrections:
-    """One change a frame.
+    """What registration corrects in a scan: the pose and the depth scale of each frame.
 
     ``pose_change`` float64 [F, 4, 4] is rigid, scan to scan, applied on the left of a frame's
     pose; ``depth_scale`` float64 [F] is what its depth is multiplied by. ``facts`` are the figures

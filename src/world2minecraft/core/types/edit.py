@@ -1,4 +1,4 @@
-"""One edit, of a scene or of blocks: what clean-up, SceneForge and ``w2m undo`` share."""
+"""Undoable edits of a scene or of blocks, shared by clean-up, SceneForge and ``w2m undo``."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -78,7 +78,7 @@ class Operation:
     ``kind`` is a verb, such as ``fill``. ``counts_as`` is what the effort tables count it as.
     ``cells`` are indices into the grid, each once. An object that is only in
     ``objects_before`` goes, one that is only in ``objects_after`` is new, one in both changes.
-    ``actor`` is who did it, ``time_s`` when, in seconds since 1970; both are only told.
+    ``actor`` is who did it, ``time_s`` when, in seconds since 1970; both are for display only.
     """
 
     kind: str
@@ -100,7 +100,7 @@ class Operation:
                 f"counts_as must be one of {', '.join(COUNTED)}, not {self.counts_as!r}"
             )
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
-        if not each_once(self.cells):
+        if not rows_are_unique(self.cells):
             raise ValueError("cells must be named once each")
         for name in ("before", "after"):
             count = len(getattr(self, name).labels)
@@ -123,7 +123,7 @@ class Operation:
         return replace(self, **swapped)
 
 
-def each_once(cells: np.ndarray) -> bool:
+def rows_are_unique(cells: np.ndarray) -> bool:
     """Whether no cell of [N, 3] is named twice."""
     if not len(cells):
         return True
@@ -185,7 +185,7 @@ class BlockEdit:
         put = object.__setattr__
         checks.identifier("kind", self.kind)
         cells = checks.array("cells", self.cells, np.int32, (None, 3))
-        if not each_once(cells):
+        if not rows_are_unique(cells):
             raise ValueError("cells must be named once each")
         put(self, "cells", cells)
         put(self, "palette", tuple(self.palette))

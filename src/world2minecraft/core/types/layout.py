@@ -1,4 +1,4 @@
-"""What rooms, RoomPlan and the layout comparators share: a room as shapes in metres."""
+"""A room as shapes in metres: floor polygon, walls, openings and furniture boxes."""
 
 from dataclasses import dataclass, field
 from typing import Literal

@@ -1,4 +1,4 @@
-"""What stages 5 and 6 give: objects, and the templates put in their places."""
+"""Object instances of a room, and the furniture templates placed for them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What stages 2 and 3 give: what one view says, and what all views say together."""
+"""Evidence of occupancy from one view and from all views, and the semantic occupancy grid."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,6 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.types import checks
-
-# What stages 3 to 5 give: the semantic occupancy of a room.
 
 UNSEEN, OBSERVED, COMPLETED = 0, 1, 2
 

@@ -1,4 +1,4 @@
-"""What photos give before there is depth: pictures, their places, sparse points, depth maps."""
+"""Photos without depth, and what structure from motion and stereo give: poses, points, depth."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What stage 7 gives: blocks."""
+"""Volumes of Minecraft blocks with their block entities and entities."""
 
 import math
 from collections.abc import Mapping

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
-from world2minecraft.minecraftocc.block_map.rooms import (
+from world2minecraft.minecraftocc.block_map.room_detection import (
     CEILING,
     FLOOR,
     INSIDE,

@@ -22,7 +22,7 @@ from world2minecraft.minecraftocc.building.scenes import (
     source_of,
 )
 from world2minecraft.minecraftocc.camera_records import camera_record
-from world2minecraft.minecraftocc.labels.labels import cast_depth, label_image
+from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, SceneSpec

@@ -1,6 +1,6 @@
 """Occupancy data sets of others, and our exports of the same formats, read as samples."""
 
-from world2minecraft.minecraftocc.importers.opening import IMPORTED, open_occupancy
+from world2minecraft.minecraftocc.importers.format_detection import IMPORTED, open_occupancy
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 
 __all__ = ["IMPORTED", "ImportedSet", "open_occupancy"]

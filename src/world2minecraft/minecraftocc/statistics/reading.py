@@ -15,7 +15,7 @@ from typing import Any
 from world2minecraft.core.errors import InputError, WorkerError
 from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.importers.opening import IMPORTED, open_occupancy
+from world2minecraft.minecraftocc.importers.format_detection import IMPORTED, open_occupancy
 from world2minecraft.minecraftocc.statistics.counting import (
     StatisticsCounter,
     add_sample,

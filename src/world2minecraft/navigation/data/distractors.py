@@ -25,8 +25,8 @@ from world2minecraft.navigation.data.pictures import (
     unlike,
 )
 from world2minecraft.navigation.values import Move, Stance
-from world2minecraft.navigation.walk_discretization import Walker
-from world2minecraft.navigation.walk_stream import wrapped_deg
+from world2minecraft.navigation.walk_discretization import StepFunction
+from world2minecraft.navigation.walk_stream import wrap_deg
 
 # Wrong pictures that are taken for a question: as many as wanted more like the present one.
 
@@ -132,7 +132,7 @@ MIRRORED_RUNS = 3  # As many as pictures are shown.
 class Scout:
     """Who goes to such places. ``walker`` is the world's physics."""
 
-    walker: Walker
+    walker: StepFunction
     metres_per_block: float
 
     def places(self, kind: str, marks: Sequence[Mark], step: int) -> list[Stance]:
@@ -202,4 +202,4 @@ class Scout:
 
 
 def _turned(stance: Stance, turn_deg: float) -> Stance:
-    return replace(stance, yaw_deg=float(wrapped_deg(stance.yaw_deg + turn_deg)))
+    return replace(stance, yaw_deg=float(wrap_deg(stance.yaw_deg + turn_deg)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.navigation.data.pictures import hash_distance
 from world2minecraft.navigation.values import Move, MoveSet, Stance
-from world2minecraft.navigation.walk_discretization import Walk
+from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
 # Where a walk's pictures are taken: after each run of equal moves.
 #
@@ -43,7 +43,7 @@ class Mark:
         return ACTIONS[self.move]
 
 
-def marks_of(walk: Walk, move_set: MoveSet, step_m: float) -> list[Mark]:
+def marks_of(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list[Mark]:
     """Return the keyframes of a walk: its start, the end of each run, its end.
 
     Args:

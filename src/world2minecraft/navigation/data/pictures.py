@@ -12,7 +12,7 @@ from PIL import Image
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import Camera
 from world2minecraft.navigation.values import Stance
-from world2minecraft.navigation.walk_stream import wrapped_deg
+from world2minecraft.navigation.walk_stream import wrap_deg
 from world2minecraft.rendering.views.cameras import camera_of
 
 # Pictures of a set: as JPEG, told apart by hashes.
@@ -109,7 +109,7 @@ class Album:
 def are_apart(one: Stance, other: Stance, metres_per_block: float) -> bool:
     """Return whether two stances of a scene show different things."""
     away_m = ((one.x - other.x) ** 2 + (one.y - other.y) ** 2 + (one.z - other.z) ** 2) ** 0.5
-    turn_deg = abs(float(wrapped_deg(one.yaw_deg - other.yaw_deg)))
+    turn_deg = abs(float(wrap_deg(one.yaw_deg - other.yaw_deg)))
     return away_m * metres_per_block >= NEAR_M or turn_deg >= NEAR_DEG
 
 

@@ -15,7 +15,7 @@ from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.language.landmark_names import told_apart
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Stance
-from world2minecraft.navigation.walk_stream import StreamFrame, wrapped_deg
+from world2minecraft.navigation.walk_stream import StreamFrame, wrap_deg
 
 EVERY_S = 0.2
 SPEED_M_S, TURN_DEG_S = 1.0, 90.0
@@ -87,10 +87,10 @@ class Tourist:
         To the side from which one starts by the turn that the end does not have.
         """
         ahead = _yaw_of(way[1] - way[0])
-        last = float(wrapped_deg(facing - _yaw_of(way[-1] - way[-2])))
+        last = float(wrap_deg(facing - _yaw_of(way[-1] - way[-2])))
         side = -np.sign(last) if abs(last) >= SPOKEN_DEG else float(rng.choice([-1, 1]))
         angle = float(rng.uniform(*ASIDE_DEG))
-        self._turn(frames, float(wrapped_deg(ahead - side * angle)))
+        self._turn(frames, float(wrap_deg(ahead - side * angle)))
         self._pause(frames)
 
     def _walk(self, frames: list[StreamFrame], corners: np.ndarray, facing: float) -> None:
@@ -133,7 +133,7 @@ class Tourist:
     def _turn(self, frames: list[StreamFrame], yaw_deg: float) -> None:
         """Add the frames of turning on the spot."""
         last = frames[-1].stance
-        off = float(wrapped_deg(yaw_deg - last.yaw_deg))
+        off = float(wrap_deg(yaw_deg - last.yaw_deg))
         count = int(np.ceil(abs(off) / (TURN_DEG_S * EVERY_S)))
         for n in range(1, count + 1):
             self._add(frames, np.array(last.feet), last.yaw_deg + off * n / count)
@@ -149,7 +149,7 @@ class Tourist:
 
     def _frame(self, t_s: float, feet: np.ndarray, yaw_deg: float, tour_id: str) -> StreamFrame:
         x, y, z = (float(value) for value in feet)
-        stance = Stance(x, y, z, float(wrapped_deg(yaw_deg)))
+        stance = Stance(x, y, z, float(wrap_deg(yaw_deg)))
         return StreamFrame(t_s, stance, self._scene.scene_id, tour_id)
 
 

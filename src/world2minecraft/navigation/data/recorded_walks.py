@@ -16,7 +16,7 @@ from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.running.trace import TRACE_FILE, read_trace, stances_of, traces_in
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.walk_stream import StreamFrame, frame_of, timed
+from world2minecraft.navigation.walk_stream import StreamFrame, assign_even_times, frame_of_pose
 from world2minecraft.rendering.views.pose_file import read_tour
 
 At = Literal["feet", "eye"]
@@ -111,13 +111,13 @@ def _streams(path: str | Path, scene: VlnScene, at: At) -> list[list[StreamFrame
     if traces := _traces(path):
         return [_frames_of_trace(place) for place in traces]
     eye = eye_height_blocks(scene.blocks_per_metre)
-    return [[frame_of(one, eye) for one in read_tour(path, at)]]
+    return [[frame_of_pose(one, eye) for one in read_tour(path, at)]]
 
 
 def _in_time(frames: list[StreamFrame]) -> list[StreamFrame]:
     """Put frames in order; those that say no time keep theirs."""
     if len({one.t_s for one in frames}) == 1:
-        return timed(frames, EVERY_S)
+        return assign_even_times(frames, EVERY_S)
     return sorted(frames, key=lambda one: one.t_s)
 
 

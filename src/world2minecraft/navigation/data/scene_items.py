@@ -23,8 +23,8 @@ from world2minecraft.navigation.data.tasks import (
     view_steps,
 )
 from world2minecraft.navigation.data.trajectories import Candidate, Maker
-from world2minecraft.navigation.moves import moved
-from world2minecraft.navigation.oracle import ORACLE_VERSION, expert
+from world2minecraft.navigation.moves import apply_move
+from world2minecraft.navigation.oracle import ORACLE_VERSION, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import (
     LEVELS,
@@ -37,13 +37,17 @@ from world2minecraft.navigation.values import (
     Stance,
     Trajectory,
 )
-from world2minecraft.navigation.walk_discretization import VERSION, Guide, Walker
+from world2minecraft.navigation.walk_discretization import (
+    DISCRETIZATION_VERSION,
+    PathPlanner,
+    StepFunction,
+)
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 Tick = Callable[[int], None]
 """Told how many walks more there are."""
 
-MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
+MADE_BY = f"{DISCRETIZATION_VERSION}+{ORACLE_VERSION}"
 LOOK_PX = (64, 36)  # Of pictures that are only to tell how like they are.
 MOST_RECORDED = 100_000  # Walks of one scene.
 MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
@@ -80,16 +84,16 @@ class SceneWork:
     tours: int = 0
 
 
-def scene_walker(scene: VlnScene, move_set: MoveSet) -> Walker:
+def scene_walker(scene: VlnScene, move_set: MoveSet) -> StepFunction:
     """Return the physics of a scene as discretising wants it."""
-    return partial(moved, scene, move_set=move_set)
+    return partial(apply_move, scene, move_set=move_set)
 
 
-def scene_guide(scene: VlnScene, move_set: MoveSet) -> Guide:
+def scene_guide(scene: VlnScene, move_set: MoveSet) -> PathPlanner:
     """Return the oracle as discretising wants it."""
 
     def moves(stance: Stance, end: tuple[float, float, float]) -> tuple[Move, ...]:
-        way = expert(scene, stance, (end,), move_set)
+        way = plan_expert_path(scene, stance, (end,), move_set)
         return way.moves if way is not None else ()
 
     return moves
@@ -166,7 +170,7 @@ class _Crew:
         folder: Path,
         scene_split: str,
         rule: WorkRule,
-        walker: Walker,
+        walker: StepFunction,
         work: SceneWork,
     ):
         self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrapped_deg
+from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def _between_stops(
     places = feet_m(run, blocks_per_metre)[:, [0, 2]]
     times = np.array([frame.t_s for frame in run])
     yaws = np.array([frame.stance.yaw_deg for frame in run])
-    turned = np.concatenate([[0], np.cumsum(np.abs(wrapped_deg(np.diff(yaws))))])
+    turned = np.concatenate([[0], np.cumsum(np.abs(wrap_deg(np.diff(yaws))))])
     segments, begin, n = [], 0, 0
     while n < len(run):
         end = _stop_from(n, places, times, turned, rule)

@@ -21,7 +21,12 @@ from world2minecraft.navigation.language.generation import instructions_of
 from world2minecraft.navigation.language.route_events import Seen, Way, way_of
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Instruction, Move, MoveSet, Stance
-from world2minecraft.navigation.walk_discretization import Guide, Walk, Walker, discretise
+from world2minecraft.navigation.walk_discretization import (
+    DiscreteWalk,
+    PathPlanner,
+    StepFunction,
+    discretize_walk,
+)
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 LOOK_PX = (96, 54)  # A picture for counting what is in it.
@@ -36,7 +41,7 @@ class Candidate:
 
     trajectory_id: str
     tour_id: str
-    walk: Walk
+    walk: DiscreteWalk
     marks: tuple[Mark, ...]
     way: Way
     instructions: tuple[Instruction, ...]
@@ -51,8 +56,8 @@ class Maker:
         self,
         scene: VlnScene,
         move_set: MoveSet,
-        walker: Walker,
-        guide: Guide | None = None,
+        walker: StepFunction,
+        guide: PathPlanner | None = None,
         seed: int = 0,
     ):
         self._scene, self._move_set, self._seed = scene, move_set, seed
@@ -85,7 +90,7 @@ class Maker:
         self, segment: Sequence[StreamFrame], number: int, target: str
     ) -> Candidate | str:
         scene, tour_id = self._scene, segment[0].tour_id
-        walk = discretise(
+        walk = discretize_walk(
             segment, self._move_set, scene.blocks_per_metre, self._walker, self._guide
         )
         if walk.refusal:
@@ -122,7 +127,7 @@ class Maker:
         goals = self._scene.goals_at(self._scene.landmark(name))
         return bool(goals) and self._scene.distance_m(end.feet, goals) <= LEADS_M
 
-    def _seen(self, walk: Walk, marks: Sequence[Mark]) -> Seen:
+    def _seen(self, walk: DiscreteWalk, marks: Sequence[Mark]) -> Seen:
         feet = np.array([stance.feet for stance in walk.stances])
         yaws = np.array([stance.yaw_deg for stance in walk.stances])
         looks = {mark.at: self._look(mark.stance) for mark in marks}

@@ -6,9 +6,8 @@ import numpy as np
 from gymnasium import spaces
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.minecraft.physics import BlockWorld, Body, Keys
-from world2minecraft.minecraft.physics import step
-from world2minecraft.navigation.moves import moved, wrapped_yaw
+from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, step
+from world2minecraft.navigation.moves import apply_move, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
@@ -70,7 +69,7 @@ class Discrete:
 
     def made(self, move: Move) -> tuple[Stance, bool]:
         """Return where a move that is no STOP leads, and whether something was in the way."""
-        return moved(self.scene, self.stance, move, self.move_set, sliding=self.sliding)
+        return apply_move(self.scene, self.stance, move, self.move_set, sliding=self.sliding)
 
 
 class Continuous:
@@ -103,7 +102,7 @@ class Continuous:
         if action["stop"]:
             return True, [], False
         yaw_by, pitch_by = (MOST_TURN_DEG * float(share) for share in action["camera"])
-        yaw_deg = wrapped_yaw(self.stance.yaw_deg + yaw_by)
+        yaw_deg = wrap_yaw(self.stance.yaw_deg + yaw_by)
         pitch_deg = min(max(self.stance.pitch_deg + pitch_by, -90.0), 90.0)
         keys = Keys(*(bool(key) for key in action["keys"]), yaw_deg=yaw_deg)
         self.body = self.ticked(keys, pitch_deg)

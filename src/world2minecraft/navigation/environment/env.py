@@ -9,14 +9,14 @@ import gymnasium
 import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.navigation.browser_window import Window
 from world2minecraft.navigation.environment.action_spaces import Acting, Continuous, Discrete
 from world2minecraft.navigation.environment.episode_sampling import Drawing
 from world2minecraft.navigation.environment.observations import USUAL, Eyes, Senses
-from world2minecraft.navigation.episodes import score
-from world2minecraft.navigation.moves import named_set
+from world2minecraft.navigation.episodes import score_walk
+from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.scene import VlnScene, open_scene
 from world2minecraft.navigation.values import Episode, MoveSet, Stance, check_reachable
-from world2minecraft.navigation.window import Window
 
 ACTIONS = ("discrete", "continuous")
 MOST_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
@@ -80,10 +80,10 @@ class VlnEnv(gymnasium.Env):
         if not success_m > 0:
             raise UsageError(f"success_m is a length above 0, in metres, not {success_m:g}")
         self.scene = _opened(scene, body, box, blocks_per_metre)
-        self.drawing = Drawing(self.scene, episodes, split, named_set(move_set).name, span_m)
+        self.drawing = Drawing(self.scene, episodes, split, get_move_set(move_set).name, span_m)
         texts = self.drawing.texts if "instruction" in observations else ()
         self.senses = Senses(self.scene, observations, eyes or Eyes(), texts)
-        self.acting: Acting = self._acting(actions == "continuous", named_set(move_set), sliding)
+        self.acting: Acting = self._acting(actions == "continuous", get_move_set(move_set), sliding)
         self.observation_space, self.action_space = self.senses.space, self.acting.space
         self.max_steps, self.success_m = max_steps or MOST_STEPS[actions], success_m
         self.render_mode = render_mode
@@ -200,7 +200,7 @@ class VlnEnv(gymnasium.Env):
         }
 
     def _score(self, stopped: bool) -> dict[str, Any]:
-        found = score(
+        found = score_walk(
             self.scene, self._playing, self.path, stopped=stopped, steps=self.steps,
             collisions=self.collisions, radius_m=self.success_m,
         )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.navigation.moves import wrapped_yaw
+from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Stance
 from world2minecraft.rendering.light import LookLight
@@ -81,7 +81,7 @@ class Senses:
     def pose(self, stance: Stance) -> np.ndarray:
         """Return the feet in metres of the room, the game's yaw and pitch: float32 [5]."""
         x, y, z = self.scene.to_room_m(stance.feet)
-        values = (x, y, z, wrapped_yaw(stance.yaw_deg), stance.pitch_deg)
+        values = (x, y, z, wrap_yaw(stance.yaw_deg), stance.pitch_deg)
         return np.array(values, np.float32)
 
     def _seen(self, stance: Stance, outputs: tuple[str, ...]) -> dict[str, Any]:

@@ -4,8 +4,8 @@ import webbrowser
 from typing import Any
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.browser_window import PATIENCE_S, wait_for_move
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.window import PATIENCE_S, pressed_move
 
 
 def play(
@@ -30,6 +30,6 @@ def play(
     if open_browser:
         webbrowser.open(window.link)
     while True:
-        _, _, over, cut, info = env.step(int(pressed_move(window, patience_s)))
+        _, _, over, cut, info = env.step(int(wait_for_move(window, patience_s)))
         if over or cut:
             return info

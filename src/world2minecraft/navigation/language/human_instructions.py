@@ -13,7 +13,7 @@ from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import json_rows, read_bytes
-from world2minecraft.navigation.prompts import mark_in
+from world2minecraft.navigation.prompts import find_reserved_token
 from world2minecraft.navigation.values import LEVELS, Instruction, Trajectory
 
 MAX_BYTES = 64 << 20
@@ -75,7 +75,7 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
         if not isinstance(value, str) or not value.strip() or len(value) > MAX_TEXT:
             raise DamagedFileError(source, f"line {number}: {key} must be a text, up to {MAX_TEXT}")
         values[key] = value.strip()
-    if mark := mark_in(values["instruction"]):
+    if mark := find_reserved_token(values["instruction"]):
         raise DamagedFileError(source, f"line {number}: models take {mark!r} for more than words")
     who, language = str(row.get("annotator_id") or ""), str(row.get("language") or "en")
     level = str(row.get("level") or "landmark")

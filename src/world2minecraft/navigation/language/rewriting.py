@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from world2minecraft.navigation.language.parsing import told_in
-from world2minecraft.navigation.prompts import mark_in
+from world2minecraft.navigation.prompts import find_reserved_token
 from world2minecraft.navigation.values import Instruction
 
 Ask = Callable[[str], str]
@@ -62,7 +62,7 @@ def rewritten(
     text = _plain(ask(prompt))
     if not text or len(text) > MOST_CHARACTERS:
         return Rewriting(None, "empty" if not text else "too long")
-    if not text.isprintable() or mark_in(text):
+    if not text.isprintable() or find_reserved_token(text):
         return Rewriting(None, "strange marks")
     found = told_in(text, known)
     if found.turns != expected.turns:

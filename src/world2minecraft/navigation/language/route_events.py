@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.walk_discretization import corners_of
-from world2minecraft.navigation.walk_stream import wrapped_deg
+from world2minecraft.navigation.walk_discretization import simplify_path
+from world2minecraft.navigation.walk_stream import wrap_deg
 
 CORNER_M = 0.3  # What lies nearer to a straight line is walked straight.
 SHORT_M = 0.7  # A shorter stretch between two turns is a part of the next.
@@ -91,13 +91,13 @@ def way_of(walk: Seen, landmarks: Sequence[Landmark], target: str = "") -> Way:
         target: the landmark that the walk was made to, where that is known. It is the end if one
             stands before it; else the nearest thing in sight is.
     """
-    corners = _merged(walk.places_m, list(corners_of(walk.places_m, CORNER_M)))
+    corners = _merged(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
     yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.
     stretches, before, used = [], float(yaws[0]), set[str]()
     for first, last in _pairs(corners):
         heading = _heading(walk.places_m[first], walk.places_m[last])
         walked = float(yaws[(first + last + 1) // 2])
-        heading = walked + float(wrapped_deg(heading - walked))
+        heading = walked + float(wrap_deg(heading - walked))
         turn = heading - before
         stretch = _stretch(walk, landmarks, first, last, turn, used, target)
         used |= {stretch.at, stretch.towards, *(name for name, _ in stretch.passing)} - {""}
@@ -131,7 +131,7 @@ def _merged(places: np.ndarray, corners: list[int]) -> list[int]:
     while len(corners) > 2:
         lengths = [float(np.linalg.norm(places[b] - places[a])) for a, b in _pairs(corners)]
         headings = [_heading(places[a], places[b]) for a, b in _pairs(corners)]
-        turns = np.abs(wrapped_deg(np.diff(headings)))
+        turns = np.abs(wrap_deg(np.diff(headings)))
         if turns.min() < TURN_DEG:
             del corners[1 + int(turns.argmin())]
         elif min(lengths) < SHORT_M:
@@ -191,7 +191,7 @@ def _ahead(begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark]) -> str:
     length = np.linalg.norm(end - begin)
     for one in seen:
         away = float(np.linalg.norm(one.center_m[:2] - begin))
-        off = abs(wrapped_deg(_heading(begin, one.center_m[:2]) - _heading(begin, end)))
+        off = abs(wrap_deg(_heading(begin, one.center_m[:2]) - _heading(begin, end)))
         if length - 0.2 <= away <= FAR_M and off <= AHEAD_DEG:
             found.append((away, one.name))
     return min(found)[1] if found else ""
@@ -242,4 +242,4 @@ def _off_deg(place: np.ndarray, yaw_deg: float, landmark: Landmark) -> float:
     """Return where the nearest part of a thing lies from straight ahead, positive to the right."""
     near = np.clip(place, landmark.low_m[:2], landmark.high_m[:2])
     point = (near + landmark.center_m[:2]) / 2
-    return float(wrapped_deg(_heading(place, point) - yaw_deg))
+    return float(wrap_deg(_heading(place, point) - yaw_deg))

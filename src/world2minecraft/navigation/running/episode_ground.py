@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.navigation.moves import forward_blocks, moved, named_set
-from world2minecraft.navigation.oracle import expert
+from world2minecraft.navigation.moves import apply_move, forward_blocks, get_move_set
+from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.running.floor_map import PlanMap, plan_of
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Episode, Move, MoveSet, Stance
@@ -92,7 +92,7 @@ class SceneGround:
     def __init__(
         self, scene: VlnScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
     ):
-        self.scene, self.move_set = scene, named_set(move_set)
+        self.scene, self.move_set = scene, get_move_set(move_set)
         self.camera = camera_of(*VIEW_PX, VIEW_FOV_DEG) if camera is None else camera
         self.metres_per_block = scene.metres_per_block
 
@@ -110,7 +110,7 @@ class SceneGround:
 
     def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Return where a move leads, and whether something was in the way."""
-        return moved(self.scene, stance, move, self.move_set)
+        return apply_move(self.scene, stance, move, self.move_set)
 
     def distance_m(self, stance: Stance, goals: Sequence[tuple[float, float, float]]) -> float:
         """Return the way on foot to the nearest goal, inf where none leads."""
@@ -123,7 +123,7 @@ class SceneGround:
         facing: tuple[float, float, float] | None = None,
     ) -> tuple[Move, ...]:
         """Return the oracle's moves; STOP alone where it knows no way."""
-        way = expert(self.scene, stance, goals, self.move_set, facing=facing)
+        way = plan_expert_path(self.scene, stance, goals, self.move_set, facing=facing)
         return (Move.STOP,) if way is None else way.moves
 
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.agents.values import Decision, Sight, Task
+from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.values import Episode, Move, Stance
-from world2minecraft.navigation.window import PATIENCE_S, Window, pressed_move
 
 if TYPE_CHECKING:
     from world2minecraft.navigation.running.episode_runner import Walk
@@ -43,7 +43,7 @@ class HumanAgent:
         if self._task is None:
             raise UsageError("call begin(task) before decide(sight)")
         self.window.show(sight.colour, self._told(self._task, sight))
-        return Decision((pressed_move(self.window, self.patience_s),))
+        return Decision((wait_for_move(self.window, self.patience_s),))
 
     def close(self) -> None:
         """Close the window."""

@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.navigation.episodes import target_of
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.moves import wrapped_yaw
+from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Episode, Instruction, Stance
 
@@ -115,7 +115,7 @@ def _looking_in(scene: VlnScene) -> Stance:
     start = scene.start
     x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
     yaw_deg = math.degrees(math.atan2(-x, z))
-    return replace(start, yaw_deg=wrapped_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
+    return replace(start, yaw_deg=wrap_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
 
 
 def _standing(scene: VlnScene, wished: Stance) -> Stance:

@@ -2,10 +2,9 @@
 
 from functools import lru_cache
 
-from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import step
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
 from world2minecraft.navigation.environment.action_spaces import Continuous, Discrete
-from world2minecraft.navigation.moves import forward_blocks, heading, wrapped_yaw
+from world2minecraft.navigation.moves import forward_blocks, heading_vector, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.server.body import ServerBody
 from world2minecraft.navigation.values import Move, MoveSet, Stance
@@ -88,11 +87,11 @@ class MovesOnServer(Discrete):
             length = forward_blocks(self.scene, self.move_set)
             self.server.hold(forward_keys(length, here.yaw_deg), here.pitch_deg)
             body = self.server.settle(here.yaw_deg)
-            x, z = heading(here.yaw_deg)
+            x, z = heading_vector(here.yaw_deg)
             gone = (body.position[0] - here.x) * x + (body.position[2] - here.z) * z
             stance = Stance(*body.position, here.yaw_deg, here.pitch_deg)
             return stance, gone < SHORT * length
-        yaw_deg = wrapped_yaw(here.yaw_deg + (turn if move == Move.RIGHT else -turn))
+        yaw_deg = wrap_yaw(here.yaw_deg + (turn if move == Move.RIGHT else -turn))
         body = self.server.hold([Keys(yaw_deg=yaw_deg)], here.pitch_deg)[-1]
         return Stance(*body.position, yaw_deg, here.pitch_deg), False
 

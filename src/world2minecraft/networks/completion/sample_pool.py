@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from world2minecraft.core.errors import InputError
-from world2minecraft.networks.completion.augment import augmented
+from world2minecraft.networks.completion.augmentation import augmented
 from world2minecraft.networks.completion.samples import Sample, read_samples
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 

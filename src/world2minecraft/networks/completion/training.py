@@ -16,7 +16,7 @@ from torch.nn import functional
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.files import write_text
-from world2minecraft.networks.completion.augment import CROP
+from world2minecraft.networks.completion.augmentation import CROP
 from world2minecraft.networks.completion.network import CompletionNet, CompletionSize
 from world2minecraft.networks.completion.sample_pool import LOOK_AGAIN, SamplePool
 from world2minecraft.networks.validation import autocast_of

@@ -5,7 +5,7 @@ At 60x60x36 cells of 0.08 m the quarter is what the paper calls 1/16: 15x15x9.
 
 from torch import Tensor, nn
 
-from world2minecraft.networks.layers.context import ContextPrior
+from world2minecraft.networks.layers.context_prior import ContextPrior
 from world2minecraft.networks.layers.normalization import Norm
 from world2minecraft.networks.layers.residual_3d import AxisBlock, ClassHead, Double, axis_blocks
 

@@ -16,7 +16,6 @@ from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.decor import door
 from world2minecraft.procgen.rooms.floor_shapes import Ground
 from world2minecraft.procgen.rooms.furniture_model import Model
-from world2minecraft.procgen.rooms.kinds import KINDS
 from world2minecraft.procgen.rooms.openings import Hole, door_item, hang_curtains, reserve_before
 from world2minecraft.procgen.rooms.placement import (
     Item,
@@ -29,6 +28,7 @@ from world2minecraft.procgen.rooms.placement import (
     snapped,
     ways_are_clear,
 )
+from world2minecraft.procgen.rooms.recipes import KINDS
 
 # The kitchen of a house: one run of counters along whichever wall the doors leave free.
 

@@ -6,10 +6,9 @@ at a door still reaches the room.
 
 import numpy as np
 
+from world2minecraft.procgen.rooms.clutter_models import ODD, ON_BEDS, ON_FLOORS, ON_TABLES, Maker
 from world2minecraft.procgen.rooms.furniture_model import Model
-from world2minecraft.procgen.rooms.odd import ODD
 from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
-from world2minecraft.procgen.rooms.small import ON_BEDS, ON_FLOORS, ON_TABLES, Maker
 
 Doors = list[tuple[float, float]]
 WIDE_BODY_M, NARROW_BODY_M = 0.32, 0.24  # Half a person's width, with and without ease.

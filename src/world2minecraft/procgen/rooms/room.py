@@ -15,7 +15,6 @@ from world2minecraft.procgen.rooms.floor_shapes import (
     shape_of_seed,
     shaped_ground,
 )
-from world2minecraft.procgen.rooms.kinds import BASE_KINDS, KINDS, random_size
 from world2minecraft.procgen.rooms.openings import (
     Hole,
     choose_openings,
@@ -24,6 +23,7 @@ from world2minecraft.procgen.rooms.openings import (
     hang_curtains,
 )
 from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
+from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, random_size
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
 

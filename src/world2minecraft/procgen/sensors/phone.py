@@ -19,7 +19,7 @@ from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import Camera, View
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.exposure import (
+from world2minecraft.procgen.sensors.photo import (
     TexturedScene,
     developed,
     exposed,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.kinds import KINDS
+from world2minecraft.procgen.rooms.recipes import KINDS
 from world2minecraft.procgen.worlds.display_stands import HOME
 from world2minecraft.procgen.worlds.house import BlockHouse
 from world2minecraft.procgen.worlds.recipes import PICTURES

@@ -12,7 +12,7 @@ AXES_WITHIN = 2  # A surface goes on along two axes; past what stands on it, alo
 AROUND = np.ones((3, 3, 3), np.bool_)
 
 
-def without_specks(labels: np.ndarray) -> np.ndarray:
+def relabel_specks(labels: np.ndarray) -> np.ndarray:
     """Return labels, uint8 [X, Y, Z], in which specks have the class of what they lie in.
 
     A speck is a connected part of an object class of ``SPECK_CELLS`` at most. It lies in another

@@ -15,7 +15,7 @@ FLAT_CELLS = 1  # a foot so high.
 GAP_M = 1.4  # Between the foot of a lamp and its shade.
 
 
-def join_posts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def merge_lamp_parts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which posts, cords and feet belong to their lamps.
 
     What lies wholly within the floor and belongs to nothing is no object.
@@ -70,7 +70,7 @@ HALF_OF_26 = [
 ]
 
 
-def join_stacked(owners: np.ndarray, labels: np.ndarray) -> np.ndarray:
+def merge_stacked(owners: np.ndarray, labels: np.ndarray) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with stacked parts of one class under one number.
 
     A thin post is too sparse to hold candidates, so density parts a top from its foot. Two parts
@@ -124,7 +124,7 @@ STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, Semantic
 STANDING_BIT = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
 
-def rejoin(
+def merge_small_pieces(
     labels: np.ndarray, owners: np.ndarray, *, min_cells: int, join_radius: float
 ) -> np.ndarray:
     """Return owners in which no object is smaller than ``min_cells``.

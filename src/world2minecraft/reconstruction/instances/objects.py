@@ -10,7 +10,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.reconstruction.instances.cabinet_runs import part_rows
-from world2minecraft.reconstruction.instances.denoise import without_specks
+from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import (
     assign_voxels,
     candidate_cells,
@@ -18,7 +18,11 @@ from world2minecraft.reconstruction.instances.density_clustering import (
     density_map,
     object_cells,
 )
-from world2minecraft.reconstruction.instances.merge_pieces import join_posts, join_stacked, rejoin
+from world2minecraft.reconstruction.instances.merge_pieces import (
+    merge_lamp_parts,
+    merge_small_pieces,
+    merge_stacked,
+)
 from world2minecraft.reconstruction.instances.object_extent import askew_rectangle, layers_reached
 from world2minecraft.reconstruction.instances.parameters import FindParameters
 from world2minecraft.reconstruction.instances.split_by_colour import part_by_paint
@@ -62,7 +66,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     chosen = parameters or FindParameters()
     given = grid
     if not chosen.paper_compat:
-        grid = replace(grid, labels=without_specks(grid.labels))
+        grid = replace(grid, labels=relabel_specks(grid.labels))
     binary = object_cells(grid.labels)
     density = density_map(binary, chosen.density_kernel)
     candidates = candidate_cells(binary, density, chosen.density_threshold)
@@ -70,16 +74,16 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     cluster = cluster_candidates(candidates, classes, chosen.cluster_radius, chosen.min_samples)
     owners = assign_voxels(grid.labels, binary, candidates, cluster)
     if not chosen.paper_compat:
-        owners = rejoin(
+        owners = merge_small_pieces(
             grid.labels,
-            join_stacked(owners, grid.labels),
+            merge_stacked(owners, grid.labels),
             min_cells=chosen.min_cells,
             join_radius=chosen.join_radius,
         )
         owners = join_backs(part_chairs(owners, grid), grid)
         owners = part_rows(owners, grid)
         owners = part_by_paint(part_by_hosts(owners, grid), grid)
-        owners = join_posts(owners, grid)
+        owners = merge_lamp_parts(owners, grid)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:

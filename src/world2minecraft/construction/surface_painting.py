@@ -1,18 +1,24 @@
-"""From the colours of a surface to the few blocks that show it calmly.
-
-A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
-first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
-block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
-between a red front and a dark counter stays.
-"""
+"""Painting what was shaped: each surface of the shell and each object gets its blocks."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.construction.cell_colours import group_medians
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.cell_colours import default_colour, group_medians, spread
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.core.classes import STRUCTURE_CLASSES, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
+
+# From the colours of a surface to the few blocks that show it calmly.
+#
+# A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
+# first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
+# block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
+# between a red front and a dark counter stays.
 
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0
@@ -188,3 +194,159 @@ def _joined(
         else:
             kept.append(part)
     return result[parts]
+
+
+# The paint of chairs: one for a chair, and the same for chairs of one set.
+#
+# A chair is small and half in the shade of a table, so the median of its cells is that of shadow;
+# its lighter half says what it is made of, and of a frame with cushions the part that has a hue.
+# Chairs whose colours lie near are a set.
+
+SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
+LIGHTER_SHARE = 0.5
+MIN_HUE_CHROMA, MIN_HUE_SHARE = (
+    0.03,
+    0.3,
+)  # Over sensor noise; grey cushions leave so much of a frame.
+
+
+def chair_paints(
+    grid: OccupancyGrid, colours: np.ndarray, usable: np.ndarray, lightness_weight: float
+) -> dict[int, np.ndarray]:
+    """Return the Oklab colour, float32 [3], of each chair by its instance.
+
+    Args:
+        grid: the room.
+        colours: float32 [X, Y, Z, 3], Oklab.
+        usable: bool [X, Y, Z], the cells whose colour was seen from outside.
+        lightness_weight: how much lightness counts against hue and chroma.
+    """
+    chairs = np.equal(grid.labels, SemanticClass.CHAIR) & usable & (grid.instance > 0)
+    weight = np.array([lightness_weight, 1, 1], np.float32)
+    own = {
+        int(number): lit_colour(colours[chairs & (grid.instance == number)])
+        for number in np.unique(grid.instance[chairs])
+    }
+    sets: list[list[int]] = []
+    for number, colour in own.items():
+        near = (s for s in sets if _apart(colour, own[s[0]], weight) <= SAME_SET)
+        found = next(near, None)
+        if found is None:
+            sets.append([number])
+        else:
+            found.append(number)
+    shared = {}
+    for group in sets:
+        paint = np.median([own[number] for number in group], axis=0).astype(np.float32)
+        shared |= dict.fromkeys(group, paint)
+    return shared
+
+
+def lit_colour(colours: np.ndarray) -> np.ndarray:
+    """Return the median, float32 [3], of the lighter half of Oklab colours [N, 3].
+
+    Only those with a clear hue count, where they are a fair part.
+    """
+    clear = np.hypot(colours[:, 1], colours[:, 2]) >= MIN_HUE_CHROMA
+    counted = colours[clear] if clear.mean() >= MIN_HUE_SHARE else colours
+    order = np.argsort(counted[:, 0], kind="stable")
+    lighter = counted[order[int(len(order) * (1 - LIGHTER_SHARE)) :]]
+    return np.median(lighter, axis=0).astype(np.float32)
+
+
+def _apart(one: np.ndarray, other: np.ndarray, weight: np.ndarray) -> float:
+    return float(np.linalg.norm((one - other) * weight))
+
+
+NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
+TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
+
+
+def block_colours(
+    shape: tuple[int, ...], blocks: np.ndarray, colours: np.ndarray, usable: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the median colour of each block, float32 [X, Y, Z, 3], and where there is one, bool.
+
+    Args:
+        shape: the lattice's.
+        blocks: int [N, 3], the block of each colour; those outside are left out.
+        colours: float32 [N, 3], Oklab.
+        usable: bool [N], which of them are colours.
+    """
+    inside = usable & ((blocks >= 0) & (blocks < np.array(shape))).all(1)
+    flat = np.ravel_multi_index(tuple(blocks[inside].T), shape)
+    used, groups = np.unique(flat, return_inverse=True)
+    medians, _ = group_medians(groups, colours[inside], len(used))
+    result = np.zeros((int(np.prod(shape)), 3), np.float32)
+    known = np.zeros(len(result), bool)
+    result[used], known[used] = medians, True
+    return result.reshape((*shape, 3)), known.reshape(shape)
+
+
+def painted(
+    mask: np.ndarray,
+    colours: np.ndarray,
+    known: np.ndarray,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
+    most: int,
+    *,
+    beside: frozenset[str] = frozenset(),
+    used: frozenset[str] = frozenset(),
+    only: tuple[str, ...] = (),
+) -> np.ndarray:
+    """Return the block states, object [N], for the N blocks of a mask, all of one surface.
+
+    Args:
+        mask: bool [X, Y, Z].
+        colours: float32 [X, Y, Z, 3], Oklab.
+        known: bool [X, Y, Z], where ``colours`` holds one.
+        class_id: whose blocks of the palette may be used.
+        palette: what may be used.
+        parameters: how colours are weighed.
+        most: at most so many different blocks.
+        beside: blocks that the surface is to stand out from: none that looks like them is used.
+        used: blocks that the room already has; they win where they are about as near.
+        only: the blocks of the class that may be used; none stands for all.
+    """
+    default = palette.defaults[class_id]
+    if not (known & mask).any():
+        return np.full(int(mask.sum()), default, object)
+    choices = _unlike(only or palette.blocks[class_id], beside)
+    preferred = palette.preferred[class_id] or choices
+    handicaps = np.array([parameters.preference * (block not in preferred) for block in choices])
+    if used:
+        handicaps += [NEW_PAINT * (block not in used) for block in choices]
+    shell, weight = class_id in STRUCTURE_CLASSES, parameters.lightness_weight
+    index = paint(
+        spread(colours, known & mask, mask, default_colour(default)),
+        np.argwhere(mask),
+        choices,
+        most=most,
+        lightness_weight=parameters.structure_lightness_weight if shell else weight,
+        noticed=parameters.structure_noticed if shell else parameters.object_noticed,
+        match_weight=weight,
+        calm_step=parameters.calm,
+        handicaps=handicaps,
+        fading=0.0 if shell else FADED,
+    )
+    return np.array(choices, object)[index]
+
+
+def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]:
+    """Return the choices that one can tell from some blocks; all where none is left."""
+    if not beside:
+        return choices
+    offered = srgb_to_oklab(colours_of(choices))
+    others = srgb_to_oklab(colours_of(sorted(beside)))
+    apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= TOLD_APART
+    return tuple(np.array(choices)[apart].tolist()) or choices
+
+
+def put_painted(
+    canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance: int = 0
+) -> None:
+    """Set the blocks of a mask to the states that ``painted`` gave for it."""
+    names, index = np.unique(states.astype(str), return_inverse=True)
+    canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id, instance)

@@ -22,7 +22,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.values import Move
 
 LOOPBACK = "127.0.0.1"
-MOST_WAITING = 64  # Keys; what nobody reads is dropped.
+MAX_QUEUED_KEYS = 64  # Keys; what nobody reads is dropped.
 IDLE_S = 5.0  # A page that saw no frame for so long gets the last again.
 SCALE = 3  # Of a frame on the page.
 _PAGE = """<!doctype html><meta charset="utf-8"><title>World2Minecraft</title>
@@ -58,7 +58,7 @@ class Window:
     """A page that shows frames; ``link`` opens it, ``keys`` holds what was pressed in it."""
 
     def __init__(self, width_px: int = 224):
-        self.keys: queue.Queue[str] = queue.Queue(MOST_WAITING)
+        self.keys: queue.Queue[str] = queue.Queue(MAX_QUEUED_KEYS)
         self._token, self._width_px = secrets.token_urlsafe(16), width_px * SCALE
         self._frame, self._number, self._changed = b"", 0, threading.Condition()
         self._text = ""
@@ -193,7 +193,7 @@ KEYS = {
 }
 
 
-def pressed_move(window: Window, patience_s: float = PATIENCE_S) -> Move:
+def wait_for_move(window: Window, patience_s: float = PATIENCE_S) -> Move:
     """Wait for a key that means a move, and return the move.
 
     Raises:

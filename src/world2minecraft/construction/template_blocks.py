@@ -10,19 +10,114 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.fitted_objects import of_half_layers
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.fitted_objects import Design, of_half_layers
 from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.materials import WEIGHTS, materials_of
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.surface_painting import painted
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Part
+from world2minecraft.furniture.solids import OWN_CELLS
+from world2minecraft.geometry.colour import srgb_to_oklab
+from world2minecraft.geometry.morphology import dilate
+from world2minecraft.minecraft.block_colours import colours_of
+
+# Where things may stand, and in which order they are set.
+
+LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
+
+
+def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the blocks, bool [X, Y, Z], over the floor of their storey or in its walls."""
+    within = np.zeros(canvas.states.shape, bool)
+    walls = canvas.semantic == SemanticClass.WALL
+    for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        columns = dilate(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
+        within[:, :, ground:top] = columns[:, :, None]
+    return within
+
+
+def in_order(placement: Placement) -> tuple:
+    """Large furniture first, then chairs, then what stands on things; templates before cells."""
+    rank = LAST.get(placement.class_id, 0)
+    own = placement.template == OWN_CELLS
+    return rank, own, placement.object_id, placement.center_m.tolist(), placement.template
+
+
+# Shapes get their blocks: which kinds an object may use, and the states of a design.
+
+PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
+GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
+MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+
+
+class Dresser:
+    """Finds the blocks of shapes in a palette."""
+
+    def __init__(self, palette: Palette, parameters: BuildParameters):
+        self.palette, self.parameters = palette, parameters
+        self.materials = materials_of(palette)
+
+    def kinds(self, colours: np.ndarray, class_id: int) -> frozenset[str]:
+        """Return the kinds of shape that exist in the Oklab colours, [N, 3], of an object."""
+        if self.parameters.shapes == "cubes":
+            return frozenset(("full",))
+        few = colours[:: 1 + len(colours) // MOST_COLOURS]
+        full = self.palette.blocks[class_id]
+        preferred = self.palette.preferred[class_id] or full
+        handicaps = np.array([self.parameters.preference * (one not in preferred) for one in full])
+        weight = self.parameters.lightness_weight
+        return self.materials.kinds_for(few, full, handicaps, class_id, weight)
+
+    def states(
+        self, design: Design, colours: np.ndarray, known: np.ndarray, class_id: int
+    ) -> np.ndarray:
+        """Return the states, object [N], of a design's N blocks: its shapes in its colours.
+
+        Each kind of shape is painted with what exists in it. Where that would miss the colour, it
+        is a full block of the right one.
+        """
+        most = PAINTS.get(class_id, self.parameters.object_colours)
+        choice = (class_id, self.palette, self.parameters, most)
+        full = self.palette.blocks[class_id]
+        kinds = design.shapes.kinds[design.numbers]
+        used = sorted(set(kinds[design.filled].tolist()) - {"full"})
+        shaped = design.filled & (kinds != "full")
+        plain = np.empty(design.numbers.shape, object)
+        own, able = plain.copy(), self.materials.in_all(used, full)
+        if able and shaped.any():
+            own[shaped] = painted(shaped, colours, known & shaped, *choice, only=able)
+        alike = frozenset(own[shaped].tolist()) if able else frozenset()
+        plain[design.filled] = painted(design.filled, colours, known, *choice, used=alike)
+        if not able:
+            own = plain
+        result = plain.copy()
+        for at in zip(*np.nonzero(shaped), strict=True):
+            shape = design.shapes.shapes[int(design.numbers[at]) - 1]
+            first, second = str(own[at]), str(plain[at])
+            near = self._is_near(first, second, colours[at])
+            state = self.materials.dressed(shape, first if near else second)
+            result[at] = state or plain[at]
+        return result[design.filled]
+
+    def _is_near(self, block: str, other: str, colour: np.ndarray) -> bool:
+        """Whether a block shows a colour nearly as well as another does."""
+        offered = srgb_to_oklab(colours_of([block, other]))
+        light = np.sqrt(self.parameters.lightness_weight)
+        apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
+        return bool(apart[0] - apart[1] <= GIVEN_UP)
+
 
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
 TIE = 1e-6
 POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
-class Design(NamedTuple):
+class HalfBlockDesign(NamedTuple):
     """A template on the lattice: which part fills each half block, 1 = the first, 0 = none."""
 
     low: np.ndarray  # int [3], the lattice index of the first block
@@ -31,7 +126,9 @@ class Design(NamedTuple):
     posts: np.ndarray  # bool [X, Y, Z]
 
 
-def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> Design:
+def half_block_design(
+    placement: Placement, parts: Sequence[Part], lattice: Lattice
+) -> HalfBlockDesign:
     """Return the half blocks of a placement's parts, turned and in place."""
     sizes = placement.size_m * lattice.blocks_per_metre
     middle = lattice.coordinates_of(placement.center_m)
@@ -110,12 +207,12 @@ def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
     owner[:, :, level][mask] = above[mask]
 
 
-def _turned(owner, posts, low, quarter_turns) -> Design:
+def _turned(owner, posts, low, quarter_turns) -> HalfBlockDesign:
     owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
     halves = of_half_layers(owner > 0)
     upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
     part = np.where(upper > 0, upper, lower)
-    return Design(low, halves, part, posts[:, :, 0::2] & posts[:, :, 1::2])
+    return HalfBlockDesign(low, halves, part, posts[:, :, 0::2] & posts[:, :, 1::2])
 
 
 def _half(value: float) -> float:

@@ -9,7 +9,7 @@ from torch import Tensor
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.batch import OccInput, OccOutput, OccTarget
-from world2minecraft.networks.layers.context import RELATIONS
+from world2minecraft.networks.layers.context_prior import RELATIONS
 from world2minecraft.networks.layers.depth_bins import bin_of, least_depth
 from world2minecraft.networks.layers.projection import sight_of
 
