@@ -14,7 +14,7 @@ from statistics import median
 import numpy as np
 
 from benchmarks.rows import Row
-from world2minecraft.navigation.environment.action_spaces import Continuous
+from world2minecraft.navigation.environment.action_spaces import ContinuousActions
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.scene import VlnScene, open_scene
@@ -100,7 +100,7 @@ def _bodies(scene: VlnScene) -> Callable[[], int]:
 
 
 def _ticks(scene: VlnScene) -> Callable[[], int]:
-    acting = Continuous(scene)
+    acting = ContinuousActions(scene)
     rng = np.random.default_rng(SEED)
     turns = rng.uniform(-0.3, 0.3, (TICKS, 2)).astype(np.float32)
     keys = np.array([1, 0, 0, 0, 0, 0, 0], np.int8)

@@ -20,7 +20,7 @@ from pathlib import Path
 from world2minecraft.core.files import write_json
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.minecraftocc.building import TITLES, BuildReport, build_dataset
-from world2minecraft.minecraftocc.building.scenes import SceneTask, survey
+from world2minecraft.minecraftocc.building.scene_survey import SceneTask, survey
 from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.minecraftocc.tours import paper_camera

@@ -29,7 +29,7 @@ from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.exporters import export_samples
 from world2minecraft.minecraftocc.plan import house_scenes, plan_dataset
 from world2minecraft.minecraftocc.store import open_store
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.minecraftocc.visualization import cells_behind
 
 HOUSES, IMAGES = 4, 40

@@ -39,7 +39,7 @@ from world2minecraft.minecraftocc.labels.image_labels import (
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.tours import nyu_camera
-from world2minecraft.minecraftocc.values import LabelRegion, OccLabels, SceneVoxels
+from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.rendering.block_models import OwnLooks

@@ -18,9 +18,9 @@ from world2minecraft.capture.stereo.depth_maps import (
     chosen_neighbours,
     confirmed,
 )
-from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto, small_photos
 from world2minecraft.capture.stereo.parameters import StereoParameters
 from world2minecraft.capture.stereo.plane_sweep import depth_range
+from world2minecraft.capture.stereo.stereo_photos import SmallPhoto, small_photos
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent

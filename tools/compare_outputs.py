@@ -35,6 +35,8 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 def main() -> int:
     """Compare as the words say, and return the exit code."""
     words = _words()
+    if words.undeclared:
+        declared.forget()
     chosen = _chosen(words.only, words.fast)
     if words.list:
         for step in STEPS:
@@ -168,6 +170,9 @@ def _words() -> argparse.Namespace:
     parser.add_argument("--list", action="store_true", help="list the steps")
     parser.add_argument("--jobs", type=int, default=min(os.cpu_count() or 1, 2))
     parser.add_argument("--show", type=int, default=6, help="differences of a step to print")
+    parser.add_argument(
+        "--undeclared", action="store_true", help="without what is declared: the base with itself"
+    )
     parser.add_argument(
         "--tree",
         default=str(REPOSITORY),

@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.capture.alignment.align import (
+from world2minecraft.capture.alignment.axis_profiles import profile
+from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
+from world2minecraft.capture.alignment.room_frame import (
     ImplausibleRoomError,
     align,
     align_surface,
     realigned,
 )
-from world2minecraft.capture.alignment.axis_profiles import profile
-from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.core.types import Scan
 from world2minecraft.geometry.oriented_points import collect_oriented_points

@@ -11,7 +11,7 @@ from layouts import WRITERS, write_nerfstudio, write_seven_scenes
 from PIL import Image
 
 from world2minecraft.capture import describe_capture, open_scan, write_plain
-from world2minecraft.capture.alignment.align import Alignment
+from world2minecraft.capture.alignment.room_frame import Alignment
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.open_scan import check_cells
 from world2minecraft.core.errors import CaptureError, InputError, LimitError, UsageError

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from world2minecraft.capture.alignment.align import ImplausibleRoomError
+from world2minecraft.capture.alignment.room_frame import ImplausibleRoomError
 from world2minecraft.capture.scale import (
     Known,
     KnownPoints,

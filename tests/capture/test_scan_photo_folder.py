@@ -9,9 +9,9 @@ from PIL.PngImagePlugin import PngInfo
 
 from world2minecraft.capture.images import check_whole, read_colour, read_header
 from world2minecraft.capture.options import ScanOptions, parse_options
-from world2minecraft.capture.photos import judged_photos
+from world2minecraft.capture.photo_stream import judged_photos
 from world2minecraft.capture.poster_marker import MARK
-from world2minecraft.capture.readers.photo_orientation import UprightPhoto, photo_facts
+from world2minecraft.capture.readers.photo_exif import UprightPhoto, photo_facts
 from world2minecraft.capture.readers.photos import natural_key, thinned
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture

@@ -6,7 +6,7 @@ from PIL import Image
 from world2minecraft.capture import write_plain
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.photos import CapturePhotos, judged_photos, shrunk
+from world2minecraft.capture.photo_stream import CapturePhotos, judged_photos, shrunk
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.types import Camera
 

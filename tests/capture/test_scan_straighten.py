@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.capture.alignment.align import align_surface, find_faces, straightening_turn
 from world2minecraft.capture.alignment.axis_profiles import face_place_m, looks
+from world2minecraft.capture.alignment.room_frame import (
+    align_surface,
+    find_faces,
+    straightening_turn,
+)
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 

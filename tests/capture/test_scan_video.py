@@ -9,7 +9,7 @@ import pytest
 from scipy import ndimage
 
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.photos import judged_photos
+from world2minecraft.capture.photo_stream import judged_photos
 from world2minecraft.capture.readers.video import look_through, picked
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture

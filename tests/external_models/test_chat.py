@@ -22,16 +22,16 @@ from world2minecraft.core.errors import (
     ServerError,
     UsageError,
 )
-from world2minecraft.external_models.chat_client import ChatModel, open_chat, wait_s
+from world2minecraft.external_models.chat_client import ChatModel, open_chat, retry_wait_s
 from world2minecraft.external_models.chat_costs import Ledger, Price
 from world2minecraft.external_models.chat_messages import Picture, Question, Turn
 from world2minecraft.external_models.chat_transport import (
     BusyServerError,
-    ChatWire,
+    ChatTransport,
     Endpoint,
     RefusedQuestionError,
     UselessReplyError,
-    endpoint_of,
+    resolve_endpoint,
 )
 from world2minecraft.external_models.reply_cache import ReplyStore
 
@@ -40,7 +40,7 @@ PICTURE = Picture(b"\xff\xd8 no real picture")
 
 
 def model_at(server, *, store=None, ledger=None, attempts=3, timeout_s=5.0, waits=None):
-    wire = ChatWire(Endpoint(server.url, "scripted"), timeout_s=timeout_s)
+    wire = ChatTransport(Endpoint(server.url, "scripted"), timeout_s=timeout_s)
     sleep = (lambda seconds: None) if waits is None else waits.append
     return ChatModel("scripted", wire, store=store, ledger=ledger, attempts=attempts, sleep=sleep)
 
@@ -334,8 +334,8 @@ def test_money_cannot_be_capped_at_an_unknown_price():
 
 
 def test_endpoints_are_names_or_addresses():
-    assert endpoint_of("gemini").url.endswith("/v1beta/openai/")
-    assert endpoint_of("openai", model="gpt-4.1").model == "gpt-4.1"
+    assert resolve_endpoint("gemini").url.endswith("/v1beta/openai/")
+    assert resolve_endpoint("openai", model="gpt-4.1").model == "gpt-4.1"
     for text, error in [
         ("gemni", "did you mean 'gemini'"),
         ("http://", "is no address"),
@@ -344,9 +344,9 @@ def test_endpoints_are_names_or_addresses():
         ("https://me:secret@host/v1", "use --key-env NAME"),
     ]:
         with pytest.raises(UsageError, match=error):
-            endpoint_of(text)
+            resolve_endpoint(text)
     with pytest.raises(UsageError, match="export GEMINI_API_KEY="):
-        endpoint_of("gemini").key({})
+        resolve_endpoint("gemini").key({})
 
 
 def test_the_only_model_of_a_server_needs_no_name():
@@ -360,7 +360,7 @@ def test_the_only_model_of_a_server_needs_no_name():
 def test_without_the_sdk_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "openai", None)
     with pytest.raises(MissingExtraError, match=r"world2minecraft\[vln\]"):
-        ChatWire(Endpoint("http://localhost/v1"), timeout_s=1)
+        ChatTransport(Endpoint("http://localhost/v1"), timeout_s=1)
 
 
 def test_waits_are_bounded_by_any_state():
@@ -372,4 +372,4 @@ def test_waits_are_bounded_by_any_state():
             def exception():
                 return BusyServerError("busy")
 
-    assert 15 <= wait_s(State()) <= 30
+    assert 15 <= retry_wait_s(State()) <= 30

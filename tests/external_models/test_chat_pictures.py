@@ -11,12 +11,12 @@ from PIL import Image
 from world2minecraft.cli.model_options import MAX_PIXELS
 from world2minecraft.core.errors import UsageError
 from world2minecraft.external_models.chat_messages import (
-    LEAST_PX,
-    MOST_PX,
+    MAX_PX,
+    MIN_PX,
     Picture,
-    at_most,
-    capped,
-    check_most_px,
+    check_max_px,
+    downscale,
+    downscale_picture,
 )
 
 
@@ -27,10 +27,10 @@ def png(width, height):
 
 
 @given(
-    width=st.integers(1, 400), height=st.integers(1, 400), most=st.integers(LEAST_PX, 40_000)
+    width=st.integers(1, 400), height=st.integers(1, 400), most=st.integers(MIN_PX, 40_000)
 )  # fmt: skip
 def test_no_picture_is_over_the_cap_nor_made_larger(width, height, most):
-    small = at_most(np.zeros((height, width, 3), np.uint8), most)
+    small = downscale(np.zeros((height, width, 3), np.uint8), most)
     assert small.shape[0] * small.shape[1] <= most
     if width * height <= most:
         assert small.shape[:2] == (height, width)
@@ -41,22 +41,22 @@ def test_no_picture_is_over_the_cap_nor_made_larger(width, height, most):
 
 def test_a_small_file_stays_as_it_is_and_a_large_one_becomes_a_jpeg():
     own = png(30, 20)
-    assert capped(own, 784) is own
-    small = capped(png(300, 200), 15_000)
+    assert downscale_picture(own, 784) is own
+    small = downscale_picture(png(300, 200), 15_000)
     image = Image.open(io.BytesIO(small.data))
     assert small.kind == "image/jpeg" and image.format == "JPEG" and image.size == (150, 100)
-    assert capped(png(300, 200), 15_000) == small
+    assert downscale_picture(png(300, 200), 15_000) == small
 
 
 def test_what_is_no_picture_is_told():
     with pytest.raises(ValueError, match="is no picture that can be opened"):
-        capped(Picture(b"\x89PNG no more"), 1000)
+        downscale_picture(Picture(b"\x89PNG no more"), 1000)
 
 
 def test_a_cap_is_one_token_at_least():
     with pytest.raises(UsageError, match="a picture for a model has 784 pixels or more, not 10"):
-        check_most_px(10)
+        check_max_px(10)
 
 
 def test_the_command_has_the_same_cap():
-    assert MAX_PIXELS == MOST_PX
+    assert MAX_PIXELS == MAX_PX

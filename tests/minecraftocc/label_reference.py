@@ -13,7 +13,7 @@ from scipy.optimize import linprog
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.entities import display_cubes
-from world2minecraft.minecraftocc.values import LabelRegion, SceneVoxels
+from world2minecraft.minecraftocc.types import LabelRegion, SceneVoxels
 from world2minecraft.rendering.block_elements import Element, LookSource
 
 SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-6, 0.006, 0.001

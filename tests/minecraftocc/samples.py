@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, OccLabels, OccSample
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 
 FINE = (
     FineClass("minecraft:air"),

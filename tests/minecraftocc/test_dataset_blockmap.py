@@ -16,11 +16,11 @@ from world2minecraft.minecraftocc.block_map import (
     block_map_json,
     block_map_of,
     class_of_fine,
+    classify,
     load_block_map,
     read_block_map,
     remapped,
 )
-from world2minecraft.minecraftocc.block_map import classification as classify
 from world2minecraft.minecraftocc.block_map.context import (
     CONDITIONS,
     MEASURES,
@@ -29,7 +29,7 @@ from world2minecraft.minecraftocc.block_map.context import (
 )
 from world2minecraft.minecraftocc.block_map.room_detection import NONE, next_above
 from world2minecraft.minecraftocc.block_map.rules import Rule
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 
 NYU, PAPER = load_block_map("nyu"), load_block_map("paper")
 # Table "Semantic Class Mapping" of the paper's appendix; "..." stands for any end of a name.

@@ -23,7 +23,7 @@ from world2minecraft.core.locks import Lock
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.building import build as build_module
 from world2minecraft.minecraftocc.building import build_dataset
-from world2minecraft.minecraftocc.building import scenes as scenes_module
+from world2minecraft.minecraftocc.building import scene_survey as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
 from world2minecraft.minecraftocc.building.shard_rendering import units_of
 from world2minecraft.minecraftocc.engine import opened_engine

@@ -20,7 +20,7 @@ from world2minecraft.minecraftocc.labels.image_labels import (
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.minecraftocc.visualization import label_image_of
 from world2minecraft.rendering import prepare_scene, render_volume
 

@@ -11,7 +11,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraftocc.labels.image_labels import gathered, is_on_cells
 from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, region_of
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
-from world2minecraft.minecraftocc.values import FineClass, SceneVoxels
+from world2minecraft.minecraftocc.types import FineClass, SceneVoxels
 
 PLAIN = RegionRule(axis_offset_cells=0, diagonal_offset_cells=0)
 EYE = np.array([1.23, -0.71, 1.6])

@@ -14,7 +14,7 @@ from world2minecraft.minecraftocc.statistics import (
     picture_counts,
 )
 from world2minecraft.minecraftocc.statistics.counting import WorldCells
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion
 
 
 def slow_statistics(samples):

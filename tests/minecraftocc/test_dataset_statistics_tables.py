@@ -20,15 +20,15 @@ from world2minecraft.minecraftocc.statistics import (
     statistics_latex,
     statistics_text,
 )
-from world2minecraft.minecraftocc.statistics.other_data_sets import PUBLISHED_SETS
-from world2minecraft.minecraftocc.statistics.plots import write_plots
-from world2minecraft.minecraftocc.statistics.reading import (
+from world2minecraft.minecraftocc.statistics.dataset_statistics import (
     rooms_of,
     statistics_of,
     store_statistics,
 )
+from world2minecraft.minecraftocc.statistics.plots import write_plots
+from world2minecraft.minecraftocc.statistics.published_figures import PUBLISHED_SETS
 from world2minecraft.minecraftocc.statistics.tables import class_shares, columns, escape, short
-from world2minecraft.minecraftocc.statistics.values import FineCount, SceneCount
+from world2minecraft.minecraftocc.statistics.types import FineCount, SceneCount
 from world2minecraft.minecraftocc.store import write_store
 
 SMALL = DatasetStatistics(
@@ -190,7 +190,7 @@ def test_a_store_has_the_numbers_of_its_samples(store):
 
 
 def test_processes_count_what_one_counts(store, monkeypatch):
-    from world2minecraft.minecraftocc.statistics import reading
+    from world2minecraft.minecraftocc.statistics import dataset_statistics as reading
 
     monkeypatch.setattr(reading, "PART", 5)
     assert store_statistics(store[0], jobs=2) == store_statistics(store[0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, SceneVoxels
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, SceneVoxels
 
 ONE = (FineClass("minecraft:air"),)
 

@@ -10,7 +10,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.labels import voxelization as module
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.rendering.block_models import OwnLooks
 
 MARGIN = 2e-4

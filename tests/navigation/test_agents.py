@@ -10,8 +10,8 @@ from tests.external_models.test_chat import model_at
 from world2minecraft.core.errors import BudgetError, ServerError, UsageError
 from world2minecraft.external_models.chat_costs import Ledger
 from world2minecraft.external_models.structured_replies import UnreadableError
-from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent, agent_of
-from world2minecraft.navigation.agents.action_format import SCHEMA, read_step
+from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent, make_agent
+from world2minecraft.navigation.agents.action_format import SCHEMA, parse_step
 from world2minecraft.navigation.agents.vlm_agent import facing, relative_m, trail_text
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.values import Move, Stance
@@ -41,7 +41,7 @@ READ = [
 
 @pytest.mark.parametrize(("text", "moves"), READ)
 def test_what_a_reply_says_is_read(text, moves):
-    assert read_step(text).moves == moves
+    assert parse_step(text).moves == moves
 
 
 UNREADABLE = [
@@ -66,12 +66,12 @@ UNREADABLE = [
 @pytest.mark.parametrize("text", UNREADABLE)
 def test_what_a_reply_does_not_say_is_not_guessed(text):
     with pytest.raises(UnreadableError):
-        read_step(text)
+        parse_step(text)
 
 
 def test_a_reply_of_more_moves_than_were_asked_is_no_step():
     with pytest.raises(UnreadableError, match="it has 2 actions; 1 to 1 are taken"):
-        read_step(step("FORWARD", "LEFT"), most=1)
+        parse_step(step("FORWARD", "LEFT"), most=1)
 
 
 def test_the_schema_is_one_that_strict_servers_take():
@@ -225,9 +225,9 @@ def test_agents_are_known_by_name():
     def no_chat():
         raise AssertionError("no model was named")
 
-    assert agent_of("stop", no_chat).name == "stop"
+    assert make_agent("stop", no_chat).name == "stop"
     with pytest.raises(UsageError, match="no agent is named 'oracl'; did you mean 'oracle'"):
-        agent_of("oracl", no_chat)
+        make_agent("oracl", no_chat)
     for wrong in ({"chunk": 5}, {"history": 9}, {"map_kind": "globe"}):
         with scripted([""]) as server, pytest.raises(UsageError):
             ModelAgent(model_at(server), **wrong)

@@ -12,7 +12,7 @@ from vln_sets import next_action, next_view, write_pictures
 from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.external_models.structured_replies import UnreadableError
-from world2minecraft.navigation.agents.question_answering import Answer, ModelAnswerer, read_answer
+from world2minecraft.navigation.agents.question_answering import Answer, VlmAnswerer, read_answer
 from world2minecraft.navigation.prompts import question_of
 from world2minecraft.navigation.running.item_evaluation import accuracy, evaluate, write_result
 from world2minecraft.navigation.running.tables import (
@@ -89,7 +89,7 @@ def some_items():
 def test_an_item_is_asked_by_the_words_of_the_exports(folder):
     item = next_view("kitchen", 3)
     with scripted([item.answer]) as server:
-        answer = ModelAnswerer(model_at(server), folder).answer(item)
+        answer = VlmAnswerer(model_at(server), folder).answer(item)
         (sent,) = server.requests
     parts = sent["messages"][0]["content"]
     text = "".join("<image>" if "image_url" in part else part["text"] for part in parts)
@@ -102,14 +102,14 @@ def test_an_item_is_asked_by_the_words_of_the_exports(folder):
 def test_other_styles_end_otherwise(folder):
     item = next_action("kitchen", 0)
     with scripted(["<think>hm</think><answer>A</answer>"]) as server:
-        assert ModelAnswerer(model_at(server), folder, "think").answer(item).letter == "A"
+        assert VlmAnswerer(model_at(server), folder, "think").answer(item).letter == "A"
         assert "<think> </think>" in server.requests[0]["messages"][0]["content"][-1]["text"]
     with scripted(['{"answer": "A"}']) as server:
-        assert ModelAnswerer(model_at(server), folder, "json").answer(item).letter == "A"
+        assert VlmAnswerer(model_at(server), folder, "json").answer(item).letter == "A"
         told = server.requests[0]["response_format"]["json_schema"]["schema"]
         assert told["properties"]["answer"]["enum"] == ["A", "B", "C", "D"]
     with scripted([""]) as server, pytest.raises(UsageError, match="no style of question"):
-        ModelAnswerer(model_at(server), folder, "rhyme")
+        VlmAnswerer(model_at(server), folder, "rhyme")
 
 
 def test_the_think_style_is_that_of_the_hand_off():
@@ -123,7 +123,7 @@ def test_a_changed_picture_is_refused(folder):
     item = next_action("kitchen", 0)
     (folder / item.current).write_bytes(b"\xff\xd8\xff another")
     with scripted(["A"]) as server:
-        answerer = ModelAnswerer(model_at(server), folder)
+        answerer = VlmAnswerer(model_at(server), folder)
         with pytest.raises(InputError, match="is not the image that item kitchen-t0-na-0"):
             answerer.answer(item)
         (folder / item.current).write_bytes(b"GIF89a")
@@ -203,7 +203,7 @@ def test_a_misbehaving_server_is_scored_as_it_answers(folder):
         return bad.get(item.step, item.answer)
 
     with scripted(script) as server:
-        found = evaluate(items, ModelAnswerer(model_at(server), folder))
+        found = evaluate(items, VlmAnswerer(model_at(server), folder))
     assert [one.answer.outcome for one in found] == [
         "answered", "answered", "invalid", "answered", "answered", "failed", "answered", "invalid",
     ]  # fmt: skip

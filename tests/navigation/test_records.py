@@ -12,13 +12,13 @@ from tests.navigation.vln_sets import a_trajectory, next_action, next_view
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.navigation import records
 from world2minecraft.navigation.records import (
-    as_line,
+    to_json_line,
     check_image_name,
     read_episodes,
     read_items,
     read_trajectories,
-    record_of,
-    scene_place,
+    parse_record,
+    resolve_scene_path,
     write_episodes,
     write_items,
     write_trajectories,
@@ -73,13 +73,13 @@ def test_any_words_places_and_extras_come_back(text, place, extra):
         *ITEMS[0].options[1:],
     )
     item = replace(ITEMS[0], instruction=Instruction(text), options=options, extra=extra)
-    line = as_line(item)
+    line = to_json_line(item)
     assert "\n" not in line
-    assert record_of(Item, line) == item
+    assert parse_record(Item, line) == item
 
 
 def changed(**fields):
-    data = json.loads(as_line(ITEMS[0]))
+    data = json.loads(to_json_line(ITEMS[0]))
     data.update(fields)
     return json.dumps(data)
 
@@ -108,12 +108,12 @@ def changed(**fields):
         (changed(instruction={"text": " "}), "line 2: an instruction has words; this one is empty"),
         (changed(instruction={"text": "x" * 5000}), "the instruction has 5,000 characters"),
         (changed(history=["images/kitchen/t0/000.jpg"] * 70), "shows 75 images; at most 64"),
-        (as_line(ITEMS[1]), "line 2: kitchen-t0-nv-3 was there before"),
+        (to_json_line(ITEMS[1]), "line 2: kitchen-t0-nv-3 was there before"),
     ],
 )
 def test_what_is_no_item_is_refused_with_its_line(tmp_path, line, reason):
     path = tmp_path / "items.jsonl"
-    path.write_text(f"{as_line(ITEMS[1])}\n{line}\n")
+    path.write_text(f"{to_json_line(ITEMS[1])}\n{line}\n")
     with pytest.raises(DamagedFileError) as caught:
         read_items(path)
     assert reason in str(caught.value)
@@ -129,7 +129,7 @@ def test_numbers_beyond_all_bounds_are_refused(tmp_path):
 
 def test_deep_json_is_refused():
     with pytest.raises(UsageError):
-        record_of(Item, changed(extra={}).replace('"extra": {}', '"extra": ' + "[" * 100_000))
+        parse_record(Item, changed(extra={}).replace('"extra": {}', '"extra": ' + "[" * 100_000))
 
 
 def test_sizes_come_before_memory(tmp_path, monkeypatch):
@@ -176,4 +176,4 @@ def test_a_set_that_was_moved_finds_its_scenes(tmp_path, monkeypatch):
         "old/set/scenes/house_01": "set/scenes/house_01",
         "old/gone": "old/gone",  # So that an error names what the episode says.
     }
-    assert {name: scene_place(name, Path("set")).as_posix() for name in found} == found
+    assert {name: resolve_scene_path(name, Path("set")).as_posix() for name in found} == found

@@ -12,8 +12,7 @@ from small_flat import SPAWN, flat_volume
 
 from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.minecraft.block_states import parse_state
-from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import step
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
 from world2minecraft.navigation.environment.observations import Eyes
 from world2minecraft.navigation.server import body as body_module
 from world2minecraft.navigation.server import installing
@@ -304,7 +303,7 @@ def test_it_is_an_environment_of_gymnasium():
 
 
 def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
-    from world2minecraft.navigation.agents import agent_of
+    from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.episode_runner import walk_episode
     from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
     from world2minecraft.navigation.server.scene import ServerGround
@@ -314,7 +313,7 @@ def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
         episode = episode_of(scene, Wish("Go to the piano"))
         assert episode.scene == str(flat_path)
         for name in ("oracle", "shortest"):
-            agent = agent_of(name, None)
+            agent = make_agent(name, None)
             walk = walk_episode(ServerGround(scene), episode, agent)
             assert walk.end == "stopped" and walk.score.ne_m < 1.0, name
             assert walk.stances[-1].feet == body.body.position  # For real, not in thought alone.

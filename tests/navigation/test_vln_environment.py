@@ -14,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.navigation.environment import ENV_ID
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.environment.observations import SENSES, Eyes
+from world2minecraft.navigation.environment.observations import SENSORS, Eyes
 from world2minecraft.navigation.episodes import random_episodes
 from world2minecraft.navigation.records import read_episodes, write_episodes
 from world2minecraft.navigation.values import Move, Stance
@@ -30,7 +30,7 @@ def env_of(flat, **options):
 @pytest.mark.parametrize(
     "options",
     [
-        {"observations": SENSES, "render_mode": "rgb_array"},
+        {"observations": SENSORS, "render_mode": "rgb_array"},
         {"move_set": "macro", "observations": ["depth"]},
         {"actions": "continuous", "observations": ["pose"]},
     ],

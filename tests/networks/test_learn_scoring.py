@@ -16,7 +16,7 @@ from world2minecraft.minecraftocc.formats.sscnet import bin_bytes
 from world2minecraft.networks import training
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.frames import known_cells
-from world2minecraft.networks.predictions import SavedPredictions
+from world2minecraft.networks.saved_predictions import SavedPredictions
 from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
 from world2minecraft.networks.scoring import SCENES, SaidOfFrame, keys_to_score, protocol_scores
 

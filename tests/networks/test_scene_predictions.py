@@ -9,7 +9,7 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
 from world2minecraft.minecraftocc.importers.embodied import open_scenes
-from world2minecraft.networks.predictions import SavedPredictions
+from world2minecraft.networks.saved_predictions import SavedPredictions
 from world2minecraft.networks.scoring import SCENES, saved_scene_scores, scenes_to_score
 
 SHAPE = (6, 13, 4)  # A side of 13, as many as their channels are.

@@ -8,7 +8,7 @@ from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, NYU
 
 from world2minecraft.cli.verbs import VERBS, load
 from world2minecraft.evaluation.metrics.effort import PAPER_REFINED, PAPER_SCRATCH
-from world2minecraft.minecraftocc.statistics.other_data_sets import (
+from world2minecraft.minecraftocc.statistics.published_figures import (
     PUBLISHED_QUALITY,
     PUBLISHED_SETS,
 )

@@ -14,10 +14,9 @@ from world2minecraft.procgen.worlds.clear_paths import Ways
 from world2minecraft.procgen.worlds.display_stands import HOME, MOUNTS, Deck, table, wares
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
 from world2minecraft.procgen.worlds.house import person_blocks, plan_block_house
-from world2minecraft.procgen.worlds.recipes import OWN, PILLARS, RIMS
+from world2minecraft.procgen.worlds.recipes import BOARDS, OWN, PILLARS, RIMS
 from world2minecraft.procgen.worlds.shell import rails
 from world2minecraft.procgen.worlds.styles import draw_look, styles
-from world2minecraft.procgen.worlds.task import BOARDS
 
 PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]
 

@@ -20,7 +20,7 @@ from tests.trainers.test_trainers import HERE, python_of, run
 from world2minecraft.external_models.chat_client import open_chat
 from world2minecraft.external_models.reply_cache import ReplyStore
 from world2minecraft.navigation.agents import ModelAgent
-from world2minecraft.navigation.agents.question_answering import ModelAnswerer
+from world2minecraft.navigation.agents.question_answering import VlmAnswerer
 from world2minecraft.navigation.records import read_items
 from world2minecraft.navigation.running.episode_ground import SceneGround
 from world2minecraft.navigation.running.episode_runner import walk_episode
@@ -95,7 +95,7 @@ def test_a_walk_by_a_live_model(server, tmp_path):
     for one in decisions:
         assert one["outcome"] in ("moves", "invalid") and len(one["told"]["tries"]) <= 5
         assert bool(one["made"]) == (one["outcome"] == "moves")
-    told = chat.ledger.told()
+    told = chat.ledger.to_json()
     assert told["calls"] == len((tmp_path / "replies.jsonl").read_text().splitlines())
     assert told["prompt_tokens"] > 100 * told["calls"]  # The server counts words and pictures.
     print(
@@ -109,7 +109,7 @@ def test_answers_by_a_live_model(server, tmp_path):
     folder = small_set(tmp_path / "set", width=224, height=224)
     chat = chat_at(server, tmp_path)
     items = [item for item in read_items(folder) if item.task == "next_view"][:2]
-    found = evaluate(items, ModelAnswerer(chat, folder, most_px=16 * 784))
+    found = evaluate(items, VlmAnswerer(chat, folder, most_px=16 * 784))
     assert all(one.answer.outcome in ("answered", "invalid") for one in found)
-    assert chat.ledger.told()["calls"] <= 3 * len(items) + 3
-    print([one.answer.outcome for one in found], chat.ledger.told())
+    assert chat.ledger.to_json()["calls"] <= 3 * len(items) + 3
+    print([one.answer.outcome for one in found], chat.ledger.to_json())

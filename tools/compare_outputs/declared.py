@@ -1,7 +1,7 @@
 """What may differ between the base and the tree: names that were changed, and what varies.
 
 Whoever renames a verb, an option, a file, a key or a sentence declares it here, old to new, in the
-same commit. Nothing else may differ. The maps are empty where both sides speak alike.
+same commit. Nothing else may differ.
 """
 
 import re
@@ -14,8 +14,14 @@ TREE_ENTRY = ENTRY
 VERBS: dict[str, str] = {}
 # Options and other words of one verb, by its old name: ("render", "--poses"): "--tour-file".
 WORDS: dict[tuple[str, str], str] = {}
-# Modules that the table's Python scripts import, whole dotted names.
-MODULES: dict[str, str] = {}
+# Modules that the table's Python scripts import, and other words of theirs.
+MODULES: dict[str, str] = {
+    "world2minecraft.coordinates": "world2minecraft.core.coordinates",
+    "world2minecraft.exchange.source": "world2minecraft.formats.build_source",
+    "world2minecraft.render": "world2minecraft.rendering",
+    "world2minecraft.types": "world2minecraft.core.types",
+    "world2minecraft.vln.environment": "world2minecraft.navigation.environment",
+}
 
 # Files and folders that the program names: a part of a path, from slash to slash.
 FILES: dict[str, str] = {}
@@ -26,6 +32,13 @@ TEXTS: dict[str, str] = {}
 
 # Pictures that are drawn in another way now, and looked at by a person: only that they are there.
 REDRAWN: tuple[str, ...] = ()
+
+
+def forget() -> None:
+    """Declare nothing: both sides speak alike."""
+    for names in (VERBS, WORDS, MODULES, FILES, KEYS, TEXTS):
+        names.clear()
+
 
 # ---- What differs by nature, on one side as on both. Found by running the base twice.
 

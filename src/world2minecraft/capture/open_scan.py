@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
+from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.calibration import estimate_colour_camera
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over

@@ -144,7 +144,7 @@ def folder_of(agent: str) -> Path:
 
 def cost_line(chat: "ChatModel") -> str:
     """Return what a run asked and what that cost, in a line."""
-    told = chat.ledger.told()
+    told = chat.ledger.to_json()
     usd = "an unknown sum" if told["usd"] is None else f"${told['usd']:.4f}"
     tokens = told["prompt_tokens"] + told["completion_tokens"]
     return (

@@ -198,7 +198,7 @@ def built_from_plan(
 
     UsageError for options that need frames, of which a plan has none.
     """
-    from world2minecraft.capture.readers.floorplan_only import plan_in
+    from world2minecraft.capture.readers.roomplan_only import plan_in
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name

@@ -49,7 +49,7 @@ def run(
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
     from world2minecraft.capture import describe_capture
-    from world2minecraft.capture.readers.floorplan_only import plan_in
+    from world2minecraft.capture.readers.roomplan_only import plan_in
     from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan

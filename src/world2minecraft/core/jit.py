@@ -39,7 +39,7 @@ def kernel_sources_digest() -> str:
 
 
 def kernel_cache_dir() -> Path:
-    """Make and return the folder of compiled kernels; a temporary one where the user's cannot be written.
+    """Make and return the folder of compiled kernels, a temporary one where it is not writable.
 
     What lies in it is run as code, so it is never a folder that others could have filled.
     """

@@ -1,1 +1,1 @@
-"""Models of others, asked for by name: networks from a hub, and language models on servers."""
+"""Clients of external models: networks from a model hub, and language models on servers."""

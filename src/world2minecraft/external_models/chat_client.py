@@ -1,4 +1,4 @@
-"""The one client for language models: any server that speaks the protocol of OpenAI's chat.
+"""Client for language models on any server that speaks OpenAI's chat protocol.
 
 ``ChatModel.ask`` takes turns of text and pictures and returns a reply: from the record where the
 same was asked before, else from the server, with bounded repeats, and never over the budget.
@@ -16,35 +16,39 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from world2minecraft.core.errors import ServerError, UsageError
-from world2minecraft.external_models.chat_costs import Ledger, price_of, read_prices
+from world2minecraft.external_models.chat_costs import Ledger, find_price, read_prices
 from world2minecraft.external_models.chat_messages import Question, Reply, Turn
-from world2minecraft.external_models.chat_transport import BusyServerError, ChatWire, endpoint_of
+from world2minecraft.external_models.chat_transport import (
+    BusyServerError,
+    ChatTransport,
+    resolve_endpoint,
+)
 from world2minecraft.external_models.reply_cache import ReplyStore
 
 ATTEMPTS = 5  # As often is a busy server asked; with the waits below that is about a minute.
-FIRST_WAIT_S, LONGEST_WAIT_S = 1.0, 30.0
+FIRST_WAIT_S, MAX_WAIT_S = 1.0, 30.0
 TIMEOUT_S = 60.0  # Of one attempt, from the question to the last byte.
 
 
-class Wire(Protocol):
-    """What asks a server once."""
+class Transport(Protocol):
+    """Sends a question to a server once."""
 
     def ask(self, question: Question) -> Reply:
-        """Return the reply; raises as ``chat_wire`` says."""
+        """Return the reply; raises the errors of ``chat_transport``."""
         ...
 
 
 class ChatModel:
     """A model on a server, with its record of replies and its budget. Threads may share it.
 
-    ``rung`` is how strictly it can be asked for a form; ``chat_forms`` lowers it for good where
-    the server refuses.
+    ``rung`` is how strictly a reply format can be enforced; ``structured_replies`` lowers it for
+    good where the server refuses.
     """
 
     def __init__(
         self,
         name: str,
-        wire: Wire | None,
+        transport: Transport | None,
         *,
         store: ReplyStore | None = None,
         ledger: Ledger | None = None,
@@ -53,10 +57,10 @@ class ChatModel:
         attempts: int = ATTEMPTS,
         sleep: Callable[[float], None] = time.sleep,
     ):
-        """Take a wire, None where all replies come from the store."""
+        """Take a transport, None where all replies come from the store."""
         if attempts < 1:
             raise UsageError(f"a question is asked at least once, not {attempts} times")
-        self.name, self._wire, self._store = name, wire, store
+        self.name, self._transport, self._store = name, transport, store
         self.ledger = Ledger() if ledger is None else ledger
         self.temperature, self.max_tokens = temperature, max_tokens
         self.attempts, self._sleep = attempts, sleep
@@ -76,10 +80,10 @@ class ChatModel:
         if found is not None:
             self.ledger.book_replay()
             return question.key, found
-        if self._wire is None:
+        if self._transport is None:
             raise UsageError("a model without a server answers from a record alone; give one")
         try:
-            reply = self._paid(self._wire, question)
+            reply = self._ask_paid(self._transport, question)
         except ServerError as error:
             if self._store is not None:
                 self._store.put_failure(question, error)
@@ -88,22 +92,22 @@ class ChatModel:
             self._store.put(question, reply)
         return question.key, reply
 
-    def _paid(self, wire: Wire, question: Question) -> Reply:
+    def _ask_paid(self, transport: Transport, question: Question) -> Reply:
         held = self.ledger.hold(question)
         try:
-            reply = self._patiently(wire, question, held)
+            reply = self._ask_with_retries(transport, question, held)
         except BaseException:
             self.ledger.settle(held, None)
             raise
         self.ledger.settle(held, reply)
         return reply
 
-    def _patiently(self, wire: Wire, question: Question, held_usd: float) -> Reply:
+    def _ask_with_retries(self, transport: Transport, question: Question, held_usd: float) -> Reply:
         import tenacity  # noqa: PLC0415  # An extra.
 
         def once() -> Reply:
             try:
-                return wire.ask(question)
+                return transport.ask(question)
             except ServerError as error:
                 if getattr(error, "may_cost", False):
                     self.ledger.lose(held_usd)
@@ -111,7 +115,7 @@ class ChatModel:
 
         repeats = tenacity.Retrying(
             stop=tenacity.stop_after_attempt(self.attempts),
-            wait=wait_s,
+            wait=retry_wait_s,
             retry=tenacity.retry_if_exception_type(BusyServerError),
             before_sleep=lambda _: self.ledger.hold_again(held_usd),
             sleep=self._sleep,
@@ -121,17 +125,17 @@ class ChatModel:
         return replace(reply, attempts=repeats.statistics.get("attempt_number", 1))
 
 
-def wait_s(state: Any) -> float:
-    """Return how long to wait before the next attempt, by what tenacity knows of the last.
+def retry_wait_s(state: Any) -> float:
+    """Return how long to wait before the next attempt, by the outcome of the last.
 
-    As long as the server asks for, else twice as long each time, with some chance, so that
-    threads do not come back together.
+    As long as the server asks for, else twice as long each time, with random jitter, so that
+    threads do not retry together.
     """
     error = state.outcome.exception()
     asked = getattr(error, "retry_after_s", None)
     if asked is not None:
-        return min(asked, LONGEST_WAIT_S)
-    longest = min(LONGEST_WAIT_S, FIRST_WAIT_S * 2 ** (state.attempt_number - 1))
+        return min(asked, MAX_WAIT_S)
+    longest = min(MAX_WAIT_S, FIRST_WAIT_S * 2 ** (state.attempt_number - 1))
     return longest * random.uniform(0.5, 1.0)
 
 
@@ -152,7 +156,7 @@ def open_chat(
     """Return a model by the name or the address of its server.
 
     Args:
-        text: as ``endpoint_of`` takes it.
+        text: as ``resolve_endpoint`` takes it.
         model: its name; without it the usual one, or the only one that the server has.
         key_name: the variable of the environment that holds the key.
         store: replies that were recorded. One that only replays needs no server and no key.
@@ -166,23 +170,23 @@ def open_chat(
 
     Raises:
         UsageError: a name, an address, a key or a cap is wrong. ServerError: no model was named
-        and the server does not tell of one.
+        and the server does not list exactly one.
     """
-    endpoint = endpoint_of(text, model=model, key_name=key_name)
+    endpoint = resolve_endpoint(text, model=model, key_name=key_name)
     replays = store is not None and store.mode == "replay"
-    wire = None if replays else ChatWire(endpoint, timeout_s=timeout_s)
-    name = endpoint.model or (only_model(wire.models(), endpoint.url) if wire else "")
+    transport = None if replays else ChatTransport(endpoint, timeout_s=timeout_s)
+    name = endpoint.model or (single_model(transport.models(), endpoint.url) if transport else "")
     if not name:
         raise UsageError("a replay needs the name of the model that was asked: --model NAME")
     table = read_prices(prices) if prices else read_prices()
-    ledger = Ledger(price_of(name, table), max_usd=max_usd, max_calls=max_calls)
+    ledger = Ledger(find_price(name, table), max_usd=max_usd, max_calls=max_calls)
     return ChatModel(
-        name, wire, store=store, ledger=ledger, temperature=temperature, max_tokens=max_tokens,
+        name, transport, store=store, ledger=ledger, temperature=temperature, max_tokens=max_tokens,
         attempts=attempts,
     )  # fmt: skip
 
 
-def only_model(names: tuple[str, ...], url: str) -> str:
+def single_model(names: tuple[str, ...], url: str) -> str:
     """Return the one name of several. Raises ServerError where there is none or more."""
     if len(names) == 1:
         return names[0]

@@ -1,6 +1,6 @@
-"""What calls of a model cost, and where they stop: prices by model, and a ledger with caps.
+"""Costs of model calls: prices by model, and a ledger with caps on calls and money.
 
-Servers tell tokens, not money; so money is counted here, before a call by the most that it may
+Servers report tokens, not money; so money is counted here, before a call by the most that it may
 cost and after it by what it took. An attempt that came too late, broke off or gave no reply may
 have been paid all the same, and counts by its most. A ledger is shared by threads.
 """
@@ -17,8 +17,8 @@ from world2minecraft.external_models.chat_messages import Question, Reply
 
 PRICES_FILE = Path(__file__).with_name("chat_prices.yaml")
 MAX_PRICES_BYTES = 1 << 20
-CHARACTERS_A_TOKEN = 3  # English has about 4; fewer is the careful side.
-TOKENS_A_PICTURE = 1600  # A picture of 1280x720 takes 1,196 in Qwen2.5-VL, others up to 1,600.
+CHARACTERS_PER_TOKEN = 3  # English has about 4; fewer is the careful side.
+TOKENS_PER_PICTURE = 1600  # A picture of 1280x720 takes 1,196 in Qwen2.5-VL, others up to 1,600.
 
 
 @dataclass(frozen=True)
@@ -58,21 +58,21 @@ def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
     return prices
 
 
-def price_of(model: str, prices: Mapping[str, Price]) -> Price | None:
+def find_price(model: str, prices: Mapping[str, Price]) -> Price | None:
     """Return the price of a model: by its name, or by the longest name that it begins with.
 
     Example:
         >>> table = {"gpt-4o": Price(2.5, 10), "gpt-4o-mini": Price(0.15, 0.6)}
-        >>> price_of("gpt-4o-mini-2024-07-18", table).prompt_usd, price_of("gpt-5", table)
+        >>> price_of("gpt-4o-mini-2024-07-18", table).prompt_usd, find_price("gpt-5", table)
         (0.15, None)
     """
     fitting = [name for name in prices if model == name or model.startswith(f"{name}-")]
     return prices[max(fitting, key=len)] if fitting else None
 
 
-def estimated_tokens(question: Question) -> int:
+def estimate_tokens(question: Question) -> int:
     """Return how many tokens a question has at most, by its letters and pictures."""
-    return question.characters // CHARACTERS_A_TOKEN + question.pictures * TOKENS_A_PICTURE + 1
+    return question.characters // CHARACTERS_PER_TOKEN + question.pictures * TOKENS_PER_PICTURE + 1
 
 
 class Ledger:
@@ -118,7 +118,7 @@ class Ledger:
         """
         most = 0.0
         if self.price is not None:
-            most = self.price.of(estimated_tokens(question), question.max_tokens)
+            most = self.price.of(estimate_tokens(question), question.max_tokens)
         with self._lock:
             if self.max_calls is not None and self.calls >= self.max_calls:
                 raise BudgetError(
@@ -161,7 +161,7 @@ class Ledger:
         with self._lock:
             self.replayed += 1
 
-    def told(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """Return the sums, for reports."""
         return {
             "calls": self.calls,

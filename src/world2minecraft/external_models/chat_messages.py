@@ -1,7 +1,8 @@
-"""What is said to a language model and what it says: turns of text and pictures, and a reply.
+"""Messages to a language model: turns of text and pictures, questions and replies.
 
-A question is known by its key, the SHA-256 of all that could change the reply, with each picture
-replaced by its own sum. So a record of what was asked stays small, and shows what was asked.
+A question is identified by its key, the SHA-256 of all that could change the reply, with each
+picture replaced by its own digest, so that records of questions stay small and readable. Pictures
+are downscaled before they are sent: every pixel costs tokens, time and money.
 """
 
 import base64
@@ -18,6 +19,10 @@ from world2minecraft.core.errors import UsageError
 
 ROLES = ("system", "user", "assistant")
 PICTURE_KINDS = ("image/jpeg", "image/png", "image/webp")
+MAX_PX = 1_048_576  # 1,338 tokens of Qwen2.5-VL, within what the budget counts for a picture.
+MIN_PX = 784  # One token's square of 28 x 28.
+MAX_FILE_PX = 64_000_000  # Of a file; more is not opened.
+JPEG_QUALITY = 90
 
 
 @dataclass(frozen=True)
@@ -34,7 +39,7 @@ class Picture:
 
     @property
     def sha256(self) -> str:
-        """The sum of its bytes, hexadecimal."""
+        """The digest of its bytes, hexadecimal."""
         return hashlib.sha256(self.data).hexdigest()
 
     @property
@@ -45,7 +50,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Turn:
-    """What one side says: texts and pictures in their order."""
+    """A message of one side: texts and pictures in their order."""
 
     role: str
     parts: tuple[str | Picture, ...]
@@ -59,14 +64,14 @@ class Turn:
         """The pictures alone."""
         return tuple(part for part in self.parts if isinstance(part, Picture))
 
-    def wire(self) -> dict[str, Any]:
-        """Return the turn as chat servers take it."""
+    def to_api(self) -> dict[str, Any]:
+        """Return the turn in the format of chat servers."""
         if not self.pictures:
             return {"role": self.role, "content": "".join(map(str, self.parts))}
-        return {"role": self.role, "content": [_wire(part) for part in self.parts]}
+        return {"role": self.role, "content": [_content_part(part) for part in self.parts]}
 
-    def told(self) -> dict[str, Any]:
-        """Return the turn for a record: pictures are their sums."""
+    def to_record(self) -> dict[str, Any]:
+        """Return the turn for a record; pictures are their digests."""
         parts = [
             {"picture": part.sha256} if isinstance(part, Picture) else part for part in self.parts
         ]
@@ -75,9 +80,9 @@ class Turn:
 
 @dataclass(frozen=True)
 class Question:
-    """All that a model is asked at once.
+    """A request to a model.
 
-    ``form`` is the ``response_format`` of the protocol, None for free text. ``sample`` tells apart
+    ``form`` is the ``response_format`` of the protocol, None for free text. ``sample`` distinguishes
     questions that are asked again on purpose, to see how much replies differ.
     """
 
@@ -88,11 +93,11 @@ class Question:
     form: dict[str, Any] | None = None
     sample: int = 0
 
-    def told(self) -> dict[str, Any]:
-        """Return the question for a record: pictures are their sums."""
+    def to_record(self) -> dict[str, Any]:
+        """Return the question for a record; pictures are their digests."""
         return {
             "model": self.model,
-            "turns": [turn.told() for turn in self.turns],
+            "turns": [turn.to_record() for turn in self.turns],
             "temperature": self.temperature,
             "max_tokens": self.max_tokens,
             "form": self.form,
@@ -101,30 +106,30 @@ class Question:
 
     @property
     def key(self) -> str:
-        """What tells this question from any other, hexadecimal.
+        """The digest that identifies this question, hexadecimal.
 
         Example:
             >>> Question("m", (Turn("user", ("Hello",)),)).key[:8]
             '5e694ce7'
         """
-        text = json.dumps(self.told(), sort_keys=True, allow_nan=False)
+        text = json.dumps(self.to_record(), sort_keys=True, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
     def pictures(self) -> int:
-        """How many pictures are shown."""
+        """The number of pictures."""
         return sum(len(turn.pictures) for turn in self.turns)
 
     @property
     def characters(self) -> int:
-        """How long its texts are."""
+        """The number of characters of its texts."""
         parts = [part for turn in self.turns for part in turn.parts]
         return sum(len(part) for part in parts if isinstance(part, str))
 
 
 @dataclass(frozen=True)
 class Reply:
-    """What a model said to a question.
+    """A reply of a model to a question.
 
     Tokens are as the server counts them; where it does not, they are estimated.
     """
@@ -139,41 +144,33 @@ class Reply:
     is_replayed: bool = False
 
 
-def _wire(part: str | Picture) -> dict[str, Any]:
+def _content_part(part: str | Picture) -> dict[str, Any]:
     if isinstance(part, Picture):
         return {"type": "image_url", "image_url": {"url": part.url}}
     return {"type": "text", "text": part}
 
 
-# Pictures for language models, made small enough: every pixel is tokens, time and money.
-
-MOST_PX = 1_048_576  # 1,338 tokens of Qwen2.5-VL, within what the budget counts for a picture.
-LEAST_PX = 784  # One token's square of 28 x 28.
-LARGEST_PX = 64_000_000  # Of a file; more is not opened.
-JPEG_QUALITY = 90
+def check_max_px(max_px: int) -> None:
+    """Raise UsageError where a cap on pixels is too small."""
+    if max_px < MIN_PX:
+        raise UsageError(f"a picture for a model has {MIN_PX} pixels or more, not {max_px}")
 
 
-def check_most_px(most_px: int) -> None:
-    """Raise UsageError where a cap on pixels cannot be."""
-    if most_px < LEAST_PX:
-        raise UsageError(f"a picture for a model has {LEAST_PX} pixels or more, not {most_px}")
-
-
-def at_most(colour: np.ndarray, most_px: int) -> np.ndarray:
+def downscale(colour: np.ndarray, max_px: int) -> np.ndarray:
     """Return a picture, uint8 [H, W, 3], of at most so many pixels, in its own shape.
 
     Example:
-        >>> at_most(np.zeros((480, 640, 3), np.uint8), 76_800).shape
+        >>> downscale(np.zeros((480, 640, 3), np.uint8), 76_800).shape
         (240, 320, 3)
     """
     height, width = colour.shape[:2]
-    size = _size(width, height, most_px)
+    size = _size_within(width, height, max_px)
     if size == (width, height):
         return colour
     return np.asarray(Image.fromarray(colour).resize(size, Image.Resampling.LANCZOS))
 
 
-def capped(picture: Picture, most_px: int) -> Picture:
+def downscale_picture(picture: Picture, max_px: int) -> Picture:
     """Return a picture as it is, or a smaller JPEG of it where it has more pixels.
 
     Raises:
@@ -181,9 +178,9 @@ def capped(picture: Picture, most_px: int) -> Picture:
     """
     try:
         with Image.open(BytesIO(picture.data)) as image:
-            if image.width * image.height > LARGEST_PX:
+            if image.width * image.height > MAX_FILE_PX:
                 raise ValueError(f"has {image.width} x {image.height} pixels, too many to open")
-            size = _size(image.width, image.height, most_px)
+            size = _size_within(image.width, image.height, max_px)
             if size == image.size:
                 return picture
             small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
@@ -194,10 +191,10 @@ def capped(picture: Picture, most_px: int) -> Picture:
     return Picture(stream.getvalue(), "image/jpeg")
 
 
-def _size(width: int, height: int, most_px: int) -> tuple[int, int]:
+def _size_within(width: int, height: int, max_px: int) -> tuple[int, int]:
     """Return the size of a picture that may have so many pixels."""
-    if width * height <= most_px:
+    if width * height <= max_px:
         return width, height
-    scale = (most_px / (width * height)) ** 0.5
+    scale = (max_px / (width * height)) ** 0.5
     wide = max(1, int(width * scale))
-    return wide, max(1, min(int(height * scale), most_px // wide))
+    return wide, max(1, min(int(height * scale), max_px // wide))

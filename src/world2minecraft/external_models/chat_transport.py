@@ -1,8 +1,12 @@
-"""One call of a chat server through the openai SDK, with bounds on time and size.
+"""Calls of a chat server through the openai SDK, with bounds on time and size.
+
+``gemini``, ``openai`` and ``qwen`` are clouds, each with its key in an environment variable;
+``local`` is a server on this machine, such as vLLM's or LLaMA-Factory's. A model may follow a name,
+``gemini:gemini-3.5-flash-lite``; any address that speaks the same protocol works too.
 
 A server may answer late, by drops, with a megabyte, or with anything but what was asked. So a
-reply is read in pieces until it is whole, too large or too late, and nothing of it is taken
-without a look at its type. What goes wrong is one of three errors, by what helps: ask again later
+reply is read in pieces until it is whole, too large or too late, and the type of everything in it
+is checked. What goes wrong is one of three errors, by what helps: ask again later
 (``BusyServerError``), ask otherwise (``RefusedQuestionError``), or read nothing of it
 (``UselessReplyError``). Errors of keys and addresses are plain ``ServerError``. An error says
 whether the server may have been at work on the reply (``may_cost``), and never the key.
@@ -18,16 +22,16 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from world2minecraft.core.errors import MissingExtraError, ServerError, UnknownNameError, UsageError
-from world2minecraft.external_models.chat_costs import CHARACTERS_A_TOKEN, estimated_tokens
+from world2minecraft.external_models.chat_costs import CHARACTERS_PER_TOKEN, estimate_tokens
 from world2minecraft.external_models.chat_messages import Question, Reply
 
-# Where models are served: a few known names, and any address that speaks the same protocol.
-#
-# ``gemini``, ``openai`` and ``qwen`` are clouds, each with its key in a variable of the environment;
-# ``local`` is a server on this machine, such as vLLM's or LLaMA-Factory's. A model may follow a
-# name: ``gemini:gemini-3.5-flash-lite``.
-
 NO_KEY = "none"  # The SDK wants a key, a server of one's own does not.
+MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
+MAX_EXCERPT = 300  # Characters of a server's own message in an error.
+MAX_TOKENS_COUNTED = 10_000_000
+BUSY = (408, 409, 425, 429, 500, 502, 503, 504, 529)
+REFUSED = (400, 413, 415, 422, 501)
+UNSENT = ("ConnectError", "ConnectTimeout", "PoolTimeout")  # Of httpx, whose name SDKs change.
 
 
 @dataclass(frozen=True)
@@ -84,7 +88,7 @@ def is_endpoint(text: str) -> bool:
     return "://" in text or text.partition(":")[0] in ENDPOINTS
 
 
-def endpoint_of(text: str, *, model: str = "", key_name: str | None = None) -> Endpoint:
+def resolve_endpoint(text: str, *, model: str = "", key_name: str | None = None) -> Endpoint:
     """Return the server that a text names.
 
     Args:
@@ -96,11 +100,11 @@ def endpoint_of(text: str, *, model: str = "", key_name: str | None = None) -> E
         UnknownNameError: no such name. UsageError: the address is none.
 
     Example:
-        >>> endpoint_of("qwen:qwen-vl-max").model, endpoint_of("http://localhost:8000/v1").key_name
+        >>> endpoint_of("qwen:qwen-vl-max").model, resolve_endpoint("http://localhost:8000/v1").key_name
         ('qwen-vl-max', '')
     """
     if "://" in text:
-        found = Endpoint(_checked(text))
+        found = Endpoint(_check_address(text))
     else:
         name, _, named = text.partition(":")
         if name not in ENDPOINTS:
@@ -111,7 +115,7 @@ def endpoint_of(text: str, *, model: str = "", key_name: str | None = None) -> E
     return found if key_name is None else replace(found, key_name=key_name)
 
 
-def _checked(address: str) -> str:
+def _check_address(address: str) -> str:
     try:
         parts = urlsplit(address)
         fine = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
@@ -123,14 +127,6 @@ def _checked(address: str) -> str:
     if not fine:
         raise UsageError(f"{address!r} is no address; one is http://localhost:8000/v1")
     return address.rstrip("/")
-
-
-MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
-MAX_TOLD = 300  # Characters of a server's own words in an error.
-MAX_TOKENS_COUNTED = 10_000_000
-BUSY = (408, 409, 425, 429, 500, 502, 503, 504, 529)
-REFUSED = (400, 413, 415, 422, 501)
-UNSENT = ("ConnectError", "ConnectTimeout", "PoolTimeout")  # Of httpx, whose name SDKs change.
 
 
 class BusyServerError(ServerError):
@@ -151,7 +147,7 @@ class UselessReplyError(ServerError):
     may_cost = True
 
 
-class ChatWire:
+class ChatTransport:
     """A connection to a server; it may be used by several threads."""
 
     def __init__(
@@ -174,7 +170,7 @@ class ChatWire:
         self.endpoint, self.timeout_s = endpoint, timeout_s
         self._limit, self._clock, self._sdk = max_reply_bytes, clock, openai
         self._key = endpoint.key()
-        browser = openai.DefaultHttpxClient(
+        http_client = openai.DefaultHttpxClient(
             event_hooks={"response": [self._refuse_failures]}, follow_redirects=False
         )
         self._client = openai.OpenAI(
@@ -182,7 +178,7 @@ class ChatWire:
             base_url=endpoint.url,
             timeout=timeout_s,
             max_retries=0,
-            http_client=browser,
+            http_client=http_client,
             default_headers={"Accept-Encoding": "identity"},
         )
 
@@ -190,16 +186,16 @@ class ChatWire:
         """Ask once. Raises the errors of this module, or ServerError."""
         began = self._clock()
         with self._without_key():
-            data = self._called(self._client.chat.completions, self._words(question))
-            return _reply(data, question, self._clock() - began)
+            data = self._call(self._client.chat.completions, self._parameters(question))
+            return _parse_reply(data, question, self._clock() - began)
 
     def models(self) -> tuple[str, ...]:
         """Return the names of the models that the server has. Raises as ``ask``."""
         with self._without_key():
-            told = self._called(self._client.models, None)
-        listed = told.get("data") if isinstance(told, dict) else None
+            data = self._call(self._client.models, None)
+        listed = data.get("data") if isinstance(data, dict) else None
         entries = [one for one in _list(listed) if isinstance(one, dict)]
-        return tuple(clean(str(one.get("id", ""))) for one in entries)
+        return tuple(sanitize_text(str(one.get("id", ""))) for one in entries)
 
     def close(self) -> None:
         """Close the connection."""
@@ -207,7 +203,7 @@ class ChatWire:
 
     @contextmanager
     def _without_key(self) -> Iterator[None]:
-        """Take the key out of what errors tell: some servers say it back, and errors are kept."""
+        """Take the key out of errors: some servers send it back, and errors are recorded."""
         try:
             yield
         except ServerError as error:
@@ -215,30 +211,30 @@ class ChatWire:
                 error.args = (str(error).replace(self._key, "(the key)"),)
             raise
 
-    def _words(self, question: Question) -> dict[str, Any]:
-        words: dict[str, Any] = {
+    def _parameters(self, question: Question) -> dict[str, Any]:
+        parameters: dict[str, Any] = {
             "model": question.model,
-            "messages": [turn.wire() for turn in question.turns],
+            "messages": [turn.to_api() for turn in question.turns],
             self.endpoint.length_name: question.max_tokens,
         }
         if question.temperature is not None:
-            words["temperature"] = question.temperature
+            parameters["temperature"] = question.temperature
         if question.form is not None:
-            words["response_format"] = question.form
-        return words
+            parameters["response_format"] = question.form
+        return parameters
 
-    def _called(self, part: Any, words: dict[str, Any] | None) -> Any:
+    def _call(self, part: Any, parameters: dict[str, Any] | None) -> Any:
         """Call a part of the SDK and return the JSON that came."""
         deadline = self._clock() + self.timeout_s
         streaming = part.with_streaming_response
         try:
-            opened = streaming.list() if words is None else streaming.create(**words)
+            opened = streaming.list() if parameters is None else streaming.create(**parameters)
             with opened as response:
                 data = self._read(response.iter_bytes(), response.headers, deadline)
         except ServerError:
             raise
         except self._sdk.APITimeoutError as error:
-            raise self._late(_is_sent(error)) from None
+            raise self._timeout_error(_is_sent(error)) from None
         except self._sdk.APIConnectionError as error:
             if isinstance(error.__cause__, ServerError):  # Raised by _refuse_failures.
                 raise error.__cause__ from None
@@ -252,7 +248,7 @@ class ChatWire:
         try:
             return json.loads(data)
         except (ValueError, RecursionError):
-            raise UselessReplyError(f"{self.endpoint.url} sent no JSON: {_told(data)}") from None
+            raise UselessReplyError(f"{self.endpoint.url} sent no JSON: {_excerpt(data)}") from None
 
     def _read(self, pieces: Iterable[bytes], headers: Any, deadline: float) -> bytes:
         if headers.get("content-encoding", "identity") != "identity":
@@ -265,10 +261,10 @@ class ChatWire:
                     f"{self.endpoint.url} sent over {self._limit:,} bytes; a reply has far fewer"
                 )
             if self._clock() > deadline:
-                raise self._late()
+                raise self._timeout_error()
         return bytes(data)
 
-    def _late(self, is_sent: bool = True) -> BusyServerError:
+    def _timeout_error(self, is_sent: bool = True) -> BusyServerError:
         return BusyServerError(
             f"{self.endpoint.url} took over {self.timeout_s:g} s; --timeout gives it longer",
             may_cost=is_sent,
@@ -279,11 +275,11 @@ class ChatWire:
         status = int(response.status_code)
         if 200 <= status < 300:
             return
-        told = ""
+        body = ""
         for piece in response.iter_raw():
-            told = _told(piece)
+            body = _excerpt(piece)
             break
-        text = f"{self.endpoint.url} says {status}: {told or 'nothing more'}"
+        text = f"{self.endpoint.url} says {status}: {body or 'nothing more'}"
         if status in BUSY:
             raise BusyServerError(text, _seconds(response.headers.get("retry-after")))
         if status in REFUSED:
@@ -293,33 +289,35 @@ class ChatWire:
         raise ServerError(text)
 
 
-def clean(text: str) -> str:
-    """Return a text that is safe to show and to write: no control characters, no half letters.
+def sanitize_text(text: str) -> str:
+    """Return a text that is safe to show and to write: no control characters, no lone surrogates.
 
     Example:
-        >>> clean("a" + chr(27) + "[31mb" + chr(0xd800))
+        >>> sanitize_text("a" + chr(27) + "[31mb" + chr(0xd800))
         'a [31mb?'
     """
     whole = text.encode("utf-8", "replace").decode()
     return "".join(letter if letter.isprintable() or letter in "\n\t" else " " for letter in whole)
 
 
-def _reply(told: Any, question: Question, latency_s: float) -> Reply:
-    choices = _list(told.get("choices")) if isinstance(told, dict) else []
+def _parse_reply(data: Any, question: Question, latency_s: float) -> Reply:
+    choices = _list(data.get("choices")) if isinstance(data, dict) else []
     first = choices[0] if choices else None
     message = first.get("message") if isinstance(first, dict) else None
     if not isinstance(message, dict):
-        raise UselessReplyError(f"the server sent no choice: {_told(json.dumps(told).encode())}")
-    text = clean(_text(message.get("content")) or _text(message.get("refusal")))
-    usage = told.get("usage")
+        raise UselessReplyError(f"the server sent no choice: {_excerpt(json.dumps(data).encode())}")
+    text = sanitize_text(_text(message.get("content")) or _text(message.get("refusal")))
+    usage = data.get("usage")
     counts = [_count(usage, name) for name in ("prompt_tokens", "completion_tokens")]
-    guessed = (estimated_tokens(question), len(text) // CHARACTERS_A_TOKEN + 1)
+    guessed = (estimate_tokens(question), len(text) // CHARACTERS_PER_TOKEN + 1)
     prompt, completion = (
         own if own is not None else guess for own, guess in zip(counts, guessed, strict=True)
     )
     if (total := _count(usage, "total_tokens")) is not None and None not in counts:
         completion = max(completion, total - prompt)  # Gemini leaves thoughts out of the others.
-    finish = clean(str(first.get("finish_reason") or ""))[:40] if isinstance(first, dict) else ""
+    finish = (
+        sanitize_text(str(first.get("finish_reason") or ""))[:40] if isinstance(first, dict) else ""
+    )
     return Reply(text, prompt, completion, finish, None in counts, round(latency_s, 3))
 
 
@@ -351,9 +349,10 @@ def _seconds(header: str | None) -> float | None:
     return seconds if 0 <= seconds < float("inf") else None
 
 
-def _told(data: bytes) -> str:
-    words = clean(data[:4096].decode("utf-8", "replace")).split()
-    return " ".join(words)[:MAX_TOLD]
+def _excerpt(data: bytes) -> str:
+    """Return the first words of a server's message."""
+    words = sanitize_text(data[:4096].decode("utf-8", "replace")).split()
+    return " ".join(words)[:MAX_EXCERPT]
 
 
 def _is_sent(error: BaseException) -> bool:
@@ -363,4 +362,4 @@ def _is_sent(error: BaseException) -> bool:
 
 def _cause(error: BaseException) -> str:
     inner = error.__cause__ or error
-    return clean(str(inner) or type(inner).__name__)[:MAX_TOLD]
+    return sanitize_text(str(inner) or type(inner).__name__)[:MAX_EXCERPT]

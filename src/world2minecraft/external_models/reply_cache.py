@@ -1,6 +1,6 @@
-"""Replies on disk: a line a question, so that a run goes on where it stopped and can be replayed.
+"""Cache of replies on disk, one line per question, so that runs can be resumed and replayed.
 
-A line is ``{"key", "question", "reply"}``; pictures are their sums and no key of a server is in
+A line is ``{"key", "question", "reply"}``; pictures are their digests and no key of a server is in
 it. Where there was no reply it has a ``failure`` instead, so that a replay fails as the run did;
 a run that goes on asks again. A line that was cut by a crash is dropped, other damage is an error.
 """
@@ -85,17 +85,17 @@ class ReplyStore:
 
     def put(self, question: Question, reply: Reply) -> None:
         """Add a reply to the file. Raises OutputError."""
-        kept = {name: value for name, value in asdict(reply).items() if name != "is_replayed"}
-        self._replies[question.key] = Reply(**kept, is_replayed=True)
-        self._add({"key": question.key, "question": question.told(), "reply": kept})
+        fields = {name: value for name, value in asdict(reply).items() if name != "is_replayed"}
+        self._replies[question.key] = Reply(**fields, is_replayed=True)
+        self._add({"key": question.key, "question": question.to_record(), "reply": fields})
 
     def put_failure(self, question: Question, error: ServerError) -> None:
         """Add that a question failed in a way of ``FAILURES``. Raises OutputError."""
         for kind, own in FAILURES.items():
             if isinstance(error, own):
                 failure = {"kind": kind, "text": str(error)}
-                told = {"key": question.key, "question": question.told(), "failure": failure}
-                self._add(told)
+                record = {"key": question.key, "question": question.to_record(), "failure": failure}
+                self._add(record)
 
     def _add(self, line: dict[str, Any]) -> None:
         with self._lock:
@@ -136,14 +136,14 @@ class ReplyStore:
                     raise TypeError("the failure is of no kind")
                 self._failures[record["key"]] = (kind, text)
             else:
-                self._replies[record["key"]] = _checked(record["reply"])
+                self._replies[record["key"]] = _parse_reply(record["reply"])
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise DamagedFileError(self.path, f"line {number} is no reply ({error})") from error
 
 
-def _checked(kept: Any) -> Reply:
+def _parse_reply(fields: Any) -> Reply:
     """Return a reply of JSON. Raises TypeError, KeyError."""
     for name, kind in TYPES.items():
-        if type(kept[name]) is not kind:
+        if type(fields[name]) is not kind:
             raise TypeError(f"{name} is no {kind.__name__}")
-    return Reply(**{**kept, "is_replayed": True})
+    return Reply(**{**fields, "is_replayed": True})

@@ -1,4 +1,4 @@
-"""Replies in a form: a ladder from a strict schema down to plain text, with two repairs.
+"""Structured replies: from a strict JSON schema down to plain text, with two repairs.
 
 A server that can is held to a JSON schema; one that refuses is asked for any JSON object, and the
 next for plain text. What comes is read with care whatever the rung, for servers differ in what
@@ -30,7 +30,7 @@ class UnreadableError(Exception):
 
 
 @dataclass(frozen=True)
-class Form(Generic[Value]):
+class ReplyFormat(Generic[Value]):
     """What a reply must be.
 
     ``read`` takes the text of a reply and returns the value; it raises UnreadableError.
@@ -45,7 +45,7 @@ class Form(Generic[Value]):
     is_said: bool = False
     rung: int = 0
 
-    def wire(self, rung: str) -> dict[str, Any] | None:
+    def to_api(self, rung: str) -> dict[str, Any] | None:
         """Return the ``response_format`` of a rung."""
         if rung == "json_schema":
             named = {"name": self.name, "strict": True, "schema": self.schema}
@@ -54,7 +54,7 @@ class Form(Generic[Value]):
 
 
 @dataclass(frozen=True)
-class Try:
+class Attempt:
     """One question of a ladder: its rung and key, the reply or none, and what was wrong."""
 
     rung: str
@@ -64,11 +64,11 @@ class Try:
 
 
 @dataclass(frozen=True)
-class Formed(Generic[Value]):
-    """What came of a ladder: a value, or None, and all tries."""
+class StructuredReply(Generic[Value]):
+    """The outcome of all attempts: a value, or None, and the attempts."""
 
     value: Value | None
-    tries: tuple[Try, ...]
+    tries: tuple[Attempt, ...]
 
     @property
     def raw(self) -> str:
@@ -82,14 +82,14 @@ class Formed(Generic[Value]):
         return self.tries[-1].problem if self.tries and self.value is None else ""
 
 
-def ask_form(
+def ask_structured(
     model: ChatModel,
     turns: tuple[Turn, ...],
-    form: Form[Value],
+    form: ReplyFormat[Value],
     *,
     repairs: int = REPAIRS,
     sample: int = 0,
-) -> Formed[Value]:
+) -> StructuredReply[Value]:
     """Ask for a value of a form.
 
     ``sample`` tells apart the times that the same is asked on purpose.
@@ -101,23 +101,23 @@ def ask_form(
         RefusedQuestionError: even plain text is refused. BudgetError, ServerError, InputError: as
         ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
     """
-    tries: list[Try] = []
+    tries: list[Attempt] = []
     asked = turns if form.is_said else _with_words(turns, form.words)
     left, rung = repairs, max(model.rung, form.rung)
     while True:
         try:
-            tried, value = _once(model, asked, form, RUNGS[rung], sample)
+            tried, value = _ask_once(model, asked, form, RUNGS[rung], sample)
         except RefusedQuestionError as error:
             if rung == len(RUNGS) - 1:
                 raise
-            tries.append(Try(RUNGS[rung], "", None, f"refused: {error}"))
+            tries.append(Attempt(RUNGS[rung], "", None, f"refused: {error}"))
             rung += 1
             continue
         tries.append(tried)
         if tried.reply is not None and rung > form.rung:
             model.rung = max(model.rung, rung)  # This rung is taken, those above were not.
         if value is not None or left == 0:
-            return Formed(value, tuple(tries))
+            return StructuredReply(value, tuple(tries))
         left -= 1
         asked = (*asked, *_repair(tried, form))
 
@@ -132,47 +132,47 @@ def _with_words(turns: tuple[Turn, ...], words: str) -> tuple[Turn, ...]:
     return (*turns, Turn("user", (words,)))
 
 
-def _once(
-    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], rung: str, sample: int
-) -> tuple[Try, Value | None]:
+def _ask_once(
+    model: ChatModel, turns: tuple[Turn, ...], form: ReplyFormat[Value], rung: str, sample: int
+) -> tuple[Attempt, Value | None]:
     try:
-        key, reply = model.ask(turns, form=form.wire(rung), sample=sample)
+        key, reply = model.ask(turns, form=form.to_api(rung), sample=sample)
     except UselessReplyError as error:
-        return Try(rung, "", None, str(error)), None
+        return Attempt(rung, "", None, str(error)), None
     if reply.finish == "length":
         problem = f"the reply was cut at {model.max_tokens:,} tokens; be shorter"
-        return Try(rung, key, reply, problem), None
+        return Attempt(rung, key, reply, problem), None
     try:
-        return Try(rung, key, reply), form.read(spoken(reply.text))
+        return Attempt(rung, key, reply), form.read(strip_reasoning(reply.text))
     except UnreadableError as error:
-        return Try(rung, key, reply, str(error)), None
+        return Attempt(rung, key, reply, str(error)), None
 
 
-def _repair(tried: Try, form: Form[Any]) -> tuple[Turn, ...]:
-    said = tried.reply.text[:MAX_QUOTED] if tried.reply is not None else ""
-    told = f"That cannot be used: {tried.problem}. {form.words}"
-    spoken = Turn("assistant", (said or "(nothing that can be read)",))
-    return (spoken, Turn("user", (told,)))
+def _repair(tried: Attempt, form: ReplyFormat[Any]) -> tuple[Turn, ...]:
+    quoted = tried.reply.text[:MAX_QUOTED] if tried.reply is not None else ""
+    problem = f"That cannot be used: {tried.problem}. {form.words}"
+    answer = Turn("assistant", (quoted or "(nothing that can be read)",))
+    return (answer, Turn("user", (problem,)))
 
 
-def spoken(text: str) -> str:
-    """Return what a reply says, without the thoughts before it, which are no answer.
+def strip_reasoning(text: str) -> str:
+    """Return the text of a reply without the reasoning before it.
 
-    Servers that do not part them leave ``<think>`` around thoughts, or its end alone, where their
+    Servers that do not separate it leave ``<think>`` around thoughts, or its end alone, where their
     template has said the beginning.
 
     Example:
-        >>> [spoken(text) for text in ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")]
+        >>> [strip_reasoning(text) for text in ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")]
         [' A', 'A', '<b>C</b>']
     """
     return _THOUGHT_END.split(_THOUGHT.sub("", text))[-1]
 
 
-def json_of(text: str) -> dict[str, Any] | None:
+def extract_json_object(text: str) -> dict[str, Any] | None:
     """Return the one JSON object of a text, bare or between other words, else None.
 
     Example:
-        >>> json_of('Sure! ```json {"a": 1} ```'), json_of('{"a": 1} {"b": 2}')
+        >>> json_of('Sure! ```json {"a": 1} ```'), extract_json_object('{"a": 1} {"b": 2}')
         ({'a': 1}, None)
     """
     start, end = text.find("{"), text.rfind("}")

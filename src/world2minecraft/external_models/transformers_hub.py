@@ -1,7 +1,10 @@
-"""Networks of the transformers library, by the name on the hub or from a folder.
+"""Networks of the transformers library, by their name on the hub or from a folder.
 
 Nothing is downloaded unless a network is asked for by name and is not yet on this computer. Only
-safetensors are read, and no code that comes with a model is run.
+safetensors are read, and no code that comes with a model is run. Pictures are preprocessed here, as
+the model's own preprocessor file states: the library's image processors need torchvision, of which
+not every version goes with every torch. Inference runs on one thread, since the number of threads
+would show in the last digits.
 """
 
 import hashlib
@@ -17,12 +20,15 @@ from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError, first_line
 
-# Torch on one thread: how many there are would show in the last digits.
+MAX_SIDE_PX = 4096
+MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
+PREPROCESSOR_FILES = ("preprocessor_config.json", "processor_config.json")
+DIGEST_DIGITS = 16  # Digits of a digest that tell two models apart.
 
 
 @contextmanager
 def single_thread() -> Iterator[Any]:
-    """Give the torch library for inference on one thread; as many as before work afterwards."""
+    """Yield the torch library for inference on one thread; restore the threads afterwards."""
     import torch  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
 
     threads = torch.get_num_threads()
@@ -34,69 +40,56 @@ def single_thread() -> Iterator[Any]:
         torch.set_num_threads(threads)
 
 
-# Pictures as networks want them, by what a model's own preprocessor file states.
-#
-# The image processors of the transformers library need torchvision, of which not every version goes
-# with every torch; the few steps that they take are here.
-
-LARGEST_SIDE_PX = 4096
-
-
-def prepared(colour: np.ndarray, ready: dict[str, Any]) -> np.ndarray:
-    """Return a picture as a network wants it.
+def preprocess(colour: np.ndarray, settings: dict[str, Any]) -> np.ndarray:
+    """Return a picture preprocessed for a network.
 
     Args:
         colour: uint8 [H, W, 3].
-        ready: the entries of a preprocessor_config.json.
+        settings: the entries of a preprocessor_config.json.
 
     Returns:
         float32 [1, 3, h, w].
     """
     picture = Image.fromarray(colour)
-    if ready.get("do_resize", True):
+    if settings.get("do_resize", True):
         picture = picture.resize(
-            wanted_size(picture.size, ready), Image.Resampling(ready.get("resample", 3))
+            preprocessed_size(picture.size, settings), Image.Resampling(settings.get("resample", 3))
         )
     values = np.asarray(picture, np.float32)
-    if ready.get("do_rescale", True):
-        values = values * np.float32(ready.get("rescale_factor", 1 / 255))
-    if ready.get("do_normalize", "image_mean" in ready):
-        mean, spread = (np.array(ready[key], np.float32) for key in ("image_mean", "image_std"))
+    if settings.get("do_rescale", True):
+        values = values * np.float32(settings.get("rescale_factor", 1 / 255))
+    if settings.get("do_normalize", "image_mean" in settings):
+        mean, spread = (np.array(settings[key], np.float32) for key in ("image_mean", "image_std"))
         values = (values - mean) / spread
     return np.ascontiguousarray(values.transpose(2, 0, 1)[None])
 
 
-def wanted_size(size_px: tuple[int, int], ready: dict[str, Any]) -> tuple[int, int]:
-    """Return the width and height that a network wants of a picture of a width and height.
+def preprocessed_size(size_px: tuple[int, int], settings: dict[str, Any]) -> tuple[int, int]:
+    """Return the width and height to which a picture is resized for a network.
 
-    >>> wanted_size((640, 480), {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14})
+    >>> preprocessed_size((640, 480), {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14})
     (686, 518)
     """
-    step = ready.get("ensure_multiple_of") or ready.get("size_divisor") or 1
-    size = ready.get("size") or {"width": size_px[0], "height": size_px[1]}
+    step = settings.get("ensure_multiple_of") or settings.get("size_divisor") or 1
+    size = settings.get("size") or {"width": size_px[0], "height": size_px[1]}
     if not isinstance(size, dict):
         square = "max_size" not in ready  # Older files of segmenters mean the shorter side.
         size = {"width": size, "height": size} if square else {"shortest_edge": size}
-    longest = size.get("longest_edge") or ready.get("max_size") or LARGEST_SIDE_PX
+    longest = size.get("longest_edge") or settings.get("max_size") or MAX_SIDE_PX
     if "shortest_edge" in size:
         scales = [min(size["shortest_edge"] / min(size_px), longest / max(size_px))] * 2
     else:
         scales = [size["width"] / size_px[0], size["height"] / size_px[1]]
-        if ready.get("keep_aspect_ratio"):
+        if settings.get("keep_aspect_ratio"):
             scales = [min(scales, key=lambda scale: abs(1 - scale))] * 2
     wide, high = (
         max(step, round(side * scale / step) * step)
         for side, scale in zip(size_px, scales, strict=True)
     )
-    return min(wide, LARGEST_SIDE_PX // step * step), min(high, LARGEST_SIDE_PX // step * step)
+    return min(wide, MAX_SIDE_PX // step * step), min(high, MAX_SIDE_PX // step * step)
 
 
-MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
-READY_FILES = ("preprocessor_config.json", "processor_config.json")
-SHORT = 16  # Digits of a digest that tell two models apart.
-
-
-def library(feature: str) -> Any:
+def import_transformers(feature: str) -> Any:
     """Return the transformers library, silent.
 
     Raises:
@@ -111,8 +104,8 @@ def library(feature: str) -> Any:
     return transformers
 
 
-def checked_name(model: str) -> str:
-    """Return what reports call a model.
+def display_name(model: str) -> str:
+    """Return the name of a model in reports.
 
     Raises:
         InputError: it is neither a folder nor could be the name of a model.
@@ -123,8 +116,8 @@ def checked_name(model: str) -> str:
     return f"hf:{Path(model).resolve().name if folder else model}"
 
 
-def identity(model: str, transformers: Any) -> str:
-    """Return what tells this state of a model from any other: a digest or the hub's commit.
+def model_revision(model: str, transformers: Any) -> str:
+    """Return what identifies this state of a model: a digest of its files or the hub's commit.
 
     Raises:
         InputError: there is no such model.
@@ -136,15 +129,15 @@ def identity(model: str, transformers: Any) -> str:
                 digest.update(path.name.encode() + b"\0")
                 with path.open("rb") as stream:
                     digest.update(hashlib.file_digest(stream, "sha256").digest())
-        return digest.hexdigest()[:SHORT]
+        return digest.hexdigest()[:DIGEST_DIGITS]
     try:
         path = Path(transformers.utils.cached_file(model, "config.json"))
     except (OSError, ValueError):
         raise InputError(model, "no such model here or on the hub") from None
-    return f"{model}@{path.parent.name[:SHORT]}"
+    return f"{model}@{path.parent.name[:DIGEST_DIGITS]}"
 
 
-def config(model: str, transformers: Any) -> Any:
+def load_config(model: str, transformers: Any) -> Any:
     """Return the config of a model.
 
     Raises:
@@ -167,29 +160,29 @@ def has_file(model: str, names: tuple[str, ...], transformers: Any) -> bool:
     return False
 
 
-def preparation(model: str, transformers: Any) -> dict[str, Any]:
-    """Return what a model states of its pictures.
+def load_preprocessor(model: str, transformers: Any) -> dict[str, Any]:
+    """Return the settings of a model's preprocessor file.
 
     Raises:
         DamagedFileError: what it states makes no sense. InputError: there is no such model.
     """
-    for file in READY_FILES:
+    for file in PREPROCESSOR_FILES:
         try:
             path = transformers.utils.cached_file(model, file)
         except (OSError, ValueError):
             continue
         try:
             stated = json.loads(Path(path).read_text(encoding="utf-8"))
-            ready = stated.get("image_processor", stated)
-            prepared(np.zeros((30, 40, 3), np.uint8), ready)
-            return ready
+            settings = stated.get("image_processor", stated)
+            preprocess(np.zeros((30, 40, 3), np.uint8), settings)
+            return settings
         except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError) as error:
             raise DamagedFileError(model, f"{file} makes no sense: {first_line(error)}") from None
     raise InputError(model, "no such model here or on the hub (it needs preprocessor_config.json)")
 
 
-def network(model: str, kind: Any) -> Any:
-    """Return a network, ready to run, in whole single precision.
+def load_network(model: str, kind: Any) -> Any:
+    """Load a network in single precision, ready to run.
 
     Args:
         model: a name or a folder.
@@ -199,12 +192,12 @@ def network(model: str, kind: Any) -> Any:
         InputError: it cannot be had or is of another kind. DamagedFileError: weights are lacking.
     """
     try:
-        found, told = kind.from_pretrained(
+        found, report = kind.from_pretrained(
             model, dtype="float32", use_safetensors=True, output_loading_info=True
         )
     except Exception as error:  # Whatever another library raises on what it cannot read.
         raise InputError(model, f"cannot be loaded: {first_line(error)}") from None
-    if told["missing_keys"] or told["mismatched_keys"]:
-        lacking = sorted(map(str, told["missing_keys"] or told["mismatched_keys"]))[0]
+    if report["missing_keys"] or report["mismatched_keys"]:
+        lacking = sorted(map(str, report["missing_keys"] or report["mismatched_keys"]))[0]
         raise DamagedFileError(model, f"its weights lack {lacking}, and would be drawn by chance")
     return found.eval()

@@ -22,7 +22,7 @@ from world2minecraft.evaluation.metrics.image_quality.niqe import (
     has_patches,
     patch_features,
 )
-from world2minecraft.minecraftocc.statistics.other_data_sets import (
+from world2minecraft.minecraftocc.statistics.published_figures import (
     PAPER,
     PUBLISHED_QUALITY,
     PublishedQuality,
@@ -31,7 +31,15 @@ from world2minecraft.minecraftocc.statistics.tables import columns
 from world2minecraft.minecraftocc.store import OccStore, open_store
 from world2minecraft.minecraftocc.store.folder import META
 
-# The pictures of a data set, or of any folder, by their keys.
+KERNELS = (1, 5)
+PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
+NATIVE = "native"
+MOST_PX = 16_384  # Of a side that pictures are resized to.
+CAVEATS = (
+    "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
+    "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
+    "The paper names no variant; its values are such as scikit-video's NIQE and LV at k=5 give.",
+)
 
 
 @dataclass(frozen=True)
@@ -84,17 +92,6 @@ def _of_folder(folder: Path) -> PictureSource:
         return read_colour(folder / key)
 
     return PictureSource(folder.resolve().name, tuple(found), read, is_picture)
-
-
-KERNELS = (1, 5)
-PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
-NATIVE = "native"
-MOST_PX = 16_384  # Of a side that pictures are resized to.
-CAVEATS = (
-    "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
-    "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
-    "The paper names no variant; its values are such as scikit-video's NIQE and LV at k=5 give.",
-)
 
 
 @dataclass(frozen=True)

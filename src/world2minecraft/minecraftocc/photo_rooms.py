@@ -19,7 +19,7 @@ from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
 from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import region_in
-from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
+from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.rooms.recipes import KINDS
 from world2minecraft.procgen.sensors.photo import (

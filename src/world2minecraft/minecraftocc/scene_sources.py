@@ -24,15 +24,9 @@ from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.world_reader import read_level, region_files
-from world2minecraft.minecraftocc.block_map import BlockMap, load_block_map, remapped
-from world2minecraft.minecraftocc.block_map import classification as classify
+from world2minecraft.minecraftocc.block_map import BlockMap, classify, load_block_map, remapped
 from world2minecraft.minecraftocc.block_map.parser import MAPS
-from world2minecraft.minecraftocc.labels.materials import fine_names
-
-# Where in a world somebody has built: the box of blocks that no world grows by itself.
-#
-# The chunks around the spawn are asked first, by the list of states that each section of theirs
-# begins with; then all others, up to a number.
+from world2minecraft.minecraftocc.labels.fine_classes import fine_names
 
 SECTION = 16
 NEAR = 6  # Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
@@ -50,6 +44,9 @@ BUILT = (
 WILD = ("oak_planks", "oak_fence", "rail", "mossy_stone_bricks", "stone_bricks")
 _BUILT = re.compile("|".join(translate(pattern) for pattern in BUILT))
 LEAST = 3  # Kinds of built blocks that some section of a build must have.
+FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
+OWN_MAP = MAPS[0]  # The map that our own truth is by.
+_FIRST = ("build", "world")  # Names of folders that say nothing of the scene.
 
 
 def built_box(world: Path) -> tuple[Box, str]:
@@ -163,11 +160,6 @@ def _box_of(places: Iterable[tuple[int, int, int]]) -> Box:
     return x0, y0, z0, x1, y1, z1
 
 
-# Which furniture design each block of a scene is part of, from what lies beside its world.
-#
-# A generated world says so in its scene; a run of ours knows the template of each object.
-
-
 def designs_beside(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the design of each block of a volume, uint16 [X, Y, Z], and their names.
 
@@ -200,11 +192,6 @@ def _of_run(
     for number, template in templates.items():
         table[number] = names.index(template)
     return np.where(volume.states > 0, table[volume.instance], 0).astype(np.uint16), names
-
-
-FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
-OWN_MAP = MAPS[0]  # The map that our own truth is by.
-_FIRST = ("build", "world")  # Names of folders that say nothing of the scene.
 
 
 @dataclass(frozen=True)

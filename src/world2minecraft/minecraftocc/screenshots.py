@@ -22,17 +22,25 @@ from world2minecraft.core.types import Camera
 from world2minecraft.rendering.views.cameras import GamePose, camera_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour
 
-# The size and the texts of a PNG, read chunk by chunk without its pixels, everything bounded.
-
-# Not by Pillow: its PngInfo only writes texts. Its reader keeps the last of several texts with one
-# keyword, where a pose told twice must be refused, unpacks all pixels to find texts behind them,
-# and takes a text that does not unpack for an empty one.
-
-
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MOST_CHUNKS = 20_000
 MOST_TEXT, MOST_TEXTS = 1 << 16, 64  # Bytes of one text, unpacked; texts of a file.
 MOST_SIDE_PX = 20_000
+NEEDED = ("x", "y", "z", "yaw", "pitch")
+USUAL = ("*{x}_{y}_{z}_{yaw}_{pitch}", "*{x},{y},{z},{yaw},{pitch}", "*{x} {y} {z} {yaw} {pitch}")
+MOST_NAME = 255  # Letters, as most file systems have it.
+MOST_PATTERN = 400
+MOST_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
+NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,9})?"
+_WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # Behind anything a number begins, and does not go on.
+_EXAMPLE = "{x}_{y}_{z}_{yaw}_{pitch}"
+At = Literal["feet", "eye"]
+SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")
+MOST_PICTURES = 1_000_000
+_PAIR = re.compile(
+    r"(?<![A-Za-z_])(yaw|pitch|x|y|z)[\"']?\s{0,3}[:=]\s{0,3}([-+]?\d{1,9}(?:\.\d{1,16})?)(?![\d.])",
+    re.IGNORECASE,
+)
 
 
 class PngFacts(NamedTuple):
@@ -123,19 +131,7 @@ def _unpacked(data: bytes, source: Path) -> bytes:
     return text
 
 
-# Poses in file names: a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, or a plain regex.
-#
-# A template is safe whatever the names are. A regex has the named groups x, y, z, yaw and pitch; one
-# that could take very long on some name (nested repeats, many wild ones) is refused.
 
-NEEDED = ("x", "y", "z", "yaw", "pitch")
-USUAL = ("*{x}_{y}_{z}_{yaw}_{pitch}", "*{x},{y},{z},{yaw},{pitch}", "*{x} {y} {z} {yaw} {pitch}")
-MOST_NAME = 255  # Letters, as most file systems have it.
-MOST_PATTERN = 400
-MOST_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
-NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,9})?"
-_WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # Behind anything a number begins, and does not go on.
-_EXAMPLE = "{x}_{y}_{z}_{yaw}_{pitch}"
 
 
 class NamePattern:
@@ -242,13 +238,6 @@ def _is_numeric(kind: str, told: Any) -> bool:
     return kind == "CATEGORY" and str(told) == "CATEGORY_DIGIT"
 
 
-At = Literal["feet", "eye"]
-SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")
-MOST_PICTURES = 1_000_000
-_PAIR = re.compile(
-    r"(?<![A-Za-z_])(yaw|pitch|x|y|z)[\"']?\s{0,3}[:=]\s{0,3}([-+]?\d{1,9}(?:\.\d{1,16})?)(?![\d.])",
-    re.IGNORECASE,
-)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.geometry.unprojection import unproject_depth
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
 PANEL_PX = (480, 360)

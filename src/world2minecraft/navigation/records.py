@@ -80,7 +80,7 @@ def write_episodes(path: str | Path, episodes: Iterable[Episode]) -> None:
     _write(path, episodes, check_episode)
 
 
-def as_line(record: Item | Trajectory | Episode) -> str:
+def to_json_line(record: Item | Trajectory | Episode) -> str:
     """Return the JSON line of a record, its end of line not included.
 
     Raises:
@@ -96,7 +96,7 @@ def as_line(record: Item | Trajectory | Episode) -> str:
     return line
 
 
-def record_of(kind: type[Record], line: str | bytes) -> Record:
+def parse_record(kind: type[Record], line: str | bytes) -> Record:
     """Return the record of a JSON line, its types checked but not its names.
 
     Raises:
@@ -168,7 +168,7 @@ def check_episode(episode: Episode) -> None:
         raise UsageError(f"max_steps: is {episode.max_steps}, not 1 to 100000")
 
 
-def scene_place(scene: str, folder: Path) -> Path:
+def resolve_scene_path(scene: str, folder: Path) -> Path:
     """Return where an episode's scene lies: as its path says, or from the folder of its set.
 
     A set that was moved brings along the scenes that were made for it, in its ``SCENES_FOLDER``.
@@ -230,7 +230,7 @@ def _read(
     records, seen = [], set()
     for number, line in _lines(path):
         try:
-            record = record_of(kind, line)
+            record = parse_record(kind, line)
             check(record)
         except UsageError as error:
             raise DamagedFileError(path, f"line {number}: {error}") from error
@@ -269,7 +269,7 @@ def _write(path: str | Path, records: Iterable[Record], check: Callable[[Record]
     lines = []
     for record in records:
         check(record)
-        lines.append(f"{as_line(record)}\n")
+        lines.append(f"{to_json_line(record)}\n")
     write_text(path, "".join(lines))
 
 

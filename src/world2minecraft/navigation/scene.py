@@ -38,7 +38,7 @@ from world2minecraft.minecraft.physics.walk_graph import (
 )
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
-from world2minecraft.minecraftocc.tours.values import TourRule
+from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.navigation.landmarks import Landmark, landmarks_of
 from world2minecraft.navigation.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.navigation.values import Stance

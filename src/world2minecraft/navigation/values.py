@@ -75,8 +75,8 @@ class Instruction:
     language: str = "en"
 
     def __post_init__(self):
-        _known("source of an instruction", self.source, INSTRUCTION_SOURCES)
-        _known("level of an instruction", self.level, LEVELS)
+        _check_known("source of an instruction", self.source, INSTRUCTION_SOURCES)
+        _check_known("level of an instruction", self.level, LEVELS)
         if not self.text.strip():
             raise UsageError("an instruction has words; this one is empty")
 
@@ -107,8 +107,8 @@ class Episode:
     facing: tuple[float, float, float] | None = None  # the thing itself, world blocks
 
     def __post_init__(self):
-        _known("set of moves", self.move_set, MOVE_SETS)
-        _known("split", self.split, SPLITS)
+        _check_known("set of moves", self.move_set, MOVE_SETS)
+        _check_known("split", self.split, SPLITS)
         if not self.goals:
             raise UsageError(f"episode {self.episode_id} has no goal")
 
@@ -192,8 +192,8 @@ class Item:
     extra: dict[str, Any]
 
     def __post_init__(self):
-        _known("task", self.task, TASKS)
-        _known("split", self.split, SPLITS)
+        _check_known("task", self.task, TASKS)
+        _check_known("split", self.split, SPLITS)
         labels = [option.label for option in self.options]
         if labels != list(LETTERS[: len(labels)]) or self.answer not in labels:
             raise UsageError(
@@ -208,6 +208,6 @@ class Item:
         return (*self.history, self.current, *chosen)
 
 
-def _known(what: str, value: str, allowed: Any) -> None:
+def _check_known(what: str, value: str, allowed: Any) -> None:
     if value not in allowed:
         raise UsageError(f"{what} must be one of {', '.join(allowed)}, not {value!r}")

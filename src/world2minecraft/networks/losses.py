@@ -13,7 +13,11 @@ from world2minecraft.networks.layers.context_prior import RELATIONS
 from world2minecraft.networks.layers.depth_bins import bin_of, least_depth
 from world2minecraft.networks.layers.projection import sight_of
 
-# The loss of a depth branch: cross entropy of the bin that a pixel's depth falls into.
+FRUSTA = 8  # Along each side of the picture.
+LEAST = 1e-6
+FACTOR = 4  # From the grid to its coarsest level.
+EMPTY_SHARE = 0.95  # SSCNet's: a coarse cell is empty where more than that is empty or unknown.
+EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; all others have 1.
 
 
 def depth_loss(logits: Tensor, depth_m: Tensor) -> Tensor:
@@ -32,10 +36,7 @@ def depth_loss(logits: Tensor, depth_m: Tensor) -> Tensor:
     return (each * known).sum() / known.sum().clamp(min=1)
 
 
-# MonoScene's frustum proportion loss: what each part of the picture holds, hidden or not.
 
-FRUSTA = 8  # Along each side of the picture.
-LEAST = 1e-6
 
 
 def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
@@ -80,10 +81,7 @@ def _sums(part: Tensor, values: Tensor) -> Tensor:
     return empty.index_add(0, part, values)
 
 
-# The loss of MonoScene's context prior: four relations of coarse cells with mega-voxels.
 
-FACTOR = 4  # From the grid to its coarsest level.
-EMPTY_SHARE = 0.95  # SSCNet's: a coarse cell is empty where more than that is empty or unknown.
 
 
 def relation_loss(logits: Tensor, labels: Tensor) -> Tensor:
@@ -162,9 +160,6 @@ def _eights(labels: Tensor) -> Tensor:
     return blocks.permute(0, 1, 3, 5, 2, 4, 6).reshape(len(labels), -1, 8)
 
 
-# Losses of the classes of cells: cross entropy, and MonoScene's scene-class affinity (SCAL).
-#
-# Cells of 255 count in none. Where nothing is left to count, a loss is 0 and its gradients are 0.
 
 
 def cross_entropy(logits: Tensor, labels: Tensor, class_weights: Tensor | None = None) -> Tensor:
@@ -220,7 +215,6 @@ def _less_log(part: Tensor, whole: Tensor, counted: Tensor) -> Tensor:
     return torch.where(counted > 0, -share.clamp(min=LEAST).log(), torch.zeros_like(share))
 
 
-EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; all others have 1.
 
 
 @dataclass(frozen=True)

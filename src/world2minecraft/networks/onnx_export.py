@@ -24,18 +24,14 @@ from world2minecraft.core.files import write_bytes
 from world2minecraft.networks.batch import OccInput
 from world2minecraft.reconstruction.occupancy.onnx_network import OUTPUT, NetworkFacts
 
-# Weights of an ONNX model kept small in the file: as bytes or halves, whole again when it is run.
-#
-# Only what multiplies is kept so: the weights of convolutions and of matrix products. Biases, norms
-# and what a network knows of its grid stay as they are. ``int8`` has one scale an output channel, so
-# that a channel of small weights keeps its digits. Activations are never rounded: onnxruntime turns
-# the weights back as it loads the file, and runs the same float32 network as ever.
-
 KINDS = ("float", "half", "int8")
 SMALL = 64  # Weights of fewer numbers are not worth a node.
 MOST = 127  # Symmetric: -128 is not used.
 # Which input of a node is weights, and which of its axes counts output channels.
 _WEIGHTS = {"Conv": 0, "ConvTranspose": 1, "MatMul": -1, "Gemm": -1}
+OPSET = 17
+MOST_DIFFERENCE = 1e-3
+TURN_DEG = 10.0  # How far the camera of the question looks down.
 
 
 def with_stored_weights(model: Any, kind: str) -> Any:
@@ -123,9 +119,6 @@ def _as_bytes(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
     )
 
 
-OPSET = 17
-MOST_DIFFERENCE = 1e-3
-TURN_DEG = 10.0  # How far the camera of the question looks down.
 
 
 class Exported(NamedTuple):

@@ -26,12 +26,12 @@ from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import Grid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import known_cells
-from world2minecraft.networks.predictions import SavedPredictions, grid_like
+from world2minecraft.networks.saved_predictions import SavedPredictions, grid_like
 from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
 
-# Scores as rows of a LaTeX table, in the columns of the World2Minecraft paper.
-
 _SPECIAL = {"_": r"\_", "%": r"\%", "&": r"\&", "#": r"\#", "$": r"\$", "{": r"\{", "}": r"\}"}
+SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
+MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
 
 
 def latex_rows(scores: dict[str, Any], name: str) -> str:
@@ -56,10 +56,6 @@ def latex_rows(scores: dict[str, Any], name: str) -> str:
 
 def _escaped(text: str) -> str:
     return "".join(_SPECIAL.get(sign, sign) for sign in text)
-
-
-SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
-MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
 
 
 class SaidOfFrame(NamedTuple):

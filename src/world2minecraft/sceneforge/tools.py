@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.editing.scene import Tools
-from world2minecraft.reconstruction.instances import FindParameters, find_objects, measured
+from world2minecraft.reconstruction.instances import FindParameters, find_objects, measure_object
 from world2minecraft.reconstruction.retrieval import FurnishParameters, fit_template, furnish
 
 
@@ -21,7 +21,7 @@ def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
     def fit(grid: OccupancyGrid, one: ObjectInstance, name: str, turns: int | None) -> Placement:
         return fit_template(grid, one, name, turns, rooms)
 
-    return Tools(match, found, fit, measured)
+    return Tools(match, found, fit, measure_object)
 
 
 def found(

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import plan_in
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import (
     ConflictError,

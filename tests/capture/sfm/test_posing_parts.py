@@ -7,7 +7,8 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
-from world2minecraft.capture.sfm import PosingParameters, colmap, find_poses
+from world2minecraft.capture.sfm import PosingParameters, find_poses
+from world2minecraft.capture.sfm import pycolmap_session as colmap
 from world2minecraft.capture.sfm import results as reasons
 from world2minecraft.capture.sfm.bundle_adjustment import projected
 from world2minecraft.capture.sfm.camera_groups import (

@@ -9,7 +9,7 @@ import pytest
 from world2minecraft.capture.stereo.monocular_depth import depth_model
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError
 from world2minecraft.core.types import Camera
-from world2minecraft.external_models.transformers_hub import prepared, wanted_size
+from world2minecraft.external_models.transformers_hub import preprocess, preprocessed_size
 
 CAMERA = Camera(60, 40, 50.0, 50.0, 30.0, 20.0)
 COLOUR = np.random.default_rng(0).integers(0, 256, (40, 60, 3), dtype=np.uint8)
@@ -132,11 +132,11 @@ def test_without_the_libraries_the_extra_is_named(monkeypatch):
     ],
 )  # fmt: skip
 def test_sizes(size_px, changes, wanted):
-    assert wanted_size(size_px, {**READY, **changes}) == wanted
+    assert preprocessed_size(size_px, {**READY, **changes}) == wanted
 
 
 def test_grey_of_the_mean_becomes_zero():
     ready = {**READY, "image_mean": [0.2, 0.4, 0.6], "do_resize": False}
-    values = prepared(np.full((5, 6, 3), (51, 102, 153), np.uint8), ready)
+    values = preprocess(np.full((5, 6, 3), (51, 102, 153), np.uint8), ready)
     assert values.shape == (1, 3, 5, 6)
     assert abs(values).max() < 1e-6

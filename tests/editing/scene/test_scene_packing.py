@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.core.types.edit import each_once
+from world2minecraft.core.types.edit import rows_are_unique
 from world2minecraft.editing.scene.journal import (
     pack_objects,
     pack_operation,
@@ -126,5 +126,5 @@ def test_no_more_memory_is_taken_than_the_scene_has():
 )
 def test_a_cell_that_is_named_twice_is_seen(places, far):
     cells = (np.array(places, np.int64).reshape(-1, 3) * far).astype(np.int32)
-    assert each_once(cells) == (len(set(places)) == len(places))
-    assert not each_once(np.repeat(cells, 2, axis=0)) or not places
+    assert rows_are_unique(cells) == (len(set(places)) == len(places))
+    assert not rows_are_unique(np.repeat(cells, 2, axis=0)) or not places

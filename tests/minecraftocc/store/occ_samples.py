@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, OccLabels, OccSample
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 
 AIR = FineClass("minecraft:air")
 PLANKS = FineClass("minecraft:oak_planks")

@@ -13,9 +13,14 @@ from PIL import Image
 from world2minecraft import cli
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.data import generated_scenes as made_scenes
-from world2minecraft.navigation.data.building import BuildRule, _Count, build_set, composition_of
-from world2minecraft.navigation.data.item_building import PAPER_HELD, PAPER_SIZE, cut_as_the_paper
+from world2minecraft.navigation.data.item_building import PAPER_HELD, PAPER_SIZE, cut_to_paper_size
 from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.set_building import (
+    BuildRule,
+    _WalkCounter,
+    build_navigation_set,
+    composition_of,
+)
 from world2minecraft.navigation.data.splits import PAPER_SHARE, paper_splits, tour_of
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 from world2minecraft.navigation.values import (
@@ -57,11 +62,11 @@ def test_the_papers_counts_are_met_on_both_sides():
         for task, part in PAPER_SIZE
         for n in range(2100)
     ]  # fmt: skip
-    kept = cut_as_the_paper(items, splits_too=True)
+    kept = cut_to_paper_size(items, splits_too=True)
     held = Counter((item.task, item.composition) for item in kept if item.split != "train")
     assert held == PAPER_HELD
     assert Counter((item.task, item.composition) for item in kept) == PAPER_SIZE
-    assert len(kept) == 3542 == len(cut_as_the_paper(items))
+    assert len(kept) == 3542 == len(cut_to_paper_size(items))
 
 
 def test_a_rule_shares_the_papers_walks_among_the_scenes():
@@ -79,7 +84,7 @@ def test_progress_ends_once_and_never_falls(scenes):
     told = []
     given_of = [(min(given, asked), asked) for given, asked in scenes]
     total = sum(asked for _, asked in given_of)
-    count = _Count(total, len(scenes), told_to(told))
+    count = _WalkCounter(total, len(scenes), told_to(told))
     for given_, asked in given_of:
         for _ in range(given_):
             count.add(1)
@@ -115,13 +120,15 @@ def small(**more):
 @pytest.fixture(scope="module")
 def one_worker(two_flats, tmp_path_factory):
     out = tmp_path_factory.mktemp("one")
-    return out, build_set(two_flats, out, small(paper_split=True))
+    return out, build_navigation_set(two_flats, out, small(paper_split=True))
 
 
 def test_workers_change_nothing(two_flats, one_worker, tmp_path):
     out, built = one_worker
     told = []
-    again = build_set(two_flats, tmp_path, small(paper_split=True), told_to(told), workers=2)
+    again = build_navigation_set(
+        two_flats, tmp_path, small(paper_split=True), told_to(told), workers=2
+    )
     assert again.items == built.items
     for name in RECORDS:
         assert (tmp_path / name).read_bytes() == (out / name).read_bytes()

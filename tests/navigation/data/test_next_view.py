@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 from tests.navigation.data.free_floor import free_walker
 
 from world2minecraft.navigation.data.distractors import (
-    MOST_OF_A_KIND,
-    TAKEN,
-    RankDeck,
-    Scout,
-    Slot,
-    Taker,
-    differs,
+    MAX_OF_A_KIND,
+    RENDERED_KINDS,
+    DistractorPicker,
+    DistractorSampler,
+    DistractorSlot,
+    RankBalancer,
+    is_valid_choice,
 )
 from world2minecraft.navigation.data.keyframes import marks_of
 from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, are_apart, unlike
@@ -34,7 +34,7 @@ def way(*moves):
 
 
 WAY = way(*[R] * 4, *[F] * 4, *[L] * 3, *[F] * 8, *[R] * 6)
-SCOUT = Scout(free_walker(VLNCE, 1.0), 1.0)
+SCOUT = DistractorSampler(free_walker(VLNCE, 1.0), 1.0)
 
 
 def test_the_mirrored_walk_turns_to_the_other_side():
@@ -49,7 +49,7 @@ def test_the_mirrored_walk_turns_to_the_other_side():
 @pytest.mark.parametrize("step", range(len(WAY) - 1))
 def test_no_place_is_the_right_one_and_no_move_is_the_ways(step):
     right, now = WAY[step + 1].stance, WAY[step].stance
-    for kind in TAKEN:
+    for kind in RENDERED_KINDS:
         assert right not in SCOUT.places(kind, WAY, step)
     turns = [one.yaw_deg - now.yaw_deg for one in SCOUT.places("other_move", WAY, step)]
     steps = [one for one in SCOUT.places("other_move", WAY, step) if one.yaw_deg == now.yaw_deg]
@@ -63,7 +63,9 @@ def test_no_place_is_the_right_one_and_no_move_is_the_ways(step):
 
 def test_a_wall_leads_nowhere():
     turns = free_walker(VLNCE, 1.0)
-    scout = Scout(lambda stance, move: (stance, True) if move == F else turns(stance, move), 1.0)
+    scout = DistractorSampler(
+        lambda stance, move: (stance, True) if move == F else turns(stance, move), 1.0
+    )
     assert scout.places("beside", WAY, 2) == []
     assert {(one.x, one.z) for one in scout.places("other_move", WAY, 0)} == {(0.0, 0.0)}
 
@@ -71,7 +73,7 @@ def test_a_wall_leads_nowhere():
 @given(st.lists(st.integers(0, 3), max_size=60), st.integers(0, 9))
 @settings(max_examples=50, deadline=None)
 def test_ranks_even_out_whatever_came_before(before, seed):
-    deck = RankDeck(np.random.default_rng(seed))
+    deck = RankBalancer(np.random.default_rng(seed))
     for rank in before:
         deck.came(rank)
     for _ in range(4 * len(before)):
@@ -117,7 +119,7 @@ def test_what_is_taken_is_as_near_as_its_slot_says(seed, grade, step):
         pictured(f"{n}.jpg", mark.stance, album.take([mark.stance])[0])
         for n, mark in enumerate(WAY)
     ]
-    deck = RankDeck(rng)
+    deck = RankBalancer(rng)
     asked = view_question("t", WAY, pictures, step, grade, album, SCOUT, deck, rng)
     assert len(asked.slots) == 3
     now, right = pictures[step], pictures[step + 1]
@@ -128,9 +130,9 @@ def test_what_is_taken_is_as_near_as_its_slot_says(seed, grade, step):
         assert (unlike(now, slot.picture) < unlike(now, right)) == slot.nearer
         assert are_apart(slot.picture.stance, right.stance, 1.0)
         others = [one.picture for one in taken if one is not slot and one.picture]
-        assert differs(slot.picture, now, [right, *others])
+        assert is_valid_choice(slot.picture, now, [right, *others])
     kinds = [slot.kind for slot in taken]
-    assert all(kinds.count(kind) <= MOST_OF_A_KIND for kind in kinds)
+    assert all(kinds.count(kind) <= MAX_OF_A_KIND for kind in kinds)
     assert len(set(album.kept)) == len(album.kept)
     left = {slot.kind for slot in asked.slots if slot.picture is None}
     assert left <= set(FOUND_OF[grade])
@@ -140,5 +142,5 @@ def test_where_nothing_can_be_taken_slots_stay_open():
     rng = np.random.default_rng(0)
     album = FakeAlbum(rng)
     now, right = (pictured(f"{n}.jpg", Stance(0, 0, n), a_shot(n, rng)) for n in (0, 50))
-    plan = [Slot("elsewhere", True), Slot("temporal", False)]
-    assert Taker(album, now, right).filled(plan, [], 3) == plan
+    plan = [DistractorSlot("elsewhere", True), DistractorSlot("temporal", False)]
+    assert DistractorPicker(album, now, right).filled(plan, [], 3) == plan

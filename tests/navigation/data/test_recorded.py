@@ -9,7 +9,6 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.navigation.data.building import BuildRule, build_set
 from world2minecraft.navigation.data.planned_walks import Tourist
 from world2minecraft.navigation.data.recorded_walks import (
     checked_at,
@@ -19,6 +18,7 @@ from world2minecraft.navigation.data.recorded_walks import (
     streams_of,
 )
 from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.set_building import BuildRule, build_navigation_set
 from world2minecraft.navigation.records import read_episodes, read_trajectories
 from world2minecraft.navigation.values import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame
@@ -44,7 +44,7 @@ def tour(flat):
 
 def test_a_walk_that_was_written_is_walked_again(flat, flat_path, tour, tmp_path):
     """The same moves as of the program's own tour; the file's names lead nowhere."""
-    own = build_set([flat_path], tmp_path / "own", BuildRule(trajectories=99, work=RULE))
+    own = build_navigation_set([flat_path], tmp_path / "own", BuildRule(trajectories=99, work=RULE))
     moves = {one.moves for one in own.works[0].episodes if one.trajectory_id[:8] == "flat_t00"}
     name = "../../../evil"
     lines = [line(one, 1.62 * 2, tour_id=name, image=name) for one in tour.frames]

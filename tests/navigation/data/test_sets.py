@@ -11,12 +11,16 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.navigation.data.blind_baselines import baselines
-from world2minecraft.navigation.data.building import BuildRule, build_set, composition_of
-from world2minecraft.navigation.data.item_building import LetterDeck, cut
+from world2minecraft.navigation.data.blind_baselines import score_baselines
+from world2minecraft.navigation.data.item_building import LetterBalancer, cut_to_quotas
 from world2minecraft.navigation.data.keyframes import Mark
 from world2minecraft.navigation.data.pictures import are_apart
 from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.set_building import (
+    BuildRule,
+    build_navigation_set,
+    composition_of,
+)
 from world2minecraft.navigation.data.splits import (
     leaks_of,
     scene_splits,
@@ -72,7 +76,7 @@ def test_a_tour_of_an_unseen_scene_is_unseen():
 
 
 def test_letters_come_as_often_as_each_other():
-    deck = LetterDeck(np.random.default_rng(3))
+    deck = LetterBalancer(np.random.default_rng(3))
     dealt = Counter(deck.deal() for _ in range(402))
     assert sorted(dealt) == list("ABCD")
     assert max(dealt.values()) - min(dealt.values()) <= 1
@@ -90,7 +94,7 @@ def test_actions_are_asked_about_evenly_or_not_at_all():
 
 def test_a_cut_takes_from_every_scene():
     items = [action(f"{scene}{n}", scene=scene) for scene in "abc" for n in range(5)]
-    kept = cut(items, {("next_action", "base"): 6})
+    kept = cut_to_quotas(items, {("next_action", "base"): 6})
     assert Counter(item.scene_id for item in kept) == {"a": 2, "b": 2, "c": 2}
     assert kept == [item for item in items if item in kept]
 
@@ -119,7 +123,7 @@ def test_words_that_give_the_answer_away_are_flagged(tmp_path):
         action(f"i{n}", gold, text, ("train", "val_seen")[n % 2], letter="ABCD"[n % 4])
         for n, (text, gold) in enumerate(told * 20)
     ]
-    rows = {row.name: row for row in baselines(items, tmp_path)}
+    rows = {row.name: row for row in score_baselines(items, tmp_path)}
     assert rows["blind"].accuracy.share == 1.0
     assert rows["blind"].is_flagged
     assert rows["oracle"].accuracy.share == 1.0
@@ -133,7 +137,7 @@ def test_balanced_items_leave_the_blind_at_chance(tmp_path):
         for n, split in zip(range(80), ("train", "val_seen") * 40, strict=True)
         for k, gold in enumerate(ACTIONS)
     ]
-    rows = {row.name: row for row in baselines(items, tmp_path)}
+    rows = {row.name: row for row in score_baselines(items, tmp_path)}
     assert rows["blind"].accuracy.share == 0.25
     assert not rows["blind"].is_flagged
 
@@ -153,13 +157,13 @@ def test_an_unknown_composition_is_refused(tmp_path):
     (tmp_path / "placements.json").touch()
     assert composition_of(tmp_path) == "base"
     with pytest.raises(UsageError, match="none of the 1 scenes is of composition extend"):
-        build_set([tmp_path], tmp_path / "out", BuildRule("extend"))
+        build_navigation_set([tmp_path], tmp_path / "out", BuildRule("extend"))
 
 
 @pytest.fixture(scope="module")
 def small_set(flat_path, tmp_path_factory):
     out = tmp_path_factory.mktemp("set")
-    built = build_set([flat_path], out, small_rule())
+    built = build_navigation_set([flat_path], out, small_rule())
     return out, built
 
 
@@ -236,7 +240,7 @@ def test_what_is_told_leads_to_the_end(small_set, flat):
 
 def test_the_same_seed_gives_the_same_bytes(small_set, flat_path, tmp_path):
     out, _ = small_set
-    build_set([flat_path], tmp_path, small_rule())
+    build_navigation_set([flat_path], tmp_path, small_rule())
     for name in ("items.jsonl", "trajectories.jsonl", "episodes.jsonl", "dataset.json"):
         assert (tmp_path / name).read_bytes() == (out / name).read_bytes()
 
@@ -248,7 +252,7 @@ def test_figures_and_pictures_of_a_set(small_set, tmp_path):
     assert (
         "the paper's                 769   79.0   32.9     15     57     78     96    187" in text
     )
-    rows = baselines(built.items, out)
+    rows = score_baselines(built.items, out)
     assert json.dumps(figures(statistics, leaks, rows))
     assert {row.name for row in rows} >= {"uniform", "majority", "blind", "repeat", "nearest"}
     graded = {row.name: row.accuracy for row in rows if row.name.startswith("nearest ")}
@@ -265,9 +269,9 @@ def test_a_missing_or_damaged_picture_is_named(small_set, tmp_path):
     _, built = small_set
     views = [item for item in built.items if item.task == "next_view"][:1]
     with pytest.raises(InputError, match="is not there, though an item shows it"):
-        baselines(views, tmp_path)
+        score_baselines(views, tmp_path)
     place = tmp_path / views[0].current
     place.parent.mkdir(parents=True)
     place.write_bytes(b"no picture")
     with pytest.raises(DamagedFileError, match="is no picture"):
-        baselines(views, tmp_path)
+        score_baselines(views, tmp_path)

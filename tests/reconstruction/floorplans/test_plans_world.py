@@ -9,7 +9,7 @@ from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
 from world2minecraft import cli
-from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import plan_in
 from world2minecraft.cli.reconstruct import say_plan
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z

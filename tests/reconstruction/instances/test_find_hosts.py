@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.reconstruction.instances.merge_pieces import merge_lamp_parts
-from world2minecraft.reconstruction.instances.split_by_support import part_by_hosts
+from world2minecraft.reconstruction.instances.split_by_support import split_by_support
 
 SHAPE = (30, 30, 34)
 GREEN, BEIGE = (40, 120, 40), (220, 200, 150)
@@ -49,25 +49,25 @@ LEAVES = (11, GREEN, 2, 13, 10, 12, 14, 12)
 
 def test_a_lamp_on_a_chest_and_the_plant_beside_it_are_two():
     grid = _room(CHEST, PLANT, LAMP, (11, GREEN, 12, 11, 11, 13, 12, 13))
-    parted = part_by_hosts(_owners(grid), grid)
+    parted = split_by_support(_owners(grid), grid)
     assert parted[12, 9, 12] != parted[12, 14, 3]
     assert len(np.unique(parted[grid.labels == SemanticClass.OBJS])) == 2
 
 
 def test_what_stands_on_one_thing_stays_one():
     grid = _room(CHEST, LAMP, (11, GREEN, 11, 5, 10, 14, 8, 12))
-    np.testing.assert_array_equal(part_by_hosts(_owners(grid), grid), _owners(grid))
+    np.testing.assert_array_equal(split_by_support(_owners(grid), grid), _owners(grid))
 
 
 def test_a_curtain_is_told_from_the_plant_that_leans_on_it():
     grid = _room(CURTAIN, PLANT, LEAVES)
-    parted = part_by_hosts(_owners(grid), grid)
+    parted = split_by_support(_owners(grid), grid)
     assert parted[1, 11, 20] != parted[12, 14, 5]
 
 
 def test_leaves_at_a_wall_are_part_of_their_plant():
     grid = _room((11, GREEN, 4, 12, 1, 8, 16, 14), (11, GREEN, 1, 12, 9, 4, 15, 13))
-    np.testing.assert_array_equal(part_by_hosts(_owners(grid), grid), _owners(grid))
+    np.testing.assert_array_equal(split_by_support(_owners(grid), grid), _owners(grid))
 
 
 @settings(max_examples=15)
@@ -82,7 +82,7 @@ def test_no_cell_is_lost_and_furniture_keeps_its_number(seed):
         labels, grid.confidence, grid.colour, grid.source, grid.instance, 0.08, grid.origin_m
     )
     owners = _owners(noisy)
-    parted = part_by_hosts(owners, noisy)
+    parted = split_by_support(owners, noisy)
     np.testing.assert_array_equal(parted > 0, owners > 0)
     np.testing.assert_array_equal(parted == 2, owners == 2)
 

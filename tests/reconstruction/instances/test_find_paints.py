@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances.split_by_colour import part_by_paint
+from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
 
 SHAPE = (24, 20, 14)
 RED, BLUE = (200, 40, 40), (40, 60, 200)
@@ -32,7 +32,7 @@ def _grid(*boxes):
 
 
 def _parted(grid):
-    return part_by_paint((grid.labels == SemanticClass.OBJS).astype(np.int32), grid)
+    return split_by_colour((grid.labels == SemanticClass.OBJS).astype(np.int32), grid)
 
 
 def test_a_red_box_beside_a_blue_one_is_its_own():

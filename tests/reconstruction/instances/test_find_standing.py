@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.instances.object_extent import layers_reached
+from world2minecraft.reconstruction.instances.object_extent import vertical_extent
 
 TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
 
@@ -89,7 +89,7 @@ def test_a_pendant_hangs_from_the_ceiling_of_its_own_storey():
         origin_m=np.array([0.0, 0.0, -0.08]),
     )
     cells = np.argwhere(labels == SemanticClass.OBJS)
-    assert layers_reached(cells, grid, SemanticClass.OBJS) == (20, 27)
+    assert vertical_extent(cells, grid, SemanticClass.OBJS) == (20, 27)
 
 
 def test_what_lies_on_a_table_or_hangs_on_a_wall_reaches_no_farther():

@@ -77,10 +77,10 @@ def test_a_universal_one_says_what_the_librarys_own_read_out_says(folders, kind)
     got = model.predict(COLOUR, EACH)[..., : len(NAMES)]
     values = np.asarray(model.predict(COLOUR, EACH))
     assert values.shape == (*got.shape[:2], CLASS_COUNT)
-    from world2minecraft.external_models.transformers_hub import prepared
+    from world2minecraft.external_models.transformers_hub import preprocess
 
     with torch.inference_mode():
-        pixels = torch.from_numpy(prepared(COLOUR, READY))
+        pixels = torch.from_numpy(preprocess(COLOUR, READY))
         found = model._network(pixel_values=pixels, **model._told)
     kinds = found.class_queries_logits.softmax(dim=-1)[..., :-1]
     scores = torch.einsum("bqc,bqhw->bchw", kinds, found.masks_queries_logits.sigmoid())[0]

@@ -8,7 +8,7 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.reconstruction.instances import find_objects, measured
+from world2minecraft.reconstruction.instances import find_objects, measure_object
 from world2minecraft.reconstruction.retrieval import fit_template, furnish, ranked_matches
 
 NAMES = ["chair", "sofa", "double_bed", "desk", "bookcase"]
@@ -89,8 +89,8 @@ def test_the_right_template_is_the_best_of_those_offered(name):
 
 def test_measured_tells_an_object_as_stage_five_does():
     grid, one = found_object("sofa", 1)
-    again = measured(grid, 9, one.class_id, one.cells)
+    again = measure_object(grid, 9, one.class_id, one.cells)
     assert again.id == 9 and again.yaw_deg == one.yaw_deg
     assert np.allclose(again.center_m, one.center_m) and np.allclose(again.size_m, one.size_m)
-    other = measured(grid, 9, 10, one.cells)
+    other = measure_object(grid, 9, 10, one.cells)
     assert other.class_id == 10 and (grid.labels[tuple(one.cells.T)] == 7).all()

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.alignment.gravity import frame_of_up
+from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.open_scan import ALIGNED_FRAMES
 from world2minecraft.capture.quality.view_directions import up_of_cameras

@@ -16,7 +16,7 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import HEIF_SUFFIXES
 from world2minecraft.capture.options import LEAST_FRAMES, ScanOptions
 from world2minecraft.capture.poster_marker import lies_about
-from world2minecraft.capture.readers.photo_orientation import PhotoFacts, UprightPhoto, photo_facts
+from world2minecraft.capture.readers.photo_exif import PhotoFacts, UprightPhoto, photo_facts
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 

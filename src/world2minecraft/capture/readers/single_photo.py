@@ -8,7 +8,7 @@ import re
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.photo_orientation import PhotoFacts, UprightPhoto, photo_facts
+from world2minecraft.capture.readers.photo_exif import PhotoFacts, UprightPhoto, photo_facts
 from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import focal_px_of_fov

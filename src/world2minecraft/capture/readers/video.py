@@ -17,7 +17,7 @@ from world2minecraft.capture.images import MAX_PIXELS, ImagePlace
 from world2minecraft.capture.options import LEAST_FRAMES, ScanOptions
 from world2minecraft.capture.poster_marker import lies_about
 from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open_movie
-from world2minecraft.capture.readers.photo_orientation import DIAGONAL_MM
+from world2minecraft.capture.readers.photo_exif import DIAGONAL_MM
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.errors import (
     CaptureError,

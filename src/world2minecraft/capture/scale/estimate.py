@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.capture.alignment.align import LEAST_POINTS, ImplausibleRoomError
+from world2minecraft.capture.alignment.room_frame import LEAST_POINTS, ImplausibleRoomError
 from world2minecraft.capture.scale import priors
 from world2minecraft.capture.scale.known_lengths import LEVELS, Known, candidates
 from world2minecraft.capture.scale.measurements import Level, Measures, measure

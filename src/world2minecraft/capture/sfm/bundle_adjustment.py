@@ -16,10 +16,10 @@ from world2minecraft.capture.sfm.camera_groups import (
     normalised,
     to_colmap,
 )
-from world2minecraft.capture.sfm.colmap import colmap
 from world2minecraft.capture.sfm.features import Features, unit_px
 from world2minecraft.capture.sfm.matching import Links
 from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.core.types import Camera
 
 # Stated poses hold photos that see too little to place themselves.

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.sfm.colmap import PLACE, colmap
 from world2minecraft.capture.sfm.parameters import PosingParameters
 from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream

@@ -19,11 +19,11 @@ from world2minecraft.capture.sfm.camera_groups import (
     to_colmap,
     usual_camera,
 )
-from world2minecraft.capture.sfm.colmap import colmap
 from world2minecraft.capture.sfm.features import Features, gather
 from world2minecraft.capture.sfm.matching import Links, link_photos
 from world2minecraft.capture.sfm.parameters import PosingParameters
 from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.capture.sfm.results import middle_depth, scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.progress import Progress, silent

@@ -9,10 +9,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from world2minecraft.capture.sfm.camera_groups import Lens, to_colmap
-from world2minecraft.capture.sfm.colmap import colmap
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.parameters import PosingParameters
 from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 

@@ -13,7 +13,6 @@ from world2minecraft.capture.sfm.camera_groups import (
     shared_lenses,
     to_colmap,
 )
-from world2minecraft.capture.sfm.colmap import PLACE, colmap
 from world2minecraft.capture.sfm.features import Features, gather, unit_px
 from world2minecraft.capture.sfm.incremental_mapping import (
     focal_facts,
@@ -24,6 +23,7 @@ from world2minecraft.capture.sfm.incremental_mapping import (
 from world2minecraft.capture.sfm.matching import Links, link_photos
 from world2minecraft.capture.sfm.parameters import PosingParameters
 from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
 from world2minecraft.capture.sfm.results import middle_depth, scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.errors import CaptureError

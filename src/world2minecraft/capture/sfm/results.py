@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.sfm.bundle_adjustment import Solved
-from world2minecraft.capture.sfm.colmap import PLACE
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.matching import Links
+from world2minecraft.capture.sfm.pycolmap_session import PLACE
 from world2minecraft.capture.sfm.similarity_transform import Similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, SparseScene

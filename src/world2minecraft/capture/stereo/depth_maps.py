@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from world2minecraft.capture.stereo.consistency import confirm, without_islands
-from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto, small_photos
 from world2minecraft.capture.stereo.monocular_depth import DepthModel, filled
 from world2minecraft.capture.stereo.parameters import StereoParameters
 from world2minecraft.capture.stereo.planar_regions import flattened
 from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep
+from world2minecraft.capture.stereo.stereo_photos import SmallPhoto, small_photos
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent

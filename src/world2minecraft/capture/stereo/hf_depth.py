@@ -7,7 +7,7 @@ from world2minecraft.capture.stereo.monocular_depth import Kind
 from world2minecraft.core.errors import InputError, first_line
 from world2minecraft.core.types import Camera
 from world2minecraft.external_models import transformers_hub as hub
-from world2minecraft.external_models.transformers_hub import prepared, single_thread
+from world2minecraft.external_models.transformers_hub import preprocess, single_thread
 
 # Models that give metres without saying so in their config. DepthPro gives inverse depth.
 METRIC_TYPES = ("zoedepth", "glpn")
@@ -24,10 +24,10 @@ class HuggingFaceDepth:
     kind: Kind
 
     def __init__(self, model: str):
-        transformers = hub.library("a depth model")
-        self.name = hub.checked_name(model)
-        self._ready = hub.preparation(model, transformers)
-        self._network = hub.network(model, transformers.AutoModelForDepthEstimation)
+        transformers = hub.import_transformers("a depth model")
+        self.name = hub.display_name(model)
+        self._ready = hub.load_preprocessor(model, transformers)
+        self._network = hub.load_network(model, transformers.AutoModelForDepthEstimation)
         config = self._network.config
         states_metres = getattr(config, "depth_estimation_type", None) == "metric"
         metric = states_metres or config.model_type in METRIC_TYPES
@@ -41,7 +41,7 @@ class HuggingFaceDepth:
         """
         with single_thread() as torch:
             try:
-                pixels = torch.from_numpy(prepared(colour, self._ready))
+                pixels = torch.from_numpy(preprocess(colour, self._ready))
                 found = self._network(pixel_values=pixels).predicted_depth
             except RuntimeError as error:
                 reason = f"the network fails: {first_line(error)}"

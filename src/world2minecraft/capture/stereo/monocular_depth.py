@@ -12,8 +12,8 @@ from typing import Literal, Protocol
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from world2minecraft.capture.stereo.downscaled_photos import small_photos
 from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.stereo_photos import small_photos
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.registry import Registry

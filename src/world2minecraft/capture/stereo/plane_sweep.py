@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto
 from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.stereo_photos import SmallPhoto
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.jit import njit
 

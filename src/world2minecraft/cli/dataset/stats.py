@@ -68,7 +68,7 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.minecraftocc.statistics import statistics_text
-    from world2minecraft.minecraftocc.statistics.reading import statistics_of
+    from world2minecraft.minecraftocc.statistics.dataset_statistics import statistics_of
 
     if plots is not None:
         from world2minecraft.minecraftocc.statistics.plots import need_matplotlib

@@ -189,7 +189,7 @@ class _Asked:
 
     def _of_files(self, progress: "Progress") -> dict[str, Any]:
         from world2minecraft.networks.data.splits import evenly
-        from world2minecraft.networks.predictions import SavedPredictions, grid_like
+        from world2minecraft.networks.saved_predictions import SavedPredictions, grid_like
         from world2minecraft.networks.scoring import keys_to_score, said_by_files
 
         saved = SavedPredictions(self.said, self.order, self.classes)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.data.building import BuildRule, Built
+    from world2minecraft.navigation.data.set_building import BuildRule, BuiltSet
 
 EXAMPLES = """\
 w2m vln build OUT --out SET                                of one reconstruction
@@ -95,9 +95,9 @@ def run(
         read. OutputError: the folder cannot be written.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.navigation.data.building import BuildRule
     from world2minecraft.navigation.data.recorded_walks import checked_at
     from world2minecraft.navigation.data.scene_items import WorkRule
+    from world2minecraft.navigation.data.set_building import BuildRule
 
     work = WorkRule(
         views=views, move_set=_moves(moves), balanced=not every_keyframe, size_px=_size(size),
@@ -119,12 +119,12 @@ def run(
 
 def _built(
     out: Path, scenes: list[Path], made: tuple[int, int], rule: "BuildRule", workers: int | None
-) -> "Built":
+) -> "BuiltSet":
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
-    from world2minecraft.navigation.data.building import build_set
     from world2minecraft.navigation.data.generated_scenes import make_scenes
+    from world2minecraft.navigation.data.set_building import build_navigation_set
     from world2minecraft.navigation.records import SCENES_FOLDER
     from world2minecraft.reconstruction.run_folder import check_writable
 
@@ -133,7 +133,7 @@ def _built(
     hands, seed = workers or usable_cores(), rule.work.seed
     with shown() as progress:
         places = scenes + make_scenes(out / SCENES_FOLDER, *made, seed, hands, progress)
-        return build_set(places, out, rule, progress, hands)
+        return build_navigation_set(places, out, rule, progress, hands)
 
 
 def _moves(name: str) -> str:
@@ -154,7 +154,7 @@ def _size(text: str) -> tuple[int, int]:
     return int(parts[0]), int(parts[1])
 
 
-def _say(out: Path, built: "Built") -> None:
+def _say(out: Path, built: "BuiltSet") -> None:
     walks = sum(len(work.trajectories) for work in built.works)
     refused = sum((sum(work.refused.values()) for work in built.works), 0)
     print(f"\n{len(built.items):,} items of {walks:,} walks in {len(built.works)} scenes.")

@@ -82,7 +82,7 @@ def run(
     """
     from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.external_models.chat_transport import is_endpoint
-    from world2minecraft.navigation.agents.question_answering import ModelAnswerer
+    from world2minecraft.navigation.agents.question_answering import VlmAnswerer
     from world2minecraft.navigation.records import read_items
     from world2minecraft.navigation.running.item_evaluation import TRAININGS, picked_items
 
@@ -97,7 +97,7 @@ def run(
     chat = None
     if is_endpoint(agent):
         chat = asked.open(agent, target)
-        answerer: Any = ModelAnswerer(chat, place, style, most_px=max_pixels)
+        answerer: Any = VlmAnswerer(chat, place, style, most_px=max_pixels)
     else:
         answerer, items = _baseline(agent, every, items, place)
         training = "baseline"
@@ -124,10 +124,10 @@ def _baseline(
     from world2minecraft.core.errors import UnknownNameError, UsageError
     from world2minecraft.external_models.chat_transport import ENDPOINTS
     from world2minecraft.navigation.agents.question_answering import LetterAnswerer
-    from world2minecraft.navigation.data.blind_baselines import NAMES, baseline_letters
+    from world2minecraft.navigation.data.blind_baselines import BASELINES, baseline_letters
 
-    if name not in NAMES:
-        raise UnknownNameError("agent", name, [*NAMES, *ENDPOINTS])
+    if name not in BASELINES:
+        raise UnknownNameError("agent", name, [*BASELINES, *ENDPOINTS])
     letters = baseline_letters(name, every, items, place)
     known = [item for item in items if item.item_id in letters]
     if not known:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.agents.values import Decision, Sight
+    from world2minecraft.navigation.agents.values import Decision, Observation
     from world2minecraft.navigation.running.episode_runner import Walk
     from world2minecraft.navigation.values import Episode, Move, Stance
 
@@ -29,7 +29,7 @@ class LinesLive:
         self._say(f"{agent}: {episode.instruction.text}")
 
     def decided(
-        self, sight: "Sight", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
+        self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
         """Say what was decided."""
         thought = f"   {decision.thought}" if decision.thought else ""
@@ -65,7 +65,7 @@ class ScreenLive(LinesLive):
         self._draw()
 
     def decided(
-        self, sight: "Sight", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
+        self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
         """Show the view and add a row."""
         if sight.colour.shape[0] > 1:

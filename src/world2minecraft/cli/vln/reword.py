@@ -79,11 +79,11 @@ def _rewritten(
 ) -> "tuple[NavigationSet, Counter[str]]":
     from world2minecraft.cli.progress import shown
     from world2minecraft.external_models.chat_messages import Turn
-    from world2minecraft.external_models.structured_replies import spoken
+    from world2minecraft.external_models.structured_replies import strip_reasoning
     from world2minecraft.navigation.data.rewording import rewritten_set
 
     def ask(prompt: str) -> str:
-        return spoken(chat.ask((Turn("user", (prompt,)),))[1].text)
+        return strip_reasoning(chat.ask((Turn("user", (prompt,)),))[1].text)
 
     with shown() as progress:
         return rewritten_set(made, ask, chat.name, jobs, progress)

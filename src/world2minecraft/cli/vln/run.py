@@ -113,7 +113,7 @@ def run(
         UsageError: a name or an option is wrong. InputError: the scene or the goal cannot be had.
         ServerError: a model cannot be asked. BudgetError: a cap is reached.
     """
-    from world2minecraft.navigation.agents import agent_of
+    from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.sentence_goals import Wish
 
     folder = out or option.folder_of(agent)
@@ -125,7 +125,7 @@ def run(
         return chats[0]
 
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
-    walker = agent_of(agent, chat, chunk=chunk, history=history, **how)
+    walker = make_agent(agent, chat, chunk=chunk, history=history, **how)
     wish = Wish(instruction, goal, _stance(start), moves, max_steps)
     with closing(_Grounds(server)) as grounds, _invited(walker, no_browser):
         episodes = _episodes(scene, wish, count, grounds)
@@ -189,7 +189,7 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
     from dataclasses import replace
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.navigation.records import EPISODES, read_episodes, scene_place
+    from world2minecraft.navigation.records import EPISODES, read_episodes, resolve_scene_path
     from world2minecraft.navigation.running.sentence_goals import episode_of
 
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
@@ -199,7 +199,7 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
         if not found:
             raise UsageError(f"{scene} has no episode")
         folder = scene if scene.is_dir() else scene.parent
-        return [replace(one, scene=str(scene_place(one.scene, folder))) for one in found]
+        return [replace(one, scene=str(resolve_scene_path(one.scene, folder))) for one in found]
     if not wish.instruction:
         raise UsageError('say what to do, such as w2m vln run OUT "Go to the table"')
     return [episode_of(grounds.scene(str(scene)), wish)]
@@ -237,7 +237,7 @@ def _walk(
     write_episodes(folder / "episodes.jsonl", episodes)
     facts: dict[str, Any] = {"move_sets": sorted({one.move_set for one in episodes}), "seed": seed}
     if chats:
-        facts |= {"model": chats[0].name, "cost": chats[0].ledger.told()}
+        facts |= {"model": chats[0].name, "cost": chats[0].ledger.to_json()}
     return write_course(folder, walks, beside, facts)
 
 

@@ -49,7 +49,7 @@ def run(
         InputError: it is no set, or a picture is missing.
     """
     from world2minecraft.core.files import write_json
-    from world2minecraft.navigation.data.blind_baselines import baselines as score
+    from world2minecraft.navigation.data.blind_baselines import score_baselines as score
     from world2minecraft.navigation.data.splits import leaks_of
     from world2minecraft.navigation.data.statistics import figures, statistics_of, statistics_text
     from world2minecraft.navigation.records import read_items

@@ -13,13 +13,10 @@ from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraftocc.block_map.context import Context
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, matches
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 
-# Other classes for what is labelled already: a map over fine classes.
-#
-# A stored sample keeps which block and which design each cell is of, so that its 12 classes can be
-# made anew by another map. Where a fine class alone does not tell (planks are floor, wall or
-# ceiling), what is known stays.
+MOST_OBJECTS = 65_535
+EMPTY = CLASS_NAMES[0]
 
 
 def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:
@@ -69,9 +66,6 @@ def remapped(
     return np.where(changed, values[fine], labels).astype(np.uint8)
 
 
-# A block map as JSON: what each block of the game stands for, for programs that read no YAML.
-
-
 def block_map_json(rules: BlockMap) -> dict[str, Any]:
     """Return a map as a tree of plain values.
 
@@ -102,10 +96,6 @@ def _rule(rule: Rule) -> dict[str, Any]:
     if rule.shares:
         found["share"] = {name: list(span) for name, span in rule.shares.items()}
     return found
-
-
-MOST_OBJECTS = 65_535
-EMPTY = CLASS_NAMES[0]
 
 
 def classify(volume: BlockVolume, rules: BlockMap) -> BlockVolume:

@@ -18,8 +18,6 @@ from world2minecraft.minecraftocc.block_map.room_detection import (
 )
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, Span
 
-# What a rule of a block map can ask: the names of conditions, and the measures of things.
-
 # A condition holds or not at a block. Zones first: a block is in one of them.
 CONDITIONS = {
     "floor": "the layer that one walks on, of a storey's rooms",
@@ -55,9 +53,14 @@ MEASURES = {
     "filled": "the share of its box that is filled, 0 to 1",
     "open": "the share of its columns with nothing at the floor, 0 to 1: under a table's top",
 }
-
-
-# The things inside rooms, with their measures in metres and what they are made of.
+SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
+PLATE_M = 0.66  # Pictures hang higher than seats are; two blocks of a third of a metre.
+TALL_M = 1.4  # What is higher and of one height is one: wardrobes of two woods.
+UNDER_M = 0.5  # How thick a floor is, and what goes on of a wall beside it.
+ROOF_M, SKY_M, WIDE_M = 3.0, 1.8, 1.5
+SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+COARSE = 2.0  # Blocks per metre under which a chair is one block.
+ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "inside": INSIDE}
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,17 +109,7 @@ def shares_of(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
     return counts / np.maximum(counts.sum(1, keepdims=True), 1)
 
 
-# Which blocks inside rooms are one piece: a cupboard, a sofa, a curtain over it.
-#
-# Furniture stands side by side, so blocks beside each other are of one piece only where they are the
-# same; blocks on one another always are, but for what hangs: curtains and pictures over a sofa.
-# Without the hanging ones that gave, in eight generated houses at 2 to 4 blocks a metre, 1 to 1.4
-# times as many pieces as there are, 85 to 96 of 100 blocks of a piece's own class; all that touches
-# gave half as many.
 
-SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
-PLATE_M = 0.66  # Pictures hang higher than seats are; two blocks of a third of a metre.
-TALL_M = 1.4  # What is higher and of one height is one: wardrobes of two woods.
 
 
 def pieces_of(
@@ -214,11 +207,7 @@ def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1, first
 
 
-# How the conditions of a rule are found, one function each, from a volume's zones and kinds.
 
-UNDER_M = 0.5  # How thick a floor is, and what goes on of a wall beside it.
-ROOF_M, SKY_M, WIDE_M = 3.0, 1.8, 1.5
-SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
 
 def shifted(values: np.ndarray, x: int, y: int, z: int) -> np.ndarray:
@@ -331,8 +320,6 @@ MAKERS: dict[str, Callable[["Context"], np.ndarray]] = {
 }
 
 
-COARSE = 2.0  # Blocks per metre under which a chair is one block.
-ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "inside": INSIDE}
 
 
 class Context:

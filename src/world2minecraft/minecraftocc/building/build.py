@@ -20,7 +20,7 @@ from world2minecraft.minecraftocc.building.cpu_clock import (
     milliseconds_an_image,
 )
 from world2minecraft.minecraftocc.building.process_registry import dismiss, wait_for_others
-from world2minecraft.minecraftocc.building.scenes import SceneFacts, SceneTask, survey
+from world2minecraft.minecraftocc.building.scene_survey import SceneFacts, SceneTask, survey
 from world2minecraft.minecraftocc.building.shard_rendering import (
     in_order,
     index_shard,
@@ -47,15 +47,12 @@ from world2minecraft.minecraftocc.store.index import arrow_modules
 from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
 from world2minecraft.minecraftocc.store.shard import PART
 from world2minecraft.minecraftocc.store.writer import finish_store
-from world2minecraft.minecraftocc.values import FineClass
-
-# How the images of a split are shared, where some scenes have fewer views than others.
-#
-# Every scene is asked for its share; what one cannot give is asked of those that gave all. The same
-# answers give the same shares, so a build that was broken off comes to the same.
+from world2minecraft.minecraftocc.types import FineClass
 
 MOST_ROUNDS = 6
 Look = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
+_LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
+EMPTY = FineClass("minecraft:air")
 
 
 def shared_views(scenes: Iterable[SceneSpec], look: Look) -> list[SceneSpec]:
@@ -101,11 +98,6 @@ def _more(
     ]
 
 
-# Compiling the inner loops once, before several processes would all do it at the same time.
-
-_LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
-
-
 def is_cold() -> bool:
     """Whether the inner loops of a sample are still to be compiled."""
     return not is_compiled(_LAST)
@@ -116,9 +108,6 @@ def warm(task: SceneTask, tick: Callable[[int], None]) -> None:
     facts, _ = survey(task, tick)
     if facts.views:
         studio_of(task.folder, task.spec, task.recipe).sample(0, StageClock())
-
-
-EMPTY = FineClass("minecraft:air")
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.minecraftocc.building.cpu_clock import StageClock
 from world2minecraft.minecraftocc.building.process_registry import of_the_crew
 from world2minecraft.minecraftocc.building.recorded_views import recorded, screenshot
-from world2minecraft.minecraftocc.building.scenes import (
+from world2minecraft.minecraftocc.building.scene_survey import (
     check_digest,
     poses_path,
     read_facts,
@@ -32,12 +32,10 @@ from world2minecraft.minecraftocc.store.sample_files import pack_sample
 from world2minecraft.minecraftocc.store.shard import ShardWriter
 from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
-from world2minecraft.minecraftocc.values import OccSample, SceneVoxels
+from world2minecraft.minecraftocc.types import OccSample, SceneVoxels
 from world2minecraft.rendering import BlockScene, LookLight, prepare_scene, render_volume
 from world2minecraft.rendering.presentation.shot_frames import exposed
 from world2minecraft.rendering.views import Shot
-
-# A scene made ready: from a planned view to a sample, with the CPU time of each stage.
 
 COLOUR = ("colour", "depth")
 

@@ -7,7 +7,16 @@ from typing import Any, Protocol
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 
-# The simplest engine: this process, one item after another.
+Tick = Callable[[int], None]  # Called with how many images more are done.
+Task = Callable[[Any, Tick], Any]  # At the top of a module; what it takes and gives is sent.
+ENGINES = Registry(
+    "engine",
+    {
+        "pool": "world2minecraft.minecraftocc.engine.process_pool:PoolEngine",
+        "ray": "world2minecraft.minecraftocc.engine.ray_cluster:RayEngine",
+    },
+)
+MOST_JOBS = 1024
 
 
 class HereEngine:
@@ -35,17 +44,7 @@ class HereEngine:
             yield number, task(item, tick)
 
 
-Tick = Callable[[int], None]  # Called with how many images more are done.
-Task = Callable[[Any, Tick], Any]  # At the top of a module; what it takes and gives is sent.
 
-ENGINES = Registry(
-    "engine",
-    {
-        "pool": "world2minecraft.minecraftocc.engine.process_pool:PoolEngine",
-        "ray": "world2minecraft.minecraftocc.engine.ray_cluster:RayEngine",
-    },
-)
-MOST_JOBS = 1024
 
 
 class Engine(Protocol):

@@ -20,7 +20,8 @@ from typing import Any
 from world2minecraft.core.errors import WorkerError
 from world2minecraft.rendering.batch.workers import sendable
 
-# What a process of the pool does: it takes orders through a pipe until that ends.
+MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
+PATIENCE_S = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,12 +108,8 @@ def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
         return Failed(sendable(error))
 
 
-# Not by concurrent.futures: when a process of ProcessPoolExecutor is killed, every item that waits
-# fails with BrokenProcessPool, and which one killed it cannot be told.
 
 
-MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
-PATIENCE_S = 5.0
 
 
 @dataclass(eq=False)

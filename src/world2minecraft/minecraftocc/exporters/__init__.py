@@ -5,7 +5,7 @@ all, and a sample's last file says that it is finished, so that a stopped export
 stopped. ``docs/occupancy-formats.md`` has every file and key.
 """
 
-from world2minecraft.minecraftocc.exporters.exporting import ExportReport, export_samples
+from world2minecraft.minecraftocc.exporters.export import ExportReport, export_samples
 from world2minecraft.minecraftocc.exporters.options import FORMATS, ExportRule
 
 __all__ = ["FORMATS", "ExportReport", "ExportRule", "export_samples"]

@@ -18,7 +18,7 @@ from world2minecraft.minecraftocc.exporters.options import ExportRule
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
 from world2minecraft.minecraftocc.formats.label_boxes import SceneGrid, StoredFrame, stored_frame
 from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
-from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, OccSample
+from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
 OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
 

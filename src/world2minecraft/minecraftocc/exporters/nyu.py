@@ -28,7 +28,7 @@ from world2minecraft.minecraftocc.formats.label_boxes import (
 )
 from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, bin_bytes, downsampled
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}
 AXES = (0, 2, 1)  # Ours x, y, z; theirs x, z, y. The same swap leads back.

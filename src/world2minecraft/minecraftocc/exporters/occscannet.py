@@ -31,7 +31,7 @@ from world2minecraft.minecraftocc.formats.label_boxes import (
 )
 from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 
 AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.
 ORIGIN_DECIMALS = 4  # EmbodiedOcc's loader rounds to them, so that all loaders see one box.

@@ -7,10 +7,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.rendering.output.images import colour_bytes
-
-# What may be chosen of an export, and what an exporter is.
 
 FORMATS = ("nyu", "occscannet", "embodied", "npz")
 UNKNOWN_CHOICES = ("keep", "empty")

@@ -16,18 +16,16 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.output.images import number_bytes
 
-# Depth as the occupancy data sets' PNGs hold it.
-#
-# NYU's PNGs hold millimetres whose 16 bits are turned left by three. ISO turns them back; Symphonies
-# divides by 8000 instead, which is the same up to 8.191 m: beyond, the turn wraps around. So whole
-# millimetres up to 8.191 m are written, times eight, and both read them alike; what is farther is
-# written as a hole. OccScanNet's PNGs hold millimetres.
-
 NYU_FAR_MM = 8191
 MM_FAR = 65534  # 65535 is a hole to some cameras' readers.
 LOW_BITS_SHARE = 0.01
-
 Code = Literal["nyu", "mm"]
+WIDTH_PX, HEIGHT_PX = 640, 480
+HALF_PX = 0.5
+NYU_FOCAL_PX = 518.8579
+NYU_CAMERA = Camera(WIDTH_PX, HEIGHT_PX, NYU_FOCAL_PX, NYU_FOCAL_PX, 320 + HALF_PX, 240 + HALF_PX)
+SLACK_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
+SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
 
 
 def depth_png(depth_m: np.ndarray, code: Code) -> bytes:
@@ -56,12 +54,6 @@ def metres_of(raw: np.ndarray, code: Code) -> np.ndarray:
     return DepthEncoding(str(1 / 8000) if any_bits else "rotated").to_metres(raw)
 
 
-WIDTH_PX, HEIGHT_PX = 640, 480
-HALF_PX = 0.5
-NYU_FOCAL_PX = 518.8579
-NYU_CAMERA = Camera(WIDTH_PX, HEIGHT_PX, NYU_FOCAL_PX, NYU_FOCAL_PX, 320 + HALF_PX, 240 + HALF_PX)
-SLACK_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
-SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
 
 
 def is_same(camera: Camera, other: Camera) -> bool:

@@ -13,11 +13,10 @@ from world2minecraft.core.errors import InputError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
-from world2minecraft.minecraftocc.values import DEFAULT_SHAPE, DEFAULT_VOXEL_M, OccSample
-
-# The labelled box of an image, in a world of its own or in the room's, and its masks.
+from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, DEFAULT_VOXEL_M, OccSample
 
 TURN_SLACK_DEG = 0.01
+MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 GB.
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +102,6 @@ def chosen_labels(labels: np.ndarray, in_image: np.ndarray | None, unknown: str)
     if unknown == "empty":
         result = np.where(result == UNKNOWN, 0, result)
     return np.ascontiguousarray(result.astype(np.uint8))
-
-
-MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 GB.
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,11 +17,6 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, reason_of
 from world2minecraft.core.files import read_bytes
 
-# The stack of operations that a pickle of arrays is, and the few names that it may hold.
-#
-# Each ``do_NAME`` is one operation of the pickle protocols 0 to 5 by the name that ``pickletools``
-# gives it. There is no operation that imports, looks up an attribute or calls what was looked up.
-
 MAX_DEPTH = 100_000
 _MODULES = ("numpy.core.multiarray", "numpy._core.multiarray")
 _NUMERIC = ("numpy.core.numeric", "numpy._core.numeric")
@@ -37,6 +32,13 @@ _NAMES = {
     **{(module, name): "bytes" for module in _BUILTINS for name in ("bytes", "bytearray")},
 }
 _CODE = re.compile(r"[<>=|]?[biufcSU?]\d{0,3}")
+Value = Any  # np.ndarray, str, int, float, bool, None, or a list or tuple of them.
+KINDS = "biuf"  # Of arrays: truth values, whole numbers, floats.
+_RECONSTRUCT = b"cnumpy.core.multiarray\n_reconstruct\ncnumpy\nndarray\nK\x00\x85C\x01b\x87R"
+_DTYPE = b"cnumpy\ndtype\n"
+MAX_BYTES = 512 << 20  # A scene of 220 x 220 x 90 cells with float64 centres takes 105 MB.
+MAX_OPERATIONS = 200_000  # A frame takes about a hundred.
+_BROKEN = (ValueError, TypeError, KeyError, IndexError, OverflowError, MemoryError, AttributeError)
 
 
 class Refusal(Exception):
@@ -326,16 +328,7 @@ def _made(name: str, arguments: tuple[Any, ...]) -> Any:
     raise Refusal(f"calls {name} as no array does")
 
 
-# Pickles as the loaders of others open them, written by hand.
-#
-# In: a dict of arrays, texts, numbers and lists of them. Out: bytes of pickle protocol 3, the same
-# for the same values. Python's own pickler names numpy's modules as the numpy that runs it does;
-# numpy 2 moved them, and the loaders run on numpy 1. Here they have the old names, which both know.
 
-Value = Any  # np.ndarray, str, int, float, bool, None, or a list or tuple of them.
-KINDS = "biuf"  # Of arrays: truth values, whole numbers, floats.
-_RECONSTRUCT = b"cnumpy.core.multiarray\n_reconstruct\ncnumpy\nndarray\nK\x00\x85C\x01b\x87R"
-_DTYPE = b"cnumpy\ndtype\n"
 
 
 def pickle_bytes(values: Mapping[str, Value]) -> bytes:
@@ -400,9 +393,6 @@ def _array(values: np.ndarray) -> bytes:
     return _RECONSTRUCT + b"(K\x01" + shape + dtype + b"\x89" + size + b"tb"
 
 
-MAX_BYTES = 512 << 20  # A scene of 220 x 220 x 90 cells with float64 centres takes 105 MB.
-MAX_OPERATIONS = 200_000  # A frame takes about a hundred.
-_BROKEN = (ValueError, TypeError, KeyError, IndexError, OverflowError, MemoryError, AttributeError)
 
 
 def read_pickle(path: str | Path, limit_bytes: int = MAX_BYTES) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from world2minecraft.minecraftocc.importers.samples import (
     checked_numbers,
     sample_of,
 )
-from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, OccSample
+from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
 _FRAME = re.compile(r"([\w-]{1,100})_(\d{1,9})_new", re.ASCII)
 MAX_SCENE_BYTES = 2 << 30

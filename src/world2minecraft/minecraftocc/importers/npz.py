@@ -10,7 +10,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import array_names, read_npz
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, OccLabels, OccSample
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 
 SPLITS = {"train": "train", "test": "test", "val": "val", "all": ""}
 MASKS = ("labels", "fine", "instance", "in_frustum", "hits", "free")

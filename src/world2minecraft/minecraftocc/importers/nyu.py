@@ -23,7 +23,7 @@ from world2minecraft.minecraftocc.importers.samples import (
     resized_colour,
     sample_of,
 )
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}
 AXES = (0, 2, 1)  # Theirs x, z up, y; ours x, y, z. The same swap leads back.

@@ -25,7 +25,7 @@ from world2minecraft.minecraftocc.importers.samples import (
     resized_colour,
     sample_of,
 )
-from world2minecraft.minecraftocc.values import DEFAULT_SHAPE, OccSample
+from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, OccSample
 
 AXES = (1, 0, 2)  # Theirs y, x, z; ours x, y, z. The same swap leads back.
 LISTS = {

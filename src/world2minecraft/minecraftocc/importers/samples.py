@@ -23,7 +23,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.formats.cameras import Code, metres_of
 from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
-from world2minecraft.minecraftocc.values import (
+from world2minecraft.minecraftocc.types import (
     DEFAULT_SHAPE,
     DEFAULT_VOXEL_M,
     FineClass,
@@ -32,7 +32,10 @@ from world2minecraft.minecraftocc.values import (
     OccSample,
 )
 
-# A data set of another format: keys, and a sample for each, read when it is asked for.
+CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
+INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
+SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
+HITS_FACT, FREE_FACT = "first seen, by depth", "centres in front of the depth"
 
 
 @dataclass(frozen=True)
@@ -72,9 +75,6 @@ class ImportedSet:
         return len(self.splits)
 
 
-# The pictures beside labels: colour and depth, where they are there.
-
-
 def colour_at(path: Path) -> np.ndarray | None:
     """Read uint8 [H, W, 3], or return None where there is no file."""
     return read_colour(path) if path.is_file() else None
@@ -98,12 +98,6 @@ def resized_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndar
         return pixels
     image = Image.fromarray(pixels).resize((width_px, height_px), Image.Resampling.BILINEAR)
     return np.asarray(image)
-
-
-CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
-INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
-SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
-HITS_FACT, FREE_FACT = "first seen, by depth", "centres in front of the depth"
 
 
 @dataclass(frozen=True, eq=False)

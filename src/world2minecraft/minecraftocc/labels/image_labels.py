@@ -28,7 +28,7 @@ from world2minecraft.minecraftocc.labels.label_kernels import (
     sources,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.values import LabelRegion, OccLabels, SceneVoxels
+from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.rendering import BlockScene, render_volume
 
 AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.

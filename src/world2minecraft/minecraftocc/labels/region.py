@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.view_region import LabelRegion, RegionRule, label_region, view_yaw_deg
-from world2minecraft.minecraftocc.values import SceneVoxels
+from world2minecraft.minecraftocc.types import SceneVoxels
 
 __all__ = ["RegionRule", "floor_under", "label_region", "region_in", "view_yaw_deg"]
 

@@ -16,20 +16,18 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.labels.box_kernels import NOBODY, ROUND, fill_slab
-from world2minecraft.minecraftocc.labels.materials import Designs, FineNames, fine_names
-from world2minecraft.minecraftocc.values import DEFAULT_VOXEL_M, SceneVoxels
+from world2minecraft.minecraftocc.labels.fine_classes import Designs, FineNames, fine_names
+from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, SceneVoxels
 from world2minecraft.rendering import BlockScene, prepare_scene
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, TURN, SceneTables
 
-# The solid shapes of a scene, as its pictures show them: boxes, straight or turned.
-#
-# In: the tables of ``rendering.scene``, so that what is labelled is what is seen. Out: for each element
-# of its table a box in blocks. A hole in a texture is no hole here: a pane, a plant, leaves and bars
-# are the boxes that their textures are drawn on. A shape thinner than ``LEAST_THICK_M`` is taken as
-# that thick, so that a plate without depth lies in a cell too.
-
 LEAST_THICK_M = 0.004
 _STRAIGHT = 1e-6  # Blocks: what an edge may lean and still count as straight.
+SLACK_M = 0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
+LEAST_VOXEL_M = 0.01
+MOST_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
+SLAB_CELLS = 4_000_000  # That are filled at a time.
+_EVEN = 1e-6  # Cells: borders nearer than this are one.
 
 
 class SolidBoxes(NamedTuple):
@@ -73,13 +71,6 @@ def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
         straight=leaning < _STRAIGHT,
         there=np.any(tables.layers >= 0, axis=1).astype(bool),
     )
-
-
-SLACK_M = 0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
-LEAST_VOXEL_M = 0.01
-MOST_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
-SLAB_CELLS = 4_000_000  # That are filled at a time.
-_EVEN = 1e-6  # Cells: borders nearer than this are one.
 
 
 @dataclass(frozen=True)

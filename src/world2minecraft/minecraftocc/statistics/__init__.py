@@ -11,7 +11,7 @@ from world2minecraft.minecraftocc.statistics.tables import (
     statistics_latex,
     statistics_text,
 )
-from world2minecraft.minecraftocc.statistics.values import DatasetStatistics, FineCount, SceneCount
+from world2minecraft.minecraftocc.statistics.types import DatasetStatistics, FineCount, SceneCount
 
 __all__ = [
     "DatasetStatistics",

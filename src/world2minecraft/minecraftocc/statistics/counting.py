@@ -12,18 +12,13 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply
 from world2minecraft.minecraftocc.importers.samples import CLASS_KINDS
-from world2minecraft.minecraftocc.statistics.values import (
+from world2minecraft.minecraftocc.statistics.types import (
     ENOUGH_PIXELS,
     DatasetStatistics,
     FineCount,
     SceneCount,
 )
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, OccLabels, OccSample
-
-# The distinct cells of a world that pictures of it hold, however many pictures hold each.
-#
-# Cells are kept as bits in blocks of 32 a side, so that a scene takes about a bit a cell and a
-# hundred thousand pictures no more than the worlds that they show.
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 
 SIDE = 32
 

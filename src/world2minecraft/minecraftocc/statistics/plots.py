@@ -10,9 +10,9 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
-from world2minecraft.minecraftocc.statistics.other_data_sets import NYU_TRAIN_VOXELS
+from world2minecraft.minecraftocc.statistics.published_figures import NYU_TRAIN_VOXELS
 from world2minecraft.minecraftocc.statistics.tables import class_shares, short
-from world2minecraft.minecraftocc.statistics.values import DatasetStatistics
+from world2minecraft.minecraftocc.statistics.types import DatasetStatistics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,12 +5,12 @@ from dataclasses import asdict
 from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.minecraftocc.statistics.other_data_sets import (
+from world2minecraft.minecraftocc.statistics.published_figures import (
     NYU_TRAIN_VOXELS,
     PAPER,
     PUBLISHED_SETS,
 )
-from world2minecraft.minecraftocc.statistics.values import (
+from world2minecraft.minecraftocc.statistics.types import (
     ENOUGH_PICTURES,
     ENOUGH_PIXELS,
     DatasetStatistics,

@@ -20,7 +20,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 
 META, CLASSES, INDEX, CARD, LOCK, CREW = (
     "dataset.json",

@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.store.sample_files import (
     unpack_sample,
 )
 from world2minecraft.minecraftocc.store.shard import StoredSample, stored_samples
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 
 MAX_SAMPLE_BYTES = 512 << 20
 MOST_LOOKED_AT = 2000  # Keys that a wrong one is compared with.

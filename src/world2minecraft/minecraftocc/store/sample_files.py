@@ -23,18 +23,20 @@ from world2minecraft.core.coordinates import carry_camera, invert
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import npz_arrays, npz_bytes
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.values import FineClass, LabelRegion, OccLabels, OccSample
+from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 from world2minecraft.rendering.output.images import PER_METRE, colour_bytes, depth_numbers
-
-# Colour and depth of a sample as files, and back.
-#
-# Depth is a grey PNG of 16 bits in whole millimetres, 0 for nothing, 65535 for all that is farther.
-# It is packed here and not by Pillow, which tries five filters on every row: a quarter of the time.
 
 IMAGE_FORMATS = ("jpg", "png", "webp")
 QUALITY = 95  # Of JPEG and WebP: the eye sees no loss, and edges of blocks stay sharp.
 _UP = 2  # The filter of every row: the difference to the row above, for planes small and regular.
 _GREY = 0
+FORMAT = 1
+DEPTH, LABELS, FACTS = "depth.png", "occ.npz", "json"
+WHOLE_ARRAYS = ("labels", "fine", "instance", "hits")
+BIT_ARRAYS = ("in_frustum", "free")  # Eight cells a byte; np.unpackbits(..., count=cells).
+MAX_CELLS = 16 << 20
+MAX_FACTS_BYTES = 1 << 20
+CAMERA_KEYS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
 
 def picture_bytes(colour: np.ndarray, kind: str, quality: int = QUALITY) -> bytes:
@@ -92,15 +94,6 @@ def _opened(
 def _chunk(kind: bytes, data: bytes) -> bytes:
     checksum = zlib.crc32(data, zlib.crc32(kind))
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", checksum)
-
-
-FORMAT = 1
-DEPTH, LABELS, FACTS = "depth.png", "occ.npz", "json"
-WHOLE_ARRAYS = ("labels", "fine", "instance", "hits")
-BIT_ARRAYS = ("in_frustum", "free")  # Eight cells a byte; np.unpackbits(..., count=cells).
-MAX_CELLS = 16 << 20
-MAX_FACTS_BYTES = 1 << 20
-CAMERA_KEYS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
 
 @dataclass(frozen=True)

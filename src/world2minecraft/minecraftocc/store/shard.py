@@ -24,14 +24,15 @@ from filelock import lock_descriptor
 from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
 from world2minecraft.minecraftocc.store.sample_files import FACTS, MAX_FACTS_BYTES, read_facts
 
-# The members of a shard: ustar without owners and times, so that bytes tell of content alone.
-#
-# A member is a header of 512 bytes, its data, and zeros up to the next whole 512.
-
 BLOCK = 512
 RECORD = 20 * BLOCK  # A tar is so many bytes, or a multiple.
 LONGEST_KEY = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
 MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,90})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
+_MOST_MEMBERS = 8
+_CHUNK = 1 << 20
+PART = ".part"
+PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.
+_LOOK_S = 0.05
 
 
 @dataclass(frozen=True)
@@ -91,10 +92,7 @@ def member_at(stream: BinaryIO, offset: int, length: int) -> Member | None:
     return member if member.end <= length else None
 
 
-# The samples of a shard, found by their headers and their JSON; pictures are skipped over.
 
-_MOST_MEMBERS = 8
-_CHUNK = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,9 +166,6 @@ def _sum_of(stream: BinaryIO, member: Member) -> str:
     return digest.hexdigest()
 
 
-PART = ".part"
-PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.
-_LOOK_S = 0.05
 
 
 class ShardWriter:

@@ -32,7 +32,7 @@ from world2minecraft.minecraftocc.store.sample_files import (
     pack_sample,
 )
 from world2minecraft.minecraftocc.store.shard import LONGEST_KEY, ShardWriter
-from world2minecraft.minecraftocc.values import FineClass, OccSample
+from world2minecraft.minecraftocc.types import FineClass, OccSample
 
 LONGEST_SCENE = 80  # A shard's name, with its number, has 90.
 SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.

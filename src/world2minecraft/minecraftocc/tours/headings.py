@@ -11,7 +11,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import camera_to_block_of_game_pose, carry_camera
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.tours.values import KINDS, TourRule
+from world2minecraft.minecraftocc.tours.types import KINDS, TourRule
 from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
 

@@ -25,13 +25,11 @@ from world2minecraft.minecraftocc.tours.headings import (
     wander,
 )
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms, shared
-from world2minecraft.minecraftocc.tours.values import KINDS, PlannedView, TourRule, kind_of_yaw
+from world2minecraft.minecraftocc.tours.types import KINDS, PlannedView, TourRule, kind_of_yaw
 from world2minecraft.minecraftocc.tours.view_quality import judged
 from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, Grounds, plan_walk
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import GamePose
-
-# One who tours one room: walk after walk, keeping what is good and new.
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.
@@ -44,6 +42,7 @@ EASINGS = 3  # so many times.
 PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture lies lower than the eye.
 SWAY_M = 0.04  # An eye rises and sinks so much along a walk.
 DECIMALS = 6  # Of poses: what a tour file holds is exactly what was planned.
+LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 
 
 @dataclass(eq=False)
@@ -204,9 +203,6 @@ class Tourist:
         )
         turn = np.abs((np.diff(tour[:, 3]) + 180) % 360 - 180) / TURN_DEG_S
         return np.round(np.r_[0, np.cumsum(np.hypot(walk, turn))], DECIMALS)
-
-
-LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 
 
 def plan_views(

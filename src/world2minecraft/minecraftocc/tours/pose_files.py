@@ -10,14 +10,9 @@ from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.screenshots import RecordedView
-from world2minecraft.minecraftocc.tours.values import PlannedView, nyu_camera
+from world2minecraft.minecraftocc.tours.types import PlannedView, nyu_camera
 from world2minecraft.rendering.views.cameras import Shot, camera_of, game_pose_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour, tour_line, write_lines
-
-# Tours on disk: the one file of poses, a JSON object a line (``rendering.views.pose_file``).
-#
-# Here each line names its tour and scene; ``frame`` counts within the tour, and ``room`` and ``kind``
-# (axis, diagonal, free) stand behind the usual keys.
 
 
 def write_views(

@@ -22,12 +22,18 @@ from world2minecraft.formats.layout import read_layouts
 from world2minecraft.minecraft.physics.body import HEIGHT
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
 from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
-from world2minecraft.minecraftocc.tours.values import TourRule
+from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
 
-# The rooms that a scene says itself: ``layout.json`` of a run, beside its build or above it.
-
 _NAME = "layout.json"
+NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
+LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,
+LEAST_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
+LEVEL_M = 0.3  # One tours what is so near to the room's main floor.
+WALLED_SHARE = 0.7  # Of level rays from indoors that end at something within
+FAR_M = 15.0
+RAYS = 16
+_APART = 3.0  # A metre of height counts as so many along the floor, where places go to rooms.
 
 
 def layouts_beside(path: str | Path) -> tuple[Layout, ...]:
@@ -44,16 +50,6 @@ def layouts_beside(path: str | Path) -> tuple[Layout, ...]:
         if (folder / _NAME).is_file() and (folder / "build").is_dir():
             return read_layouts(folder / _NAME)
     return ()
-
-
-NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
-LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,
-LEAST_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
-LEVEL_M = 0.3  # One tours what is so near to the room's main floor.
-WALLED_SHARE = 0.7  # Of level rays from indoors that end at something within
-FAR_M = 15.0
-RAYS = 16
-_APART = 3.0  # A metre of height counts as so many along the floor, where places go to rooms.
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.undistort import pinhole_camera
-from world2minecraft.minecraftocc.tours.values import TourRule
+from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
 

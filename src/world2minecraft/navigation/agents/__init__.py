@@ -1,17 +1,17 @@
 """Agents: baselines that see nothing, experts that know the scene, and vision-language models."""
 
-from world2minecraft.navigation.agents.registry import AGENTS, BESIDE, agent_of
-from world2minecraft.navigation.agents.values import Agent, Decision, Guide, Sight, Task
-from world2minecraft.navigation.agents.vlm_agent import ModelAgent
+from world2minecraft.navigation.agents.registry import AGENTS, REFERENCE_AGENTS, make_agent
+from world2minecraft.navigation.agents.values import Agent, Decision, Guide, Observation, Task
+from world2minecraft.navigation.agents.vlm_agent import VlmAgent
 
 __all__ = [
     "AGENTS",
-    "BESIDE",
+    "REFERENCE_AGENTS",
     "Agent",
     "Decision",
     "Guide",
-    "ModelAgent",
-    "Sight",
+    "VlmAgent",
+    "Observation",
     "Task",
-    "agent_of",
+    "make_agent",
 ]

@@ -9,11 +9,15 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from world2minecraft.external_models.structured_replies import Form, UnreadableError, json_of
+from world2minecraft.external_models.structured_replies import (
+    ReplyFormat,
+    UnreadableError,
+    extract_json_object,
+)
 from world2minecraft.navigation.values import Move
 
-MOST_MOVES = 4
-MOST_THOUGHT = 2000  # Characters that are kept.
+MAX_MOVES = 4
+MAX_THOUGHT_CHARACTERS = 2000  # Characters that are kept.
 NAMES = {
     "FORWARD": Move.FORWARD,
     "LEFT": Move.LEFT,
@@ -63,7 +67,7 @@ class Step:
     progress: str = ""
 
 
-def step_form(most: int = MOST_MOVES) -> Form[Step]:
+def step_form(most: int = MAX_MOVES) -> ReplyFormat[Step]:
     """Return the form of a step of at most so many moves."""
     count = "one action" if most == 1 else f"1 to {most} actions"
     words = (
@@ -72,20 +76,20 @@ def step_form(most: int = MOST_MOVES) -> Form[Step]:
         "STOP comes last, alone with done true. If you cannot write JSON, end with one line: "
         "Actions: FORWARD, LEFT"
     )
-    return Form("step", SCHEMA, words, lambda text: read_step(text, most))
+    return ReplyFormat("step", SCHEMA, words, lambda text: parse_step(text, most))
 
 
-def read_step(text: str, most: int = MOST_MOVES) -> Step:
+def parse_step(text: str, most: int = MAX_MOVES) -> Step:
     r"""Return the step that a reply says.
 
     Raises:
         UnreadableError: it says none, or more than one way.
 
     Example:
-        >>> read_step("Thought: the door is left.\nActions: turn left, move forward").moves
+        >>> parse_step("Thought: the door is left.\nActions: turn left, move forward").moves
         (<Move.LEFT: 2>, <Move.FORWARD: 1>)
     """
-    found = json_of(text)
+    found = extract_json_object(text)
     if found is not None:
         return _of_json(found, most)
     tagged, lines = _TAGGED.findall(text), _LINE.findall(text)
@@ -93,7 +97,7 @@ def read_step(text: str, most: int = MOST_MOVES) -> Step:
         if said:
             moves = tuple(_move(word) for word in _words(said[0]))
             thought = (_THOUGHT.findall(text) or [""])[0].strip()
-            return Step(_checked(moves, None, most), thought[:MOST_THOUGHT])
+            return Step(_validate(moves, None, most), thought[:MAX_THOUGHT_CHARACTERS])
     raise UnreadableError("it is empty")
 
 
@@ -105,9 +109,11 @@ def _of_json(found: dict[str, Any], most: int) -> Step:
         raise UnreadableError("actions must be a list of action names")
     if done is not None and not isinstance(done, bool):
         raise UnreadableError("done must be true or false")
-    moves = _checked(tuple(_move(one) for one in actions), done, most)
+    moves = _validate(tuple(_move(one) for one in actions), done, most)
     texts = [found.get(name) for name in ("thought", "progress")]
-    thought, progress = (one[:MOST_THOUGHT] if isinstance(one, str) else "" for one in texts)
+    thought, progress = (
+        one[:MAX_THOUGHT_CHARACTERS] if isinstance(one, str) else "" for one in texts
+    )
     return Step(moves, thought, progress)
 
 
@@ -134,7 +140,7 @@ def _move(word: str) -> Move:
     return _ALL[name]
 
 
-def _checked(moves: tuple[Move, ...], done: bool | None, most: int) -> tuple[Move, ...]:
+def _validate(moves: tuple[Move, ...], done: bool | None, most: int) -> tuple[Move, ...]:
     if not 1 <= len(moves) <= most:
         raise UnreadableError(f"it has {len(moves)} actions; 1 to {most} are taken")
     if Move.STOP in moves[:-1]:

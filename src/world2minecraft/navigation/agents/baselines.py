@@ -4,13 +4,13 @@ import random
 from itertools import product
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.agents.values import Decision, Guide, Sight, Task
+from world2minecraft.navigation.agents.values import Decision, Guide, Observation, Task
 from world2minecraft.navigation.values import Move
 
 # Agents that see nothing: what any other has to beat.
 
 # How often each move comes in VLN-CE's training split; its random agent draws by these.
-SHARES = {Move.STOP: 0.02, Move.FORWARD: 0.68, Move.LEFT: 0.15, Move.RIGHT: 0.15}
+MOVE_SHARES = {Move.STOP: 0.02, Move.FORWARD: 0.68, Move.LEFT: 0.15, Move.RIGHT: 0.15}
 
 
 class StopAgent:
@@ -21,7 +21,7 @@ class StopAgent:
     def begin(self, task: Task) -> None:
         """Take a task."""
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return STOP."""
         return Decision((Move.STOP,))
 
@@ -38,9 +38,9 @@ class RandomAgent:
         """Begin to draw anew from the seed of the task."""
         self._random = random.Random(task.seed)
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return one move."""
-        return Decision((self._random.choices(list(SHARES), list(SHARES.values()))[0],))
+        return Decision((self._random.choices(list(MOVE_SHARES), list(MOVE_SHARES.values()))[0],))
 
 
 class ForwardAgent:
@@ -51,7 +51,7 @@ class ForwardAgent:
     def begin(self, task: Task) -> None:
         """Take a task."""
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return FORWARD, or STOP after a collision."""
         blocked = any(collided for _, collided in sight.done)
         return Decision((Move.STOP if blocked else Move.FORWARD,))
@@ -73,7 +73,7 @@ class OracleAgent:
         """Take a task with a guide. Raises UsageError without one."""
         self._guide, self._left = _guide_of(task, self.name), ()
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return the next move of the plan; after a collision a new plan is made."""
         if self._guide is None:
             raise UsageError("call begin(task) before decide(sight)")
@@ -100,7 +100,7 @@ class ShortestAgent:
         self._guide = _guide_of(task, self.name)
         self._turns = max(1, round(180 / task.move_set.turn_deg))
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return the first move of the best turn and step, STOP where none is nearer."""
         guide = self._guide
         if guide is None:

@@ -10,20 +10,20 @@ from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import (
-    MOST_PX,
+    MAX_PX,
     Picture,
     Turn,
-    capped,
-    check_most_px,
+    check_max_px,
+    downscale_picture,
 )
 from world2minecraft.external_models.chat_transport import BusyServerError, RefusedQuestionError
 from world2minecraft.external_models.structured_replies import (
-    Form,
+    ReplyFormat,
     UnreadableError,
-    ask_form,
-    json_of,
+    ask_structured,
+    extract_json_object,
 )
-from world2minecraft.navigation.agents.vlm_agent import told_of
+from world2minecraft.navigation.agents.vlm_agent import describe_try
 from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
 from world2minecraft.navigation.values import Item
 
@@ -45,7 +45,7 @@ _LETTER = re.compile(r"^[\s\"'(*\[`]*([A-Ha-h])[\s\"')*\]`.:]*$")
 _LETTERED = re.compile(r"^[\s(*]*([A-Ha-h])[).:]\s*(.+?)[\s.]*$", re.S)
 
 
-def answer_form(options: Mapping[str, str], style: str) -> Form[str]:
+def answer_form(options: Mapping[str, str], style: str) -> ReplyFormat[str]:
     """Return the form of an answer.
 
     Args:
@@ -64,12 +64,12 @@ def answer_form(options: Mapping[str, str], style: str) -> Form[str]:
 
     if style == "json":
         words = f'Reply with JSON alone: {{"answer": "{next(iter(options))}"}} with your letter.'
-        return Form("answer", schema, words, read)
+        return ReplyFormat("answer", schema, words, read)
     words = THINK if style == "think" else LETTER_ALONE
-    return Form("answer", schema, words, read, is_said=True, rung=2)
+    return ReplyFormat("answer", schema, words, read, is_said=True, rung=2)
 
 
-def ending(style: str) -> str:
+def answer_instruction(style: str) -> str:
     """Return what a question of a style ends with."""
     return {"think": THINK, "letter": LETTER_ALONE}.get(style, "")
 
@@ -85,25 +85,25 @@ def read_answer(text: str, options: Mapping[str, str]) -> str:
         >>> [read_answer(text, told) for text in ("b.", "<answer>A</answer>", "Turn left")]
         ['B', 'A', 'A']
     """
-    found = json_of(text)
+    found = extract_json_object(text)
     if found is not None and isinstance(found.get("answer"), str):
-        return _option(found["answer"], options)
+        return _option_of(found["answer"], options)
     tagged, lines = _TAGGED.findall(text), _LINE.findall(text)
     if tagged:
-        return _option(_one(tagged, options), options)
+        return _option_of(_agreed_answer(tagged, options), options)
     if lines:
-        return _option(_one(lines, options), options)
-    return _option(text, options)
+        return _option_of(_agreed_answer(lines, options), options)
+    return _option_of(text, options)
 
 
-def _one(said: list[str], options: Mapping[str, str]) -> str:
+def _agreed_answer(said: list[str], options: Mapping[str, str]) -> str:
     """Return the last of several answers that agree."""
-    if len({_option(one, options) for one in said}) > 1:
+    if len({_option_of(one, options) for one in said}) > 1:
         raise UnreadableError("it gives several answers")
     return said[-1]
 
 
-def _option(said: str, options: Mapping[str, str]) -> str:
+def _option_of(said: str, options: Mapping[str, str]) -> str:
     letter = _LETTER.match(said)
     if letter is None:
         same = [one for one, words in options.items() if words and _plain(words) == _plain(said)]
@@ -152,7 +152,7 @@ class LetterAnswerer:
         return Answer(letter, "answered" if letter else "invalid", {})
 
 
-class ModelAnswerer:
+class VlmAnswerer:
     """Asks a model each item by the words that exports for trainers use.
 
     Args:
@@ -168,11 +168,11 @@ class ModelAnswerer:
         folder: str | Path,
         style: str = "letter",
         *,
-        most_px: int = MOST_PX,
+        most_px: int = MAX_PX,
     ):
         if style not in STYLES:
             raise UnknownNameError("style of question", style, STYLES)
-        check_most_px(most_px)
+        check_max_px(most_px)
         self.name, self.model, self.folder, self.style = model.name, model, Path(folder), style
         self.most_px = most_px
 
@@ -187,15 +187,15 @@ class ModelAnswerer:
         parts: list[str | Picture] = [
             self._picture(part, item) if kind == "image" else part for kind, part in question.parts
         ]
-        if last := ending(self.style):
+        if last := answer_instruction(self.style):
             parts.append(f"\n{last}")
         options = {option.label: option.text for option in item.options}
         try:
             turns = (Turn("user", tuple(parts)),)
-            formed = ask_form(self.model, turns, answer_form(options, self.style))
+            formed = ask_structured(self.model, turns, answer_form(options, self.style))
         except (BusyServerError, RefusedQuestionError) as error:
             return Answer("", "failed", {"problem": str(error)})
-        told = {"raw": formed.raw, "tries": [told_of(one) for one in formed.tries]}
+        told = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
         if formed.value is None:
             return Answer("", "invalid", {**told, "problem": formed.problem})
         return Answer(formed.value, "answered", told)
@@ -210,6 +210,6 @@ class ModelAnswerer:
         if picture.sha256 != item.sha256.get(name):
             raise DamagedFileError(path, f"is not the image that item {item.item_id} was made of")
         try:
-            return capped(picture, self.most_px)
+            return downscale_picture(picture, self.most_px)
         except ValueError as error:
             raise DamagedFileError(path, str(error)) from error

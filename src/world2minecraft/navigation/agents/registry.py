@@ -5,11 +5,11 @@ from collections.abc import Callable
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.registry import Registry
 from world2minecraft.external_models.chat_client import ChatModel
-from world2minecraft.external_models.chat_messages import MOST_PX
+from world2minecraft.external_models.chat_messages import MAX_PX
 from world2minecraft.external_models.chat_transport import ENDPOINTS, is_endpoint
-from world2minecraft.navigation.agents.action_format import MOST_MOVES
+from world2minecraft.navigation.agents.action_format import MAX_MOVES
 from world2minecraft.navigation.agents.values import Agent
-from world2minecraft.navigation.agents.vlm_agent import HISTORY, ModelAgent
+from world2minecraft.navigation.agents.vlm_agent import HISTORY, VlmAgent
 from world2minecraft.navigation.agents.vlm_prompts import MAPS, MapKind
 
 # Other packages add a class without parameters through the entry points world2minecraft.agent.
@@ -24,17 +24,17 @@ AGENTS = Registry(
         "human": "world2minecraft.navigation.running.human_agent:HumanAgent",
     },
 )
-BESIDE = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
+REFERENCE_AGENTS = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
 
 
-def agent_of(
+def make_agent(
     text: str,
     chat: Callable[[], ChatModel],
     *,
-    chunk: int = MOST_MOVES,
+    chunk: int = MAX_MOVES,
     history: int = HISTORY,
     map_kind: MapKind = "none",
-    most_px: int = MOST_PX,
+    most_px: int = MAX_PX,
 ) -> Agent:
     """Return an agent by its name, or the model that ``chat`` opens for a server's.
 
@@ -44,7 +44,7 @@ def agent_of(
     if map_kind not in MAPS:
         raise UnknownNameError("map", map_kind, MAPS)
     if is_endpoint(text):
-        return ModelAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, most_px=most_px)
+        return VlmAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, most_px=most_px)
     if text not in AGENTS.names():
         raise UnknownNameError("agent", text, [*AGENTS.names(), *ENDPOINTS])
     return AGENTS.load(text)()

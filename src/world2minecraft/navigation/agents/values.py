@@ -49,7 +49,7 @@ class Task:
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
+class Observation:
     """What an agent sees when it is asked to decide.
 
     ``done`` are the moves since it decided last, each with whether something was in the way;
@@ -98,6 +98,6 @@ class Agent(Protocol):
         """Take a task; what was before is forgotten."""
         ...
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Return what to do next."""
         ...

@@ -14,16 +14,16 @@ from PIL import Image
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.external_models.chat_client import ChatModel
-from world2minecraft.external_models.chat_messages import MOST_PX, Picture, at_most, check_most_px
+from world2minecraft.external_models.chat_messages import MAX_PX, Picture, check_max_px, downscale
 from world2minecraft.external_models.chat_transport import BusyServerError, RefusedQuestionError
-from world2minecraft.external_models.structured_replies import Try, ask_form
-from world2minecraft.navigation.agents.action_format import MOST_MOVES, step_form
-from world2minecraft.navigation.agents.values import Decision, Sight, Task
+from world2minecraft.external_models.structured_replies import Attempt, ask_structured
+from world2minecraft.navigation.agents.action_format import MAX_MOVES, step_form
+from world2minecraft.navigation.agents.values import Decision, Observation, Task
 from world2minecraft.navigation.agents.vlm_prompts import (
     MAPS,
     MapKind,
-    Moment,
-    moment_turn,
+    StepPrompt,
+    step_turn,
     system_turn,
 )
 from world2minecraft.navigation.values import Move, Stance
@@ -33,8 +33,8 @@ from world2minecraft.navigation.values import Move, Stance
 # Directions are those of the start: x metres ahead of it, and to its right. Nothing of the scene's
 # map is in it; a model that reads it knows what odometry knows.
 
-MOST_PLACES = 12  # Of a map in words; those between are left out evenly.
-LEAST_M = 0.5  # Places nearer to the last one are the same place.
+MAX_PLACES = 12  # Of a map in words; those between are left out evenly.
+MIN_SPACING_M = 0.5  # Places nearer to the last one are the same place.
 
 
 def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[float, float]:
@@ -76,11 +76,11 @@ def trail_text(stances: Sequence[Stance], metres_per_block: float) -> str:
     for number, stance in enumerate(stances):
         last = stances[kept[-1]]
         away = math.dist(stance.feet, last.feet) * metres_per_block
-        if away >= LEAST_M:
+        if away >= MIN_SPACING_M:
             kept.append(number)
-    if len(kept) > MOST_PLACES:
+    if len(kept) > MAX_PLACES:
         last_index = len(kept) - 1
-        kept = [kept[round(i * last_index / (MOST_PLACES - 1))] for i in range(MOST_PLACES)]
+        kept = [kept[round(i * last_index / (MAX_PLACES - 1))] for i in range(MAX_PLACES)]
     lines = []
     for place, number in enumerate(kept):
         ahead, right = relative_m(start, stances[number], metres_per_block)
@@ -103,12 +103,12 @@ def _place(ahead: float, right: float) -> str:
 
 JPEG_QUALITY = 85
 HISTORY = 3  # Pictures before the one of now, as the paper shows them.
-MOST_HISTORY = 8
-MOST_PROGRESS = 400  # Characters of its own words that a model is told again.
-MOST_DONE = 16
+MAX_HISTORY = 8
+MAX_PROGRESS_CHARACTERS = 400  # Characters of its own words that a model is told again.
+MAX_PAST_MOVES = 16
 
 
-class ModelAgent:
+class VlmAgent:
     """Asks a language model at each step.
 
     Args:
@@ -126,18 +126,18 @@ class ModelAgent:
         self,
         model: ChatModel,
         *,
-        chunk: int = MOST_MOVES,
+        chunk: int = MAX_MOVES,
         history: int = HISTORY,
         map_kind: MapKind = "none",
-        most_px: int = MOST_PX,
+        most_px: int = MAX_PX,
     ):
-        if not 1 <= chunk <= MOST_MOVES:
-            raise UsageError(f"a model gives 1 to {MOST_MOVES} moves at once, not {chunk}")
-        if not 0 <= history <= MOST_HISTORY:
-            raise UsageError(f"a model is shown 0 to {MOST_HISTORY} views of before, not {history}")
+        if not 1 <= chunk <= MAX_MOVES:
+            raise UsageError(f"a model gives 1 to {MAX_MOVES} moves at once, not {chunk}")
+        if not 0 <= history <= MAX_HISTORY:
+            raise UsageError(f"a model is shown 0 to {MAX_HISTORY} views of before, not {history}")
         if map_kind not in MAPS:
             raise UnknownNameError("map", map_kind, MAPS)
-        check_most_px(most_px)
+        check_max_px(most_px)
         self.name, self.model = model.name, model
         self.chunk, self.history, self.map_kind = chunk, history, map_kind
         self.most_px = most_px
@@ -150,7 +150,7 @@ class ModelAgent:
         self._task = task
         self._forget()
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Look, ask, and return what the model does.
 
         Raises:
@@ -160,24 +160,24 @@ class ModelAgent:
         if task is None:
             raise UsageError("call begin(task) before decide(sight)")
         self._stances.append(sight.stance)
-        self._done = (self._done + list(sight.done))[-MOST_DONE:]
+        self._done = (self._done + list(sight.done))[-MAX_PAST_MOVES:]
         moment = self._moment(task, sight)
-        turns = (system_turn(task, self.chunk), moment_turn(task, moment))
+        turns = (system_turn(task, self.chunk), step_turn(task, moment))
         self._views = [*self._views, moment.view][-self.history :] if self.history else []
         try:
-            formed = ask_form(self.model, turns, self._form)
+            formed = ask_structured(self.model, turns, self._form)
         except (BusyServerError, RefusedQuestionError) as error:
             return Decision((), outcome="failed", told={"problem": str(error)})
-        told = {"raw": formed.raw, "tries": [told_of(one) for one in formed.tries]}
+        told = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
         if formed.value is None:
             self._refused = formed.problem
             return Decision((), outcome="invalid", told={**told, "problem": formed.problem})
         self._refused = ""
-        self._progress = formed.value.progress[:MOST_PROGRESS] or self._progress
+        self._progress = formed.value.progress[:MAX_PROGRESS_CHARACTERS] or self._progress
         step = formed.value
         return Decision(step.moves, step.thought, step.progress, told=told)
 
-    def _moment(self, task: Task, sight: Sight) -> Moment:
+    def _moment(self, task: Task, sight: Observation) -> StepPrompt:
         told_map = ""
         if self.map_kind == "text":
             told_map = trail_text(self._stances, task.metres_per_block)
@@ -186,13 +186,13 @@ class ModelAgent:
             if task.plan is None:
                 raise UsageError("no plan of this scene can be drawn; ask for another map")
             plan = self._picture(task.plan(self._stances))
-        return Moment(
+        return StepPrompt(
             sight.step, self._picture(sight.colour), tuple(self._views), tuple(self._done),
             self._progress, told_map, self._refused, plan,
         )  # fmt: skip
 
     def _picture(self, colour: np.ndarray) -> Picture:
-        return Picture(jpeg(at_most(colour, self.most_px)))
+        return Picture(encode_jpeg(downscale(colour, self.most_px)))
 
     def _forget(self) -> None:
         self._views: list[Picture] = []
@@ -201,14 +201,14 @@ class ModelAgent:
         self._progress = self._refused = ""
 
 
-def jpeg(colour: np.ndarray) -> bytes:
+def encode_jpeg(colour: np.ndarray) -> bytes:
     """Return a picture, uint8 [H, W, 3], as JPEG."""
     stream = BytesIO()
     Image.fromarray(colour).save(stream, "JPEG", quality=JPEG_QUALITY)
     return stream.getvalue()
 
 
-def told_of(tried: Try) -> dict[str, Any]:
+def describe_try(tried: Attempt) -> dict[str, Any]:
     """Return a try for the trace."""
     reply = tried.reply
     told: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}

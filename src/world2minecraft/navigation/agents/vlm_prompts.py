@@ -16,7 +16,7 @@ MOVE_NAMES = {
     Move.RIGHT: "RIGHT",
     Move.STOP: "STOP",
 }
-MOST_DONE = 16  # Last moves that are told.
+MAX_PAST_MOVES = 16  # Last moves that are told.
 PLAN_WORDS = (
     "\nA plan of the building from above. The red arrow is you and points where you look, the blue "
     "dot is where you started, the orange line is the way you took:"
@@ -24,7 +24,7 @@ PLAN_WORDS = (
 
 
 @dataclass(frozen=True)
-class Moment:
+class StepPrompt:
     """What is said at a step. ``before`` are pictures of before, oldest first."""
 
     step: int
@@ -53,14 +53,14 @@ def system_turn(task: Task, most: int) -> Turn:
     return Turn("system", (text,))
 
 
-def moment_turn(task: Task, moment: Moment) -> Turn:
+def step_turn(task: Task, moment: StepPrompt) -> Turn:
     """Return what is said at a step."""
     lines = [
         f"Instruction: {' '.join(task.instruction.split())}",
         f"Moves so far: {moment.step} of at most {task.max_steps}.",
     ]
     if moment.done:
-        lines.append(f"Your last moves: {_told(moment.done)}.")
+        lines.append(f"Your last moves: {_past_moves_text(moment.done)}.")
     if moment.refused:
         lines.append(f"Your last reply could not be used, and you did not move: {moment.refused}")
     if moment.progress:
@@ -76,9 +76,9 @@ def moment_turn(task: Task, moment: Moment) -> Turn:
     return Turn("user", tuple(parts))
 
 
-def _told(done: Sequence[tuple[Move, bool]]) -> str:
+def _past_moves_text(done: Sequence[tuple[Move, bool]]) -> str:
     some = [
         MOVE_NAMES[move] + (" (blocked: you did not get ahead)" if collided else "")
-        for move, collided in done[-MOST_DONE:]
+        for move, collided in done[-MAX_PAST_MOVES:]
     ]
     return ", ".join(some)

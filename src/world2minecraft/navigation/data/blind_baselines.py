@@ -20,9 +20,9 @@ from world2minecraft.navigation.values import TASKS, Item
 
 FLAG_POINTS = 0.10
 SMALL_PX = (32, 18)  # Pictures are compared so small.
-MOST_PX = 64_000_000
-BLIND = ("majority", "blind")  # These see no picture.
-NAMES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd", "oracle")
+MAX_PIXELS = 64_000_000
+BLIND_BASELINES = ("majority", "blind")  # These see no picture.
+BASELINES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd", "oracle")
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ class BaselineRow:
     def is_flagged(self) -> bool:
         """Whether it needs no picture and is right too often to be luck."""
         over = self.accuracy.share > self.chance + FLAG_POINTS
-        return self.name in BLIND and over and self.accuracy.low > self.chance
+        return self.name in BLIND_BASELINES and over and self.accuracy.low > self.chance
 
 
 Answers = list[str]
 
 
-def baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
+def score_baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
     """Return the rows of all baselines, on what is held out; on all items where nothing is.
 
     uniform draws a letter; majority takes the commonest letter, or action, of train; blind has
@@ -96,7 +96,7 @@ def baseline_letters(
     """Return the letter that a baseline gives to each item asked, by the item's id.
 
     Args:
-        name: one of ``NAMES``; some know one task alone, and the other's items are left out.
+        name: one of ``BASELINES``; some know one task alone, and the other's items are left out.
         items: of the set; those of train are what it may learn from.
         asked: the items to answer.
         folder: of the set, for its pictures.
@@ -104,8 +104,8 @@ def baseline_letters(
     Raises:
         UnknownNameError: no baseline has this name. InputError: a picture cannot be read.
     """
-    if name not in NAMES:
-        raise UnknownNameError("baseline", name, NAMES)
+    if name not in BASELINES:
+        raise UnknownNameError("baseline", name, BASELINES)
     letters: dict[str, str] = {}
     for task in TASKS:
         train = [item for item in items if item.task == task and item.split == "train"]
@@ -211,7 +211,7 @@ class _Thumbnails:
 def _small(path: Path) -> np.ndarray:
     try:
         with Image.open(path) as image:
-            if image.width * image.height > MOST_PX:
+            if image.width * image.height > MAX_PIXELS:
                 raise LimitError(path, f"has {image.width}x{image.height} pixels; too large")
             grey = image.convert("L").resize(SMALL_PX, Image.Resampling.BOX)
     except FileNotFoundError as error:

@@ -31,11 +31,11 @@ from world2minecraft.navigation.walk_stream import wrap_deg
 # Wrong pictures that are taken for a question: as many as wanted more like the present one.
 
 CHOICES = 4
-MOST_OF_A_KIND = 2  # Of one question: three steps beside would tell the right one by being other.
-MOST_TAKEN = 3  # Pictures that are taken in full for one that is kept.
+MAX_OF_A_KIND = 2  # Of one question: three steps beside would tell the right one by being other.
+MAX_TRIES = 3  # Pictures that are taken in full for one that is kept.
 
 
-class RankDeck:
+class RankBalancer:
     """Says how many wrong pictures are to be nearer than the right one, so that no rank leads.
 
     What came of a question is told to it: a rank that is seldom found is asked for more often.
@@ -55,7 +55,7 @@ class RankDeck:
 
 
 @dataclass(frozen=True)
-class Slot:
+class DistractorSlot:
     """A wrong picture, or of what kind it is to be.
 
     ``nearer``: more like the present picture than the right one is.
@@ -66,7 +66,7 @@ class Slot:
     picture: Pictured | None = None
 
 
-class Taker:
+class DistractorPicker:
     """Takes the wrong pictures of one question."""
 
     def __init__(self, album: Album, now: Pictured, right: Pictured):
@@ -74,8 +74,8 @@ class Taker:
         self._limit = unlike(now, right)
 
     def filled(
-        self, plan: Sequence[Slot], places: Sequence[tuple[str, Stance]], most_far: int
-    ) -> list[Slot]:
+        self, plan: Sequence[DistractorSlot], places: Sequence[tuple[str, Stance]], most_far: int
+    ) -> list[DistractorSlot]:
         """Return slots with pictures, as far as there are such; a kind that has none comes first.
 
         Args:
@@ -87,7 +87,7 @@ class Taker:
         left: dict[bool, list[tuple[str, Stance]]] = {True: [], False: []}
         for place, look in zip(places, looks, strict=True):  # Small pictures say where to go.
             left[unlike(self._now, look) < self._limit].append(place)
-        slots: list[Slot] = []
+        slots: list[DistractorSlot] = []
         for slot in plan:
             is_wanted = slot.nearer or most_far > 0
             taken = self._one(left[slot.nearer], slots, slot.nearer) if is_wanted else None
@@ -96,40 +96,40 @@ class Taker:
         return slots
 
     def _one(
-        self, left: list[tuple[str, Stance]], slots: Sequence[Slot], near: bool
-    ) -> Slot | None:
+        self, left: list[tuple[str, Stance]], slots: Sequence[DistractorSlot], near: bool
+    ) -> DistractorSlot | None:
         """Take a picture that differs from the others, and out of what is left; none at times."""
         kinds = Counter(slot.kind for slot in slots if slot.picture)
-        left[:] = [one for one in left if kinds[one[0]] < MOST_OF_A_KIND]
+        left[:] = [one for one in left if kinds[one[0]] < MAX_OF_A_KIND]
         left.sort(key=lambda one: kinds[one[0]])
         others = (self._right, *(slot.picture for slot in slots if slot.picture))
-        for _ in range(min(MOST_TAKEN, len(left))):
+        for _ in range(min(MAX_TRIES, len(left))):
             kind, stance = left.pop(0)
             (shot,) = self._album.take([stance])
             as_wanted = (unlike(self._now, shot) < self._limit) == near
-            if as_wanted and differs(shot, self._now, others):
+            if as_wanted and is_valid_choice(shot, self._now, others):
                 name = f"{self._right.image.removesuffix('.jpg')}_{kind}{len(slots)}.jpg"
-                return Slot(kind, near, self._album.write(name, stance, shot))
+                return DistractorSlot(kind, near, self._album.write(name, stance, shot))
         return None
 
 
-def differs(one: Pictured | Shot, now: Pictured, others: Sequence[Pictured]) -> bool:
+def is_valid_choice(one: Pictured | Shot, now: Pictured, others: Sequence[Pictured]) -> bool:
     """Whether a picture is something to choose: not the present one, not one of the others."""
     if not shows_something(one) or is_nearly(one, now):
         return False
     return all(look_apart(one, other) for other in others)
 
 
-TAKEN = ("turned", "other_move", "mirror", "beside")
+RENDERED_KINDS = ("turned", "other_move", "mirror", "beside")
 TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
 OTHER_TURNS = (1, 2, 4)  # Moves: from as like as can be to as far as a keyframe turns.
 BESIDE_M = (0.25, 0.5, 0.75)  # From here; from the next place the middle one.
-MIRRORED = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
+MIRRORED_TURNS = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
 MIRRORED_RUNS = 3  # As many as pictures are shown.
 
 
 @dataclass(frozen=True)
-class Scout:
+class DistractorSampler:
     """Who goes to such places. ``walker`` is the world's physics."""
 
     walker: StepFunction
@@ -139,13 +139,13 @@ class Scout:
         """Return where pictures of a kind may be taken, none of them the right one's stance.
 
         Args:
-            kind: of ``TAKEN``.
+            kind: of ``RENDERED_KINDS``.
             marks: the keyframes of a way.
             step: which is the current one.
         """
         right = marks[step + 1].stance
         found = {
-            "turned": lambda: [_turned(right, turn) for turn in TURNS_DEG],
+            "turned": lambda: [_turn(right, turn) for turn in TURNS_DEG],
             "other_move": lambda: self._other_moves(marks[step]),
             "mirror": lambda: self._mirrored(marks, step),
             "beside": lambda: (
@@ -167,8 +167,10 @@ class Scout:
         found = []
         for first in range(max(0, step - MIRRORED_RUNS + 1), step + 1):
             moves = [mark.move for mark in marks[first : step + 1] for _ in range(mark.run)]
-            if set(moves) & MIRRORED.keys():
-                there = self._after(marks[first].stance, [MIRRORED.get(one, one) for one in moves])
+            if set(moves) & MIRRORED_TURNS.keys():
+                there = self._after(
+                    marks[first].stance, [MIRRORED_TURNS.get(one, one) for one in moves]
+                )
                 found += [there] if there is not None else []
         return found
 
@@ -176,7 +178,7 @@ class Scout:
         found = []
         for side_deg in (-90.0, 90.0, 180.0):
             for length_m in lengths_m:
-                there = self._ahead(_turned(stance, side_deg), length_m)
+                there = self._ahead(_turn(stance, side_deg), length_m)
                 found += [replace(there, yaw_deg=stance.yaw_deg)] if there is not None else []
         return found
 
@@ -201,5 +203,5 @@ class Scout:
         return None if stance == begin else stance
 
 
-def _turned(stance: Stance, turn_deg: float) -> Stance:
+def _turn(stance: Stance, turn_deg: float) -> Stance:
     return replace(stance, yaw_deg=float(wrap_deg(stance.yaw_deg + turn_deg)))

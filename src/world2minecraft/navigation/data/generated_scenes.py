@@ -21,7 +21,7 @@ from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import make_run
 
-MOST_MADE, MOST_CHANCES = 1_000, 1_000_000
+MAX_SCENES, MAX_SEEDS = 1_000, 1_000_000
 TRIES = 5  # Of a room in which a scan leaves no way between things.
 _FINISHED = {"room": "report.json", "house": "house.json"}  # What is written last.
 
@@ -58,8 +58,8 @@ def make_scenes(
     Raises:
         UsageError: a number cannot be. OutputError: the folder cannot be written.
     """
-    if not (0 <= rooms <= MOST_MADE and 0 <= houses <= MOST_MADE):
-        raise UsageError(f"0 to {MOST_MADE:,} rooms and houses can be made, not {rooms}, {houses}")
+    if not (0 <= rooms <= MAX_SCENES and 0 <= houses <= MAX_SCENES):
+        raise UsageError(f"0 to {MAX_SCENES:,} rooms and houses can be made, not {rooms}, {houses}")
     place, mark = Path(folder), f"_s{seed}" if seed else ""  # Seeds share no folder.
     names = [f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}{mark}" for n in range(rooms)]
     orders = [_Order(str(place / name), "room", n, seed) for n, name in enumerate(names, 1)]
@@ -82,11 +82,11 @@ def _make(order: _Order, tick: Callable[[int], None]) -> None:
         write_house(house_of(order.seed, order.number), out, name=out.name.replace("_", " "))
     else:
         kind = BASE_KINDS[(order.number - 1) % len(BASE_KINDS)]
-        chance = order.seed * MOST_MADE + order.number  # Rooms of two seeds differ.
+        chance = order.seed * MAX_SCENES + order.number  # Rooms of two seeds differ.
         for again in range(TRIES):
             if again:  # It was made right here.
                 shutil.rmtree(out)
-            _make_room(out, kind, chance + again * MOST_CHANCES)
+            _make_room(out, kind, chance + again * MAX_SEEDS)
             if Tourist(open_scene(out)).has_goals:
                 break
     tick(1)

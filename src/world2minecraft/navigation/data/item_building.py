@@ -13,7 +13,7 @@ from world2minecraft.navigation.values import LETTERS, Item, Trajectory
 # Which letter the right answer has: by chance, and each as often as every other.
 
 
-class LetterDeck:
+class LetterBalancer:
     """Deals letters from shuffled packs of one each, so that no letter comes more often."""
 
     def __init__(self, rng: np.random.Generator, choices: int = 4):
@@ -47,7 +47,7 @@ PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together: with room 
 COMPOSITIONS = ("base", "extend", "combined")
 
 
-def cut_as_the_paper(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
+def cut_to_paper_size(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
     """Return as many items as the paper has of each task and composition.
 
     Args:
@@ -55,15 +55,15 @@ def cut_as_the_paper(items: Sequence[Item], splits_too: bool = False) -> list[It
         splits_too: cut what trains and what is held out each to the paper's number.
     """
     if not splits_too:
-        return cut(items, PAPER_SIZE)
+        return cut_to_quotas(items, PAPER_SIZE)
     train = {key: PAPER_SIZE[key] - PAPER_HELD[key] for key in PAPER_SIZE}
-    kept = cut([item for item in items if item.split == "train"], train)
-    kept += cut([item for item in items if item.split != "train"], PAPER_HELD)
+    kept = cut_to_quotas([item for item in items if item.split == "train"], train)
+    kept += cut_to_quotas([item for item in items if item.split != "train"], PAPER_HELD)
     chosen = {item.item_id for item in kept}
     return [item for item in items if item.item_id in chosen]
 
 
-def cut(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) -> list[Item]:
+def cut_to_quotas(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) -> list[Item]:
     """Return items, no more of a task and composition than its quota, in their order.
 
     They are taken from the trajectories of all scenes in turn, so that no scene is left out.
@@ -117,7 +117,7 @@ def _drawn(pictures: Sequence[Pictured], rng: np.random.Generator) -> list[Pictu
     return [pictures[n] for n in rng.permutation(len(pictures))[:TRIES]]
 
 
-def items_of(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
+def build_items(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
     """Return the items of scenes, those of a trajectory beside each other.
 
     Args:
@@ -126,7 +126,7 @@ def items_of(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
     """
     pools = {split: _pool(works, split) for split in _splits(works)}
     decks = {
-        task: LetterDeck(np.random.default_rng([seed, *task.encode()]))
+        task: LetterBalancer(np.random.default_rng([seed, *task.encode()]))
         for task in ("next_view", "next_action")
     }
     items: list[Item] = []
@@ -146,7 +146,7 @@ def _views(
     trajectory: Trajectory,
     questions: dict[str, list[ViewQuestion]],
     pool: _Pool,
-    decks: dict[str, LetterDeck],
+    decks: dict[str, LetterBalancer],
     rng: np.random.Generator,
 ) -> list[Item]:
     name = trajectory.trajectory_id
@@ -165,7 +165,7 @@ def _views(
 def _actions(
     work: SceneWork,
     trajectory: Trajectory,
-    decks: dict[str, LetterDeck],
+    decks: dict[str, LetterBalancer],
     rng: np.random.Generator,
 ) -> list[Item]:
     name = trajectory.trajectory_id

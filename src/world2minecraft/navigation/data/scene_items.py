@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.navigation.data.distractors import RankDeck, Scout
+from world2minecraft.navigation.data.distractors import DistractorSampler, RankBalancer
 from world2minecraft.navigation.data.keyframes import fault_of_pictures
 from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, shot_of, vln_camera
 from world2minecraft.navigation.data.planned_walks import Tourist
@@ -176,8 +176,8 @@ class _Crew:
         self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work
         kept, small = vln_camera(*rule.size_px), vln_camera(*LOOK_PX)
         self._album = Album(folder, partial(_taken, scene, kept), partial(_taken, scene, small))
-        self._ranks = RankDeck(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
-        self._scout = Scout(walker, scene.metres_per_block)
+        self._ranks = RankBalancer(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
+        self._scout = DistractorSampler(walker, scene.metres_per_block)
 
     def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
         """Add a candidate with its questions, or count why it is none; return how many it is."""

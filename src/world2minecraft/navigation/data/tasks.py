@@ -20,12 +20,12 @@ import numpy as np
 
 from world2minecraft.navigation.data.distractors import (
     CHOICES,
-    TAKEN,
-    RankDeck,
-    Scout,
-    Slot,
-    Taker,
-    differs,
+    RENDERED_KINDS,
+    DistractorPicker,
+    DistractorSampler,
+    DistractorSlot,
+    RankBalancer,
+    is_valid_choice,
 )
 from world2minecraft.navigation.data.keyframes import ACTIONS, Mark
 from world2minecraft.navigation.data.pictures import (
@@ -110,7 +110,7 @@ def action_item(
 
 HISTORY = 3  # Pictures that are shown; the last is the current one.
 # What is taken for a question, and what serves where nothing is; of a grade.
-TAKEN_OF = {"easy": (), "medium": ("turned", "beside"), "hard": TAKEN}
+TAKEN_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
 FOUND_OF = {
     "easy": ("elsewhere", "elsewhere", "other_scene"),
     "medium": ("elsewhere", "temporal", "elsewhere"),
@@ -133,7 +133,7 @@ class ViewQuestion:
     trajectory_id: str
     step: int
     grade: str
-    slots: tuple[Slot, ...]
+    slots: tuple[DistractorSlot, ...]
 
 
 def view_steps(clear: Sequence[int], pictures: Sequence[Pictured]) -> list[int]:
@@ -156,8 +156,8 @@ def view_question(
     step: int,
     grade: str,
     album: Album,
-    scout: Scout,
-    ranks: RankDeck,
+    scout: DistractorSampler,
+    ranks: RankBalancer,
     rng: np.random.Generator,
 ) -> ViewQuestion:
     """Return a question with the wrong pictures that must be taken for it.
@@ -181,8 +181,8 @@ def view_question(
         if are_apart(stance, right.stance, scout.metres_per_block)
     ]
     shuffled = [places[n] for n in rng.permutation(len(places))]
-    plan = [Slot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
-    slots = Taker(album, pictures[step], right).filled(plan, shuffled, MOST_FAR[grade])
+    plan = [DistractorSlot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
+    slots = DistractorPicker(album, pictures[step], right).filled(plan, shuffled, MOST_FAR[grade])
     if grade != "easy":  # Where no such picture could be taken another will do.
         slots = [slot if slot.picture else replace(slot, nearer=False) for slot in slots]
     ranks.came(sum(slot.nearer for slot in slots))
@@ -261,7 +261,7 @@ def _wrong(
     limit = unlike(now, right)
     for slot in question.slots:
         others = [right, *(one for _, one in chosen)]
-        if slot.picture is not None and differs(slot.picture, now, others):
+        if slot.picture is not None and is_valid_choice(slot.picture, now, others):
             chosen.append((slot.kind, slot.picture))
             continue
         for kind in (slot.kind, "temporal", "elsewhere", "other_scene"):
@@ -271,7 +271,7 @@ def _wrong(
                 if kind == "other_scene" or are_apart(one.stance, right.stance, metres_per_block)
             ]
             fit.sort(key=lambda one: (unlike(now, one) < limit) != slot.nearer)
-            found = next((one for one in fit if differs(one, now, others)), None)
+            found = next((one for one in fit if is_valid_choice(one, now, others)), None)
             if found is not None:
                 chosen.append((kind, found))
                 break

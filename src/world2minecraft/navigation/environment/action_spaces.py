@@ -12,11 +12,11 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
 KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
-MOST_RUN = 12  # Moves of one run: 3 m of steps, or half a turn.
-MOST_TURN_DEG = 45.0  # Of the mouse in a tick.
+MAX_RUN = 12  # Moves of one run: 3 m of steps, or half a turn.
+MAX_TURN_DEG = 45.0  # Of the mouse in a tick.
 
 
-class Acting(Protocol):
+class ActionController(Protocol):
     """Takes actions of a space and keeps where the agent stands."""
 
     stance: Stance
@@ -35,12 +35,12 @@ class Acting(Protocol):
         ...
 
 
-class Discrete:
+class DiscreteActions:
     """One move an action, by Habitat's numbers; a run of equal moves where the set is a macro."""
 
     def __init__(self, scene: VlnScene, move_set: MoveSet, sliding: bool):
         self.scene, self.move_set, self.sliding = scene, move_set, sliding
-        runs = spaces.MultiDiscrete([len(Move), MOST_RUN])
+        runs = spaces.MultiDiscrete([len(Move), MAX_RUN])
         self.space = runs if move_set.is_macro else spaces.Discrete(len(Move))
         self.stance = Stance(0.0, 0.0, 0.0)
 
@@ -52,7 +52,7 @@ class Discrete:
         """Make a move; of a run ``(move, count - 1)``, moves until one meets something."""
         if not self.space.contains(action):
             moves = ", ".join(f"{int(move)} {move.name.lower()}" for move in Move)
-            runs = f", then 0 to {MOST_RUN - 1} for moves beyond the first"
+            runs = f", then 0 to {MAX_RUN - 1} for moves beyond the first"
             more = runs if self.move_set.is_macro else ""
             raise UsageError(f"an action is one of {self.space}, not {action!r}: {moves}{more}")
         values = np.atleast_1d(np.asarray(action, np.int64)).tolist()
@@ -72,7 +72,7 @@ class Discrete:
         return apply_move(self.scene, self.stance, move, self.move_set, sliding=self.sliding)
 
 
-class Continuous:
+class ContinuousActions:
     """A twentieth of a second of the game an action: keys held, the mouse moved, or STOP said."""
 
     def __init__(self, scene: VlnScene):
@@ -97,11 +97,11 @@ class Continuous:
         if not self.space.contains(action):
             raise UsageError(
                 f"an action has keys (0 or 1 of {', '.join(KEYS)}), camera (yaw and pitch, float32 "
-                f"from -1 to 1, times {MOST_TURN_DEG:g} degrees) and stop (0 or 1), not {action!r}"
+                f"from -1 to 1, times {MAX_TURN_DEG:g} degrees) and stop (0 or 1), not {action!r}"
             )
         if action["stop"]:
             return True, [], False
-        yaw_by, pitch_by = (MOST_TURN_DEG * float(share) for share in action["camera"])
+        yaw_by, pitch_by = (MAX_TURN_DEG * float(share) for share in action["camera"])
         yaw_deg = wrap_yaw(self.stance.yaw_deg + yaw_by)
         pitch_deg = min(max(self.stance.pitch_deg + pitch_by, -90.0), 90.0)
         keys = Keys(*(bool(key) for key in action["keys"]), yaw_deg=yaw_deg)

@@ -10,16 +10,20 @@ import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.browser_window import Window
-from world2minecraft.navigation.environment.action_spaces import Acting, Continuous, Discrete
-from world2minecraft.navigation.environment.episode_sampling import Drawing
-from world2minecraft.navigation.environment.observations import USUAL, Eyes, Senses
+from world2minecraft.navigation.environment.action_spaces import (
+    ActionController,
+    ContinuousActions,
+    DiscreteActions,
+)
+from world2minecraft.navigation.environment.episode_sampling import EpisodeSampler
+from world2minecraft.navigation.environment.observations import DEFAULT_SENSORS, Eyes, SensorSuite
 from world2minecraft.navigation.episodes import score_walk
 from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.scene import VlnScene, open_scene
 from world2minecraft.navigation.values import Episode, MoveSet, Stance, check_reachable
 
 ACTIONS = ("discrete", "continuous")
-MOST_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
+DEFAULT_MAX_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
 SUCCESS_M = 1.0  # The usual 3 m is as far as a whole room is wide.
 SUCCESS_REWARD, STEP_REWARD = 2.5, -0.01  # As in Habitat's navigation; and each metre nearer is 1.
 
@@ -61,7 +65,7 @@ class VlnEnv(gymnasium.Env):
         actions: str = "discrete",
         move_set: str = "vlnce",
         sliding: bool = False,
-        observations: Collection[str] = USUAL,
+        observations: Collection[str] = DEFAULT_SENSORS,
         eyes: Eyes | None = None,
         max_steps: int | None = None,
         success_m: float = SUCCESS_M,
@@ -80,12 +84,16 @@ class VlnEnv(gymnasium.Env):
         if not success_m > 0:
             raise UsageError(f"success_m is a length above 0, in metres, not {success_m:g}")
         self.scene = _opened(scene, body, box, blocks_per_metre)
-        self.drawing = Drawing(self.scene, episodes, split, get_move_set(move_set).name, span_m)
+        self.drawing = EpisodeSampler(
+            self.scene, episodes, split, get_move_set(move_set).name, span_m
+        )
         texts = self.drawing.texts if "instruction" in observations else ()
-        self.senses = Senses(self.scene, observations, eyes or Eyes(), texts)
-        self.acting: Acting = self._acting(actions == "continuous", get_move_set(move_set), sliding)
+        self.senses = SensorSuite(self.scene, observations, eyes or Eyes(), texts)
+        self.acting: ActionController = self._acting(
+            actions == "continuous", get_move_set(move_set), sliding
+        )
         self.observation_space, self.action_space = self.senses.space, self.acting.space
-        self.max_steps, self.success_m = max_steps or MOST_STEPS[actions], success_m
+        self.max_steps, self.success_m = max_steps or DEFAULT_MAX_STEPS[actions], success_m
         self.render_mode = render_mode
         self.window: Window | None = None
         self.episode: Episode | None = None
@@ -163,11 +171,11 @@ class VlnEnv(gymnasium.Env):
             self.window.close()
             self.window = None
 
-    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> Acting:
+    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
         """Return what takes the actions; a body elsewhere has its own."""
         if by_keys:
-            return Continuous(self.scene)
-        return Discrete(self.scene, move_set, sliding)
+            return ContinuousActions(self.scene)
+        return DiscreteActions(self.scene, move_set, sliding)
 
     def _told(self) -> str:
         """Return what is said beside the frame."""

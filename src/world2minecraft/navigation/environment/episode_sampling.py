@@ -16,7 +16,7 @@ from world2minecraft.navigation.values import Episode
 OPTIONS = ("episode", "goal")
 
 
-class Drawing:
+class EpisodeSampler:
     """The episodes of a scene that an environment plays.
 
     Args:

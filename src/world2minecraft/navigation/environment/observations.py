@@ -15,11 +15,11 @@ from world2minecraft.navigation.values import Stance
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY
 
-SENSES = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
-USUAL = ("rgb", "pose", "instruction")
+SENSORS = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
+DEFAULT_SENSORS = ("rgb", "pose", "instruction")
 FAR_M = 1_000.0  # Depths beyond are cut; where a ray meets nothing depth is 0.
-LONGEST = 512  # Characters of an instruction, or those of the longest there is.
-MOST_SIDE_PX = 4_096
+MIN_TEXT_LENGTH = 512  # Characters of an instruction, or those of the longest there is.
+MAX_SIDE_PX = 4_096
 _RENDERED = {"rgb": "colour", "depth": "depth", "semantic": "semantic", "instance": "instance"}
 
 
@@ -34,28 +34,28 @@ class Eyes:
     threads: int = 1
 
     def __post_init__(self):
-        if not (1 <= self.width_px <= MOST_SIDE_PX and 1 <= self.height_px <= MOST_SIDE_PX):
+        if not (1 <= self.width_px <= MAX_SIDE_PX and 1 <= self.height_px <= MAX_SIDE_PX):
             raise UsageError(
-                f"a picture has 1 to {MOST_SIDE_PX} pixels a side, "
+                f"a picture has 1 to {MAX_SIDE_PX} pixels a side, "
                 f"not {self.width_px}x{self.height_px}"
             )
         if not 10 <= self.hfov_deg <= 150:
             raise UsageError(f"hfov_deg is 10 to 150 degrees, not {self.hfov_deg:g}")
 
 
-class Senses:
+class SensorSuite:
     """The senses that were asked for, over one scene."""
 
     def __init__(
         self, scene: VlnScene, names: Collection[str], eyes: Eyes, texts: Iterable[str] = ()
     ):
         for name in names:
-            if name not in SENSES:
-                raise UnknownNameError("observation", name, SENSES)
+            if name not in SENSORS:
+                raise UnknownNameError("observation", name, SENSORS)
         if not names:
-            raise UsageError(f"observations are one or more of {', '.join(SENSES)}")
+            raise UsageError(f"observations are one or more of {', '.join(SENSORS)}")
         self.scene, self.eyes = scene, eyes
-        self.names = tuple(name for name in SENSES if name in names)
+        self.names = tuple(name for name in SENSORS if name in names)
         self.camera = camera_of(eyes.width_px, eyes.height_px, eyes.hfov_deg)
         self._outputs = tuple(_RENDERED[name] for name in self.names if name in _RENDERED)
         self._texts = tuple(texts)
@@ -106,7 +106,7 @@ class Senses:
             return self._pose_space()
         if name == "instruction":
             letters = set(string.printable).union(*self._texts)
-            longest = max([LONGEST, *map(len, self._texts)])
+            longest = max([MIN_TEXT_LENGTH, *map(len, self._texts)])
             return spaces.Text(longest, min_length=0, charset="".join(sorted(letters)))
         return {
             "rgb": spaces.Box(0, 255, (*size, 3), np.uint8),

@@ -19,7 +19,7 @@ from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.navigation.exporters.options import Written
-from world2minecraft.navigation.records import scene_place
+from world2minecraft.navigation.records import (resolve_scene_path)
 from world2minecraft.navigation.values import SPLITS, Episode, Move, Stance
 
 # World blocks to the metres of Habitat: y up, x east, z south, where our exported stages stand.
@@ -35,14 +35,14 @@ def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> n
     """Return the 4x4 from world blocks to a scene's stage in Habitat.
 
     Args:
-        scene: the path that an episode says, see ``scene_place``.
+        scene: the path that an episode says, see ``resolve_scene_path``.
         set_folder: of the set.
         metres_per_block: of a scene without a ``scene.json``.
 
     Raises:
         DamagedFileError: there is a ``scene.json``, and it says no transform.
     """
-    place = scene_place(scene, set_folder)
+    place = resolve_scene_path(scene, set_folder)
     for folder in (place, place / "build", place.parent):
         if (folder / SCENE_FILE).is_file():
             room_to_habitat = np.eye(4)

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from world2minecraft.navigation.agents.values import Agent, Decision, Sight, Task
+from world2minecraft.navigation.agents.values import Agent, Decision, Observation, Task
 from world2minecraft.navigation.running.episode_ground import Ground, GroundGuide
 from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
 from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
@@ -44,7 +44,9 @@ class Observer(Protocol):
         """Hear that an episode begins."""
         ...
 
-    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+    def decided(
+        self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
+    ) -> None:
         """Hear what an agent saw and decided, and what was made of it."""
         ...
 
@@ -109,7 +111,7 @@ class _State:
     def decide(self) -> None:
         here = self.stances[-1]
         colour = _DARK if self.agent.is_blind else self.ground.view(here)
-        sight = Sight(self.steps, colour, here, self.last)
+        sight = Observation(self.steps, colour, here, self.last)
         decision = self.agent.decide(sight)
         self.decisions += 1
         before = len(self.made)

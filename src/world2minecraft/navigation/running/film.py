@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.navigation.agents.values import Decision, Sight
+from world2minecraft.navigation.agents.values import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_ground import Ground
 from world2minecraft.navigation.running.episode_runner import Walk
@@ -47,7 +47,9 @@ class Film:
         self._stack = ExitStack()
         self._write = self._stack.enter_context(moving_picture(self.path, self.rate_hz))
 
-    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+    def decided(
+        self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
+    ) -> None:
         """Draw nothing: moves are drawn as they are made."""
 
     def stood(

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.agents.values import Decision, Sight, Task
+from world2minecraft.navigation.agents.values import Decision, Observation, Task
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.values import Episode, Move, Stance
 
@@ -34,7 +34,7 @@ class HumanAgent:
         """Take a task."""
         self._task = task
 
-    def decide(self, sight: Sight) -> Decision:
+    def decide(self, sight: Observation) -> Decision:
         """Show the view and return the move of the next key.
 
         Raises:
@@ -52,7 +52,9 @@ class HumanAgent:
     def began(self, episode: Episode, agent: str) -> None:
         """Hear that an episode begins; ``begin`` told it already."""
 
-    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+    def decided(
+        self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
+    ) -> None:
         """Hear what the person did, who knows."""
 
     def stood(
@@ -67,7 +69,7 @@ class HumanAgent:
         self._before = end_text(walk)
         self.window.say(f"This walk is over. {self._before}.")
 
-    def _told(self, task: Task, sight: Sight) -> str:
+    def _told(self, task: Task, sight: Observation) -> str:
         lines = [task.instruction, f"Move {sight.step} of at most {task.max_steps}."]
         if any(collided for _, collided in sight.done):
             lines[1] += " Something is in the way: you did not get ahead."

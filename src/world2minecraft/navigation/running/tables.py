@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.navigation.agents.registry import BESIDE
+from world2minecraft.navigation.agents.registry import REFERENCE_AGENTS
 from world2minecraft.navigation.running.item_evaluation import COMPOSITIONS, RESULT_FILE, TRAININGS
 from world2minecraft.navigation.scores import RADII_M, paired_p
 from world2minecraft.navigation.values import TASKS
@@ -178,7 +178,10 @@ def _place(result: dict[str, Any]) -> tuple[bool, str, int]:
 
 def _beside(entry: tuple[str, Any]) -> tuple[int, str]:
     name = entry[0]
-    return (BESIDE.index(name) if name in BESIDE else len(BESIDE), name)
+    return (
+        REFERENCE_AGENTS.index(name) if name in REFERENCE_AGENTS else len(REFERENCE_AGENTS),
+        name,
+    )
 
 
 def _label(result: dict[str, Any]) -> str:

@@ -15,8 +15,8 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, OutputError
 from world2minecraft.core.files import json_rows, read_bytes, write_bytes
-from world2minecraft.navigation.agents.values import Decision, Sight
-from world2minecraft.navigation.agents.vlm_agent import jpeg
+from world2minecraft.navigation.agents.values import Decision, Observation
+from world2minecraft.navigation.agents.vlm_agent import encode_jpeg
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import Walk
 from world2minecraft.navigation.values import Episode, Move, Stance
@@ -59,7 +59,9 @@ class TraceWriter:
             }
         )
 
-    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+    def decided(
+        self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
+    ) -> None:
         """Write a decision and the view that it was made from."""
         line: dict[str, Any] = {
             "decision": self._number,
@@ -73,7 +75,7 @@ class TraceWriter:
             **({"told": decision.told} if decision.told else {}),
         }
         if sight.colour.shape[0] > 1:
-            data = jpeg(sight.colour)
+            data = encode_jpeg(sight.colour)
             name = f"{VIEWS_FOLDER}/{self._number:04d}.jpg"
             write_bytes(self.folder / name, data)
             line |= {"view": name, "view_sha256": hashlib.sha256(data).hexdigest()}

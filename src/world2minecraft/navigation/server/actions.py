@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
-from world2minecraft.navigation.environment.action_spaces import Continuous, Discrete
+from world2minecraft.navigation.environment.action_spaces import ContinuousActions, DiscreteActions
 from world2minecraft.navigation.moves import forward_blocks, heading_vector, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.server.body import ServerBody
@@ -68,7 +68,7 @@ def _way(walking: int, sneaking: int) -> tuple[float, int]:
 SHORT = 0.9  # Of a step: who came less far met something.
 
 
-class MovesOnServer(Discrete):
+class MovesOnServer(DiscreteActions):
     """One move an action. The game knows no whole steps: one goes as far as the way is free."""
 
     def __init__(self, scene: VlnScene, move_set: MoveSet, server: ServerBody):
@@ -96,7 +96,7 @@ class MovesOnServer(Discrete):
         return Stance(*body.position, yaw_deg, here.pitch_deg), False
 
 
-class KeysOnServer(Continuous):
+class KeysOnServer(ContinuousActions):
     """A tick of the game an action: keys held and the mouse moved, or STOP said."""
 
     def __init__(self, scene: VlnScene, server: ServerBody):

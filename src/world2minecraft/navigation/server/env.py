@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.environment.action_spaces import Acting
+from world2minecraft.navigation.environment.action_spaces import ActionController
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.server.actions import KeysOnServer, MovesOnServer
 from world2minecraft.navigation.server.blocks import Box
@@ -63,7 +63,7 @@ class ServerEnv(VlnEnv):
         if self._is_owned:
             self.server.close()
 
-    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> Acting:
+    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
         if by_keys:
             return KeysOnServer(self.scene, self.server)
         return MovesOnServer(self.scene, move_set, self.server)

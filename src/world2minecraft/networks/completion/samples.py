@@ -33,11 +33,6 @@ from world2minecraft.reconstruction.semantics.completion import hint_of
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
 
-# Which rooms the completion network learns from: every kind and shape, tidy or full, and houses.
-#
-# Training takes seeds from 10,000 on, so that no seed of a benchmark (1000 to 1049, 2000 to 2019,
-# 500 to 549 to tune) is ever learnt; ``held_out`` seeds lie below.
-
 FIRST_SEED = 10_000
 HOUSE_SHARE = 0.06  # A house takes four times a room's time.
 BOX_SHARE = 0.6
@@ -53,6 +48,12 @@ KIND_SHARES = {
     "bathroom": 0.06,
     "hall": 0.04,
 }
+LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
+SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
+MOST_CELLS = (96, 96, 44)
+FRAME_CELLS = (60, 60, 36)  # Of the grids of single frames.
+PLAN_CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
+FIELDS = ("log_odds", "at", "hits", "colour", "offset", "votes", "hint")
 
 
 def training_room(seed: int) -> Room:
@@ -69,12 +70,6 @@ def training_room(seed: int) -> Room:
         return generate_room(seed, kind=kind, clutter=clutter)
 
 
-LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
-SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
-MOST_CELLS = (96, 96, 44)
-FRAME_CELLS = (60, 60, 36)  # Of the grids of single frames.
-PLAN_CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
-FIELDS = ("log_odds", "at", "hits", "colour", "offset", "votes", "hint")
 
 
 @dataclass(frozen=True, eq=False)

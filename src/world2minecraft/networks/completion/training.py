@@ -21,13 +21,12 @@ from world2minecraft.networks.completion.network import CompletionNet, Completio
 from world2minecraft.networks.completion.sample_pool import LOOK_AGAIN, SamplePool
 from world2minecraft.networks.validation import autocast_of
 
-# What the completion network is punished for: wrong classes, poor overlap, wrong geometry.
-
 # About the fourth root of how rare a class is in the samples; empty cells are the most by far.
 CLASS_WEIGHTS = (0.6, 0.9, 0.8, 0.7, 1.8, 1.9, 1.2, 1.4, 1.6, 2.6, 0.9, 1.3)
 SEEN_WEIGHT = 2.0  # Observed surface is named in every room; what lies behind is a guess.
 ASKED = 0.5  # The share of cells that is drawn: neighbours say the same, and it halves the time.
 JACCARD, GEOMETRY = 1.0, 0.5
+Report = Callable[[int, dict[str, float], CompletionNet], None]
 
 
 def completion_loss(logits: Tensor, truth: Tensor, surface: Tensor) -> dict[str, Tensor]:
@@ -62,7 +61,6 @@ def _jaccard(share: Tensor, wanted: Tensor) -> Tensor:
     return 1 - (both / either.clamp(min=1e-6))[there].mean()
 
 
-Report = Callable[[int, dict[str, float], CompletionNet], None]
 
 
 @dataclass(frozen=True)

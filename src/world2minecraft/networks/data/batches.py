@@ -14,12 +14,7 @@ from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
 from world2minecraft.networks.data.sequences import Companions, count_of
 
-# Which frame is drawn when, of one set or of several.
-#
-# A draw takes a set with a chance in proportion to its weight, whatever its size, and then the next
-# frame of that set's own order: each comes once before any comes again. All of it follows from the
-# seed, and draw number n is the same whether the draws before it were made or not; so a run that was
-# stopped goes on at its draw.
+LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
 
 
 class Draws(NamedTuple):
@@ -56,14 +51,7 @@ def draw_rng(seed: int, draw: int) -> np.random.Generator:
     return np.random.default_rng([seed, 2**20, draw])
 
 
-# Frames changed at random: mirrored, and in other colours.
-#
-# A mirrored frame is a frame of the mirrored room: picture, depth, principal point, pose and cells
-# turn over together, so that a cell still falls on the pixels that show it. The pose stays a
-# rotation: camera and grid are mirrored both. Where the grid lies in the room is left as it was: no
-# network is told, and a mirrored frame is of no room.
 
-LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
 
 
 def flipped(frame: Frame, voxel_m: float) -> Frame:

@@ -17,7 +17,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.metrics.protocols import KnownCells
 from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
 from world2minecraft.minecraftocc.formats.sscnet import downsampled
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.networks.config import Grid
 
 SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surfaces.

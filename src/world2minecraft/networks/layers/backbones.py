@@ -12,15 +12,17 @@ from world2minecraft.core.errors import InputError, MissingExtraError, UsageErro
 from world2minecraft.networks.layers.normalization import Norm
 from world2minecraft.networks.layers.unet2d import STRIDES, Decoder, Encoder, PictureWidths, UNet2D
 
-# Any backbone of the transformers library as the encoder of a network.
-#
-# Its maps, of whatever strides, are laid over the strides that the decoder expects: the first of
-# them at 1/4, the last at 1/32, resized where theirs differ (a vision transformer's are all at
-# 1/14 or so). At 1/2 a kernel of our own looks at the picture. The library's image processors are not
-# used, as they need torchvision.
-
 MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
 LEVELS = 4  # At 1/4, 1/8, 1/16 and 1/32.
+WIDTHS = {
+    "tiny": PictureWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
+    "small": PictureWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
+    "full": PictureWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
+    # As full, without the wide top that EfficientNet-B7 has: for networks that never had it.
+    "lean": PictureWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
+}
+NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch", "lean": "batch"}
+PREFIX = "hf:"
 
 
 class HuggingFaceEncoder(nn.Module):
@@ -97,15 +99,6 @@ def _multiple_of(config: Any) -> int:
     return int(patch) if isinstance(patch, int) and patch > 4 else STRIDES[-1]
 
 
-WIDTHS = {
-    "tiny": PictureWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
-    "small": PictureWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
-    "full": PictureWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
-    # As full, without the wide top that EfficientNet-B7 has: for networks that never had it.
-    "lean": PictureWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
-}
-NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch", "lean": "batch"}
-PREFIX = "hf:"
 
 
 def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[int]) -> UNet2D:

@@ -10,12 +10,8 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-# Dilated convolutions of cells, trained as plain ones.
-#
-# A CPU takes ten times as long for the gradient of a dilated 3x3x3 kernel as for that of a plain one
-# (43 ms of one core against 4, [4, 32, 30, 30, 18] in bfloat16). Cells that lie a whole number of
-# dilations apart never meet the others: each such family is a small grid of its own, and over all of
-# them, laid side by side in the batch, the kernel is a plain one. Same result, same weights.
+Norm = Literal["batch", "group"]
+GROUPS = 4  # Of channels; the small networks have 8 to 32.
 
 
 class DilatedConv3d(nn.Conv3d):
@@ -55,10 +51,6 @@ def joined(cells: Tensor, steps: tuple[int, ...], sides: tuple[int, ...]) -> Ten
     return whole[:, : sides[0], : sides[1], : sides[2]].permute(0, 4, 1, 2, 3)
 
 
-# Group normalisation whose gradient is found in float32.
-#
-# torch's own gradient of bfloat16 with the channels last takes a CPU three times as long as that of
-# float32, and says less.
 
 
 class GroupNorm(nn.GroupNorm):
@@ -106,8 +98,6 @@ def _sizes(values: Tensor) -> tuple[int, int, int]:
     return len(values), values.shape[1], values[0, 0].numel()
 
 
-Norm = Literal["batch", "group"]
-GROUPS = 4  # Of channels; the small networks have 8 to 32.
 
 
 def norm2d(kind: Norm, channels: int) -> nn.Module:

@@ -15,10 +15,7 @@ from torch import Tensor
 
 from world2minecraft.networks.batch import OccInput
 
-# Values between the cells of maps and volumes: places are in cells, cell i spans [i, i + 1).
-#
-# Beyond the middles of the outermost cells values fade to 0. PyTorch has a kernel for this; ONNX of
-# opset 17 has it for maps alone, so that volumes are exported as sums over the eight cells around.
+NEAREST_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
 
 
 def sample(values: Tensor, places: Tensor) -> Tensor:
@@ -62,7 +59,6 @@ def sample_by_corners(values: Tensor, places: Tensor) -> Tensor:
     return found
 
 
-NEAREST_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.networks.layers.normalization import DilatedConv3d, Norm, conv3d, norm3d
 
 
+
+
 class AxisBlock(nn.Module):
     """A bottleneck of DDR: a quarter of the channels, three axes, and back.
 
@@ -103,7 +105,6 @@ def _along(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> 
     return nn.Sequential(conv, norm3d(norm, channels))
 
 
-# Several reaches at once (ASPP), and the head that names the cells.
 
 
 class Reaches(nn.Module):

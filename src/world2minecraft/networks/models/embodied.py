@@ -29,11 +29,13 @@ from world2minecraft.networks.layers.projection import lift, sight_of
 from world2minecraft.networks.layers.residual_3d import axis_blocks
 from world2minecraft.networks.layers.unet3d import UNet3D
 
-# What an embodied network knows of a scene: sums over frames, cell by cell.
-
 ODDS_AT = 1
 VOTES_AT = 2
 FEATURES_AT = VOTES_AT + CLASS_COUNT
+SCALES = (1, 2, 4, 8)
+DEPTH_SCALE = 4
+MOST_ODDS = 3.0  # Of one frame, in log-odds.
+BELOW_M = 1.6  # How far under a camera its box begins: the floor under a person's eyes.
 
 
 @dataclass(frozen=True)
@@ -73,9 +75,6 @@ class SceneEvidence:
         return torch.cat([weight / (weight + 1), odds, means], dim=1)
 
 
-SCALES = (1, 2, 4, 8)
-DEPTH_SCALE = 4
-MOST_ODDS = 3.0  # Of one frame, in log-odds.
 
 
 @dataclass(frozen=True)
@@ -171,12 +170,7 @@ class Embodied(nn.Module):
         return self.read_cells(self.enter(evidence.readable()))[0]
 
 
-# A stream of frames into one scene's grid, by the embodied network.
-#
-# The box of cells that a frame is looked at lies before its camera, turned to it by quarter turns, on
-# the scene's own cells: so nothing is resampled when its evidence is added.
 
-BELOW_M = 1.6  # How far under a camera its box begins: the floor under a person's eyes.
 
 
 @dataclass(frozen=True)

@@ -26,12 +26,6 @@ from world2minecraft.networks.layers.residual_3d import AxisBlock, Double
 from world2minecraft.networks.layers.unet2d import normalised
 from world2minecraft.networks.layers.unet3d import UNet3D
 
-# A volume of pixels and depths that grows out of a picture (NDC-Scene, ICCV 2023).
-#
-# Its first axis is depth in bins that grow linearly, its others are the picture's. It begins at 1/32
-# with an eighth of the bins, taken out of the channels of the coarsest map; each step doubles all
-# three axes, and lays the picture's map of that scale over the depths at which it belongs.
-
 STEPS = (16, 8, 4)  # The scales after 1/32.
 
 

@@ -29,7 +29,9 @@ from world2minecraft.networks.layers.depth_bins import DepthBranch, known_depth
 from world2minecraft.networks.layers.projection import cell_centers_m, sight_of, turned
 from world2minecraft.networks.layers.residual_3d import Double, Reaches
 
-# One layer of Symphonies: instances look at the picture, cells ask them, they look at cells.
+SCALES = (4, 8, 16)
+DEPTH_SCALE = 4
+LAYERS = 3
 
 
 @dataclass(frozen=True)
@@ -95,9 +97,6 @@ def as_grid(cells: Tensor, shape: tuple[int, int, int]) -> Tensor:
     return cells.transpose(1, 2).unflatten(2, shape)
 
 
-SCALES = (4, 8, 16)
-DEPTH_SCALE = 4
-LAYERS = 3
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import CaptureError, ServerError, UnknownNameEr
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
 from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import Picture, Turn
-from world2minecraft.external_models.structured_replies import spoken
+from world2minecraft.external_models.structured_replies import strip_reasoning
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.paper.layouts.importers.layoutgpt import SHORTER_PX
 from world2minecraft.paper.layouts.importers.reading import clean_name
@@ -88,7 +88,7 @@ def describe_photos(model: ChatModel, photos: Sequence[Picture]) -> str:
         ServerError: the model cannot be asked, or says nothing. BudgetError: a cap is reached.
     """
     _, reply = model.ask((Turn("user", (prompt_text(DESCRIBE), *photos)),))
-    text = spoken(reply.text).strip()
+    text = strip_reasoning(reply.text).strip()
     if not text:
         raise ServerError(f"{model.name} says nothing of the photos; try another model")
     return f"{text}\n"

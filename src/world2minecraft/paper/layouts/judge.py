@@ -19,10 +19,10 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import Picture, Turn
 from world2minecraft.external_models.structured_replies import (
-    Form,
+    ReplyFormat,
     UnreadableError,
-    ask_form,
-    json_of,
+    ask_structured,
+    extract_json_object,
 )
 from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
 from world2minecraft.rendering.output.images import colour_bytes
@@ -130,7 +130,7 @@ def grade(
     if wish:
         words += f"\nThe room was to be this; grade completeness by it.\n\n{wish.strip()}\n"
     turns = (Turn("user", (words, *pictures)),)
-    rows = [ask_form(model, turns, FORM, sample=number).value for number in range(repeats)]
+    rows = [ask_structured(model, turns, FORM, sample=number).value for number in range(repeats)]
     return Grades(name, method, tuple(rows), tuple(one.sha256 for one in pictures))
 
 
@@ -160,7 +160,7 @@ def read_grades(text: str) -> dict[str, int]:
         >>> read_grades('{"realism": 7, "completeness": 6, "atmosphere": 8}')["atmosphere"]
         8
     """
-    told = json_of(text)
+    told = extract_json_object(text)
     if told is None:
         raise UnreadableError("it holds no JSON object")
     row = {}
@@ -175,7 +175,7 @@ def read_grades(text: str) -> dict[str, int]:
 
 
 _SCALE: dict[str, Any] = {"type": "integer", "enum": list(range(LEAST, MOST + 1))}
-FORM: Form[dict[str, int]] = Form(
+FORM: ReplyFormat[dict[str, int]] = ReplyFormat(
     "grades",
     {
         "type": "object",

@@ -1,11 +1,100 @@
-"""Recipes of the rooms that metric houses do not know: shops, winter gardens, workshops and more.
-
-Each is a list of steps, tried in order; what finds no place is left out.
-"""
+"""Which kinds the rooms of a house are of, and what more stands in those of the metric kinds."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
-from world2minecraft.procgen.worlds.task import Task
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.worlds.display_stands import HOME, Show
+from world2minecraft.procgen.worlds.dressing import hang_one
+from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
+from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
+
+# What a recipe of a room works with: words for walls, floor and ceiling, seats and racks.
+
+BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
+    "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",
+    "bamboo_mosaic", "crimson", "warped", "smooth_stone", "stone", "smooth_quartz", "andesite",
+    "polished_andesite", "polished_diorite", "polished_granite", "brick", "mud_brick",
+    "stone_brick", "sandstone", "smooth_sandstone", "cut_sandstone", "smooth_red_sandstone",
+    "purpur", "prismarine", "prismarine_brick", "dark_prismarine", "nether_brick",
+    "red_nether_brick", "blackstone", "polished_blackstone", "polished_deepslate",
+    "deepslate_tile", "end_stone_brick", "waxed_cut_copper", "waxed_oxidized_cut_copper",
+    "waxed_weathered_cut_copper", "waxed_exposed_cut_copper", "quartz", "diorite", "granite",
+    "cobblestone", "mossy_cobblestone", "cobbled_deepslate", "deepslate_brick",
+    "polished_blackstone_brick", "red_sandstone", "cut_red_sandstone", "mossy_stone_brick",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a recipe works with."""
+
+    furnisher: Furnisher
+    show: Show
+    room: BlockRoom
+    rng: np.random.Generator
+
+    def one(self, *choices: str) -> str:
+        """Return one of some words."""
+        return choices[int(self.rng.integers(len(choices)))]
+
+    def wall(self, *names: str, above_m: float | None = None) -> Thing | None:
+        """Set one of some designs at a wall."""
+        scale = self.furnisher.house.blocks_per_metre
+        above = None if above_m is None else round(above_m * scale)
+        number = self.furnisher.put_at_wall(names, self.room, self.rng, above=above)
+        return self.furnisher.of(number) if number else None
+
+    def free(self, *names: str) -> Thing | None:
+        """Set one of some designs anywhere on the floor."""
+        number = self.furnisher.put_free(names, self.room, self.rng)
+        return self.furnisher.of(number) if number else None
+
+    def hang(self, name: str, count: int) -> None:
+        """Hang things of one design from the ceiling, in a row."""
+        for n in range(count):
+            hang_one(self.furnisher, self.room, name, (n + 0.5) / count, self.rng)
+
+    def on(self, thing: Thing | None, *names: str) -> None:
+        """Set one of some small designs on a thing."""
+        if thing is not None:
+            self.furnisher.put_on(names, thing, self.rng)
+
+    def seats(self, table: Thing | None, most: int, *names: str) -> None:
+        """Set seats of one design around a table, looking at it."""
+        if table is None:
+            return
+        name = self.one(*names)
+        for turns in self.rng.permutation(4)[:most].tolist():
+            found = self.furnisher.design(name, self.room, turns, self.rng)
+            if found is None:
+                return
+            # A seat that looks along a turn stands on the other side of the table.
+            axis, low = turns % 2, [0, 0, self.room.ground]
+            sides = (found.size[0], found.size[2])
+            low[axis] = table.low[axis] - sides[axis] if turns < 2 else table.high[axis]
+            other = 1 - axis
+            low[other] = (table.low[other] + table.high[other] - sides[other]) // 2
+            self.furnisher.put(name, found, low, self.room, turns, ((0, 0), (1, 0), (0, 1)))
+
+    def racks(self, count: int, boards: tuple[int, ...] | None = None) -> int:
+        """Stand racks of one material along the walls; return how many wares they hold."""
+        board, held = self.one(*BOARDS), 0
+        for _ in range(count):
+            levels = (
+                boards or ((0, 2, 4, 6), (0, 3, 5), (0, 2, 5), (1, 3, 5))[int(self.rng.integers(4))]
+            )
+            own = tuple(level for level in levels if level < self.room.height - 1)
+            held += self.show.put_rack(self.room, own, board)
+        return held
+
+
+# Recipes of the rooms that metric houses do not know: shops, winter gardens, workshops and more.
+#
+# Each is a list of steps, tried in order; what finds no place is left out.
 
 PILLARS = (
     "quartz_pillar[axis=y]", "purpur_pillar[axis=y]", "polished_basalt[axis=y]",
@@ -149,3 +238,124 @@ OWN: dict[str, Callable[[Task], None]] = {
     "library": _library, "music": _music, "games": _games, "laundry": _laundry, "cafe": _cafe,
     "gallery": _gallery,
 }  # fmt: skip
+
+
+BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
+    "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
+    "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
+    "dining": (
+        ("cafe", 0.12), ("office", 0.1), ("study", 0.08), ("games", 0.06), ("music", 0.06),
+    ),
+    "children": (
+        ("office", 0.12), ("study", 0.1), ("games", 0.06), ("library", 0.05), ("music", 0.04),
+        ("cafe", 0.03),
+    ),
+    "bed": (("children", 0.08),),
+    "bathroom": (("laundry", 0.12),),
+}  # fmt: skip
+SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
+SHOWING_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
+MANY_ROOMS = 8  # So many have two.
+SPARE = ("children", "dining", "study", "office")  # of these, where it has one.
+MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
+    "living": (
+        "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
+        "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "globe_lamp", "arc_lamp",
+        "corner_sofa_leather", "corner_sofa_white", "cube_shelf", "planter_box",
+    ),
+    "bed": (
+        "single_bed", "vanity", "standing_mirror", "blanket_chest", "crib", "ottoman", "radiator",
+        "chair_padded", "chest_of_drawers", "palm", "double_bed_low", "paper_lamp",
+    ),
+    "kitchen": (
+        "dishwasher", "fridge_double", "oven_tower", "pantry_rack", "pedal_bin", "radiator",
+        "wall_shelf", "counter", "microwave", "kitchen_island",
+    ),
+    "bathroom": ("towel_radiator", "laundry_basket", "shower_curtain", "wall_mirror", "fern"),
+    "dining": (
+        "display_cabinet", "sideboard", "table_console", "grandfather_clock", "fireplace", "plant",
+        "vase", "bonsai", "piano",
+    ),
+    "study": (
+        "bookcase", "armchair_wing", "globe_lamp", "filing_cabinet", "bust", "bookcase_low",
+        "desk_partners", "radiator", "cactus",
+    ),
+    "children": ("bunk_bed_pine", "crate", "bicycle", "cube_shelf", "chair_child", "box", "crib"),
+    "office": (
+        "locker", "filing_cabinet", "projector_screen", "desk_white", "office_chair", "cactus",
+        "fir", "desk_drawers", "monitor_wide",
+    ),
+    "hall": (
+        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "wall_mirror",
+        "radiator",
+    ),
+}  # fmt: skip
+CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
+LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
+SHELVES = {  # How many shelves hang in a room at most.
+    "living": 2, "bed": 1, "children": 2, "office": 2, "study": 2, "dining": 1, "kitchen": 1,
+    "hall": 2, "library": 1, "games": 1, "music": 1,
+}  # fmt: skip
+SHELF_M = 1.3
+
+
+def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
+    """Return a house of which some rooms are of further kinds; one at least shows wares."""
+    rooms = []
+    for room in house.rooms:
+        kind, draw = room.kind, rng.random()
+        for name, share in BECOMES.get(room.kind, ()):
+            draw -= share
+            if draw < 0:
+                kind = name
+                break
+        rooms.append(replace(room, kind=kind))
+    wanted = 1 + (len(rooms) >= MANY_ROOMS)
+    for _ in range(wanted - sum(room.kind in SHOWING for room in rooms)):
+        changed = [room.number for room in rooms if room.kind in SPARE]
+        if changed:
+            number = changed[int(rng.integers(len(changed)))]
+            kind = SHOWING[int(rng.choice(len(SHOWING), p=SHOWING_SHARES))]
+            rooms[number] = replace(rooms[number], kind=kind)
+    # A metric kind is furnished by the metric plan, which then must know of it.
+    cells = tuple(
+        replace(cell, kind=room.kind) if room.kind in KINDS else cell
+        for cell, room in zip(house.plan.cells, rooms, strict=True)
+    )
+    return replace(house, rooms=tuple(rooms), plan=replace(house.plan, cells=cells))
+
+
+def _lay_about(task: Task) -> None:
+    """Put small things of a home on half of the low cupboards and tables of a room."""
+    room, furnisher = task.room, task.furnisher
+    for thing in [thing for thing in furnisher.things if thing.room == room.number]:
+        low = thing.high[2] - room.ground <= round(LOW_M * furnisher.house.blocks_per_metre)
+        if thing.class_id in CARRIERS and low and task.rng.random() < 0.55:
+            task.show.put_on(thing, (HOME,), most=1 + int(task.rng.integers(2)))
+
+
+def _high(task: Task) -> int:
+    """Return the layer of a shelf at the height of one's eyes."""
+    return round(SHELF_M * task.furnisher.house.blocks_per_metre)
+
+
+def furnish_more(task: Task, wall_lamps: int = 0) -> None:
+    """Set further furniture, pictures, lamps and small wares into a room of a metric kind."""
+    room, rng = task.room, task.rng
+    names = MORE.get(room.kind, ())
+    for number in rng.permutation(len(names))[: 2 + int(rng.integers(3))].tolist():
+        task.wall(names[number])
+    _lay_about(task)
+    for _ in range(3 if room.kind == "children" else 0):
+        task.show.put_bed(room)
+    for _ in range(int(rng.integers(3)) + (room.kind == "hall")):
+        task.wall(*PICTURES, above_m=1.0)
+    if room.kind in ("living", "study", "hall", "children") and rng.random() < 0.5:
+        task.show.hang_on_walls(room, 2, 6)
+    if rng.random() < 0.35 and room.kind != "bathroom":
+        task.wall("wall_shelf", above_m=1.3)
+    for _ in range(SHELVES.get(room.kind, 0)):
+        if rng.random() < 0.75:
+            task.show.put_rack(room, (_high(task),), task.one(*BOARDS), most=10)
+    for _ in range(wall_lamps):
+        task.wall("wall_lamp", above_m=1.4)

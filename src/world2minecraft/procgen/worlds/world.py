@@ -24,11 +24,9 @@ from world2minecraft.procgen.worlds.dressing import dress_windows, hang_lamps, h
 from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
 from world2minecraft.procgen.worlds.garden import garden_blocks, put_garden
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom, plan_block_house
-from world2minecraft.procgen.worlds.kinds import furnish_more, with_own_kinds
-from world2minecraft.procgen.worlds.recipes import OWN
+from world2minecraft.procgen.worlds.recipes import OWN, Task, furnish_more, with_own_kinds
 from world2minecraft.procgen.worlds.shell import put_shell, put_stairs, rails
 from world2minecraft.procgen.worlds.styles import RoomLook, Style, draw_look, styles
-from world2minecraft.procgen.worlds.task import Task
 
 # Where one comes to on foot in a house, by the same walkable graph that tours go by.
 

@@ -6,10 +6,10 @@ each object (O_k).
 
 from world2minecraft.reconstruction.instances.objects import (
     CenterMap,
-    Found,
+    FoundObjects,
     find_objects,
-    measured,
+    measure_object,
 )
 from world2minecraft.reconstruction.instances.parameters import FindParameters
 
-__all__ = ["CenterMap", "FindParameters", "Found", "find_objects", "measured"]
+__all__ = ["CenterMap", "FindParameters", "FoundObjects", "find_objects", "measure_object"]

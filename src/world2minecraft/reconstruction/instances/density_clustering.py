@@ -1,4 +1,9 @@
-"""The paper's D and C: how full the neighbourhood of each cell is, and the cells that stand out."""
+"""Density, candidates and clusters: D, C and C' of the paper's Algorithm 1.
+
+``density_map`` gives D, how full the neighbourhood of each cell is; ``candidate_cells`` gives C,
+the cells that reach the threshold; ``cluster_candidates`` parts C by DBSCAN within each class, and
+``centroids`` gives C'. ``assign_voxels`` then gives each object cell to a cluster (O_k).
+"""
 
 import numpy as np
 from scipy import ndimage
@@ -38,8 +43,6 @@ def candidate_cells(
     return np.argwhere(binary & (density >= density_threshold - 5e-7)).astype(np.int32)
 
 
-# The paper's clustering: candidates within each class by DBSCAN, and the centroids C'.
-
 NO_CLUSTER = -1
 
 
@@ -61,7 +64,9 @@ def cluster_candidates(
     count = 0
     for class_id in np.unique(classes):
         own = np.flatnonzero(classes == class_id)
-        found = _ordered(_dbscan(candidates[own], cluster_radius, min_samples), candidates[own])
+        found = _order_by_centroid(
+            _dbscan(candidates[own], cluster_radius, min_samples), candidates[own]
+        )
         clusters[own] = np.where(found >= 0, found + count, NO_CLUSTER)
         count += int(found.max(initial=-1)) + 1
     return clusters
@@ -96,14 +101,11 @@ def _dbscan(points: np.ndarray, radius: float, min_samples: int) -> np.ndarray:
     return np.where(labels < count, labels, NO_CLUSTER)
 
 
-def _ordered(clusters: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _order_by_centroid(clusters: np.ndarray, points: np.ndarray) -> np.ndarray:
     centers = centroids(points, clusters)
     rank = np.empty(len(centers), np.int32)
     rank[np.lexsort(centers.T[::-1])] = np.arange(len(centers), dtype=np.int32)
     return np.where(clusters >= 0, np.append(rank, 0)[clusters], NO_CLUSTER).astype(np.int32)
-
-
-# From clusters to the cells of each object: a search by steps along connected cells of a class.
 
 
 def assign_voxels(
@@ -119,12 +121,12 @@ def assign_voxels(
     members = clusters >= 0
     seeds = candidates[members]
     owners[tuple(seeds.T)] = clusters[members] + 1
-    _spread(labels, binary, owners, seeds.astype(np.int32))
+    _flood(labels, binary, owners, seeds.astype(np.int32))
     return owners
 
 
 @njit
-def _spread(labels, binary, owners, seeds):  # pragma: no cover - compiled
+def _flood(labels, binary, owners, seeds):  # pragma: no cover - compiled
     """Carry owners outward ring by ring; within a ring the lowest owner wins."""
     nx, ny, nz = labels.shape
     ring = seeds
@@ -146,13 +148,13 @@ def _spread(labels, binary, owners, seeds):  # pragma: no cover - compiled
                             claims[count] = owner
                             count += 1
         ring = np.empty((count, 3), np.int32)
-        fresh = 0
+        unclaimed = 0
         for index in range(count):
             i, j, k = reached[index]
             if owners[i, j, k] == 0:
-                ring[fresh] = reached[index]
-                fresh += 1
+                ring[unclaimed] = reached[index]
+                unclaimed += 1
                 owners[i, j, k] = claims[index]
             elif claims[index] < owners[i, j, k]:
                 owners[i, j, k] = claims[index]
-        ring = ring[:fresh]
+        ring = ring[:unclaimed]

@@ -6,13 +6,13 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
 
 # Bits of a lamp: its foot on the floor, a piece of its cord, join the shade over or under them.
 
-THIN_CELLS = 2  # A post or a cord is at most so wide,
-FLAT_CELLS = 1  # a foot so high.
-GAP_M = 1.4  # Between the foot of a lamp and its shade.
+MAX_POST_CELLS = 2  # A post or a cord is at most so wide,
+MAX_FOOT_CELLS = 1  # a foot so high.
+MAX_GAP_M = 1.4  # Between the foot of a lamp and its shade.
 
 
 def merge_lamp_parts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
@@ -22,35 +22,35 @@ def merge_lamp_parts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """
     result = owners.copy()
     pieces = dict(cells_by_owner(owners, grid.labels, SemanticClass.OBJS))
-    bits = {number: cells for number, cells in pieces.items() if _is_bit(cells, grid)}
-    whole = {number: cells for number, cells in pieces.items() if number not in bits}
-    for cells in bits.values():
-        gaps = {one: _gap(cells, other, grid) for one, other in whole.items()}
+    fragments = {number: cells for number, cells in pieces.items() if _is_fragment(cells, grid)}
+    whole = {number: cells for number, cells in pieces.items() if number not in fragments}
+    for cells in fragments.values():
+        gaps = {one: _vertical_gap(cells, other, grid) for one, other in whole.items()}
         near = {one: gap for one, gap in gaps.items() if gap is not None}
         if near:
             result[tuple(cells.T)] = min(near, key=lambda one: (near[one], one))
-        elif int(cells[:, 2].max()) < floor_below(cells, grid):
+        elif int(cells[:, 2].max()) < floor_layer_below(cells, grid):
             result[tuple(cells.T)] = 0
     return result
 
 
-def _is_bit(cells: np.ndarray, grid: OccupancyGrid) -> bool:
+def _is_fragment(cells: np.ndarray, grid: OccupancyGrid) -> bool:
     wide, deep, tall = np.ptp(cells, axis=0) + 1
-    if max(wide, deep) <= THIN_CELLS:
+    if max(wide, deep) <= MAX_POST_CELLS:
         return True
-    low = int(cells[:, 2].min()) - floor_below(cells, grid)
-    return bool(tall <= FLAT_CELLS and low <= 0)
+    low = int(cells[:, 2].min()) - floor_layer_below(cells, grid)
+    return bool(tall <= MAX_FOOT_CELLS and low <= 0)
 
 
-def _gap(bit: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) -> int | None:
-    """Return the layers between a bit and a thing straight over or under it; None if it is not."""
-    middle = bit[:, :2].mean(axis=0)
+def _vertical_gap(fragment: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) -> int | None:
+    """Return the layers between a fragment and a thing over or under it; None if it is not."""
+    middle = fragment[:, :2].mean(axis=0)
     inside = (middle >= whole[:, :2].min(axis=0) - 1) & (middle <= whole[:, :2].max(axis=0) + 1)
     if not inside.all():
         return None
-    first = min(int(bit[:, 2].max()), int(whole[:, 2].max())) + 1
-    last = max(int(bit[:, 2].min()), int(whole[:, 2].min()))
-    if last - first > GAP_M / grid.voxel_m:
+    first = min(int(fragment[:, 2].max()), int(whole[:, 2].max())) + 1
+    last = max(int(fragment[:, 2].min()), int(whole[:, 2].min()))
+    if last - first > MAX_GAP_M / grid.voxel_m:
         return None
     x, y = (int(value) for value in np.round(middle))
     between = grid.labels[x, y, first:last]
@@ -60,7 +60,7 @@ def _gap(bit: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) -> int | None:
 
 # Parts of one object that stand on one another: a table's top on its post, a bed on a bed.
 
-OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or under the other.
+MIN_OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or under the other.
 HALF_OF_26 = [
     (dx, dy, dz)
     for dx in (-1, 0, 1)
@@ -77,19 +77,19 @@ def merge_stacked(owners: np.ndarray, labels: np.ndarray) -> np.ndarray:
     of the same class that touch are one object where at least half of the smaller one's plan
     lies over or under the other.
     """
-    pairs = _touching(owners, labels)
+    pairs = _touching_pairs(owners, labels)
     parent = list(range(int(owners.max(initial=0)) + 1))
-    plans = _plans(owners, {number for pair in pairs for number in pair})
+    plans = _columns(owners, {number for pair in pairs for number in pair})
     for first, second in pairs:
         smaller = min(len(plans[first]), len(plans[second]))
-        if len(plans[first] & plans[second]) >= OVERLAP * smaller:
+        if len(plans[first] & plans[second]) >= MIN_OVERLAP * smaller:
             a, b = sorted((_root(parent, first), _root(parent, second)))
             parent[b] = a
     roots = np.array([_root(parent, number) for number in range(len(parent))], np.int32)
     return roots[owners]
 
 
-def _touching(owners: np.ndarray, labels: np.ndarray) -> list[tuple[int, int]]:
+def _touching_pairs(owners: np.ndarray, labels: np.ndarray) -> list[tuple[int, int]]:
     pairs: set[tuple[int, int]] = set()
     for shift in HALF_OF_26:
         near = tuple(
@@ -105,7 +105,7 @@ def _touching(owners: np.ndarray, labels: np.ndarray) -> list[tuple[int, int]]:
     return sorted(pairs)
 
 
-def _plans(owners: np.ndarray, numbers: set[int]) -> dict[int, set[tuple[int, int]]]:
+def _columns(owners: np.ndarray, numbers: set[int]) -> dict[int, set[tuple[int, int]]]:
     """Return the columns that each numbered part covers."""
     plans: dict[int, set[tuple[int, int]]] = {number: set() for number in numbers}
     cells = np.argwhere(np.isin(owners, sorted(numbers)))
@@ -121,7 +121,7 @@ def _root(parent: list[int], number: int) -> int:
 
 
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-STANDING_BIT = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
+STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
 
 def merge_small_pieces(
@@ -129,7 +129,7 @@ def merge_small_pieces(
 ) -> np.ndarray:
     """Return owners in which no object is smaller than ``min_cells``.
 
-    What stands on the floor is large: of chairs, beds, sofas and tables bits of some more cells
+    What stands on the floor is large: of chairs, beds, sofas and tables fragments of some more cells
     join a neighbour too, where there is one.
 
     Loose pieces and too small objects join the nearest object of their own class within
@@ -138,17 +138,17 @@ def merge_small_pieces(
     """
     result = owners.copy()
     for class_id in np.unique(labels[(labels >= 5) & (labels <= 11)]):
-        bit = STANDING_BIT * min_cells if class_id in STANDING else min_cells
-        _rejoin_class(labels == class_id, result, (min_cells, bit), join_radius)
+        fragment = STANDING_FACTOR * min_cells if class_id in STANDING else min_cells
+        _merge_class(labels == class_id, result, (min_cells, fragment), join_radius)
     return result
 
 
-def _rejoin_class(
+def _merge_class(
     mask: np.ndarray, owners: np.ndarray, limits: tuple[int, int], join_radius: float
 ) -> None:
-    min_cells, bit = limits
+    min_cells, fragment = limits
     sizes = np.bincount(owners[mask])
-    small = np.flatnonzero((sizes > 0) & (sizes < bit))
+    small = np.flatnonzero((sizes > 0) & (sizes < fragment))
     loose = mask & ((owners == 0) | np.isin(owners, small[small > 0]))
     if not loose.any():
         return
@@ -156,16 +156,16 @@ def _rejoin_class(
     owners[loose] = 0
     anchors = np.argwhere(kept)
     tree = KDTree(anchors) if len(anchors) else None
-    fresh = int(owners.max())
-    for cells in _grouped(loose):
-        owner = _nearest(tree, anchors, owners, cells, join_radius)
+    next_id = int(owners.max())
+    for cells in _connected_pieces(loose):
+        owner = _nearest_object(tree, anchors, owners, cells, join_radius)
         if owner == 0 and len(cells) >= min_cells:
-            fresh += 1
-            owner = fresh
+            next_id += 1
+            owner = next_id
         owners[tuple(cells.T)] = owner
 
 
-def _grouped(loose: np.ndarray) -> list[np.ndarray]:
+def _connected_pieces(loose: np.ndarray) -> list[np.ndarray]:
     """Return the cells, int64 [N, 3], of each connected piece."""
     pieces, _ = label_components(loose)
     cells = np.argwhere(pieces)
@@ -175,7 +175,7 @@ def _grouped(loose: np.ndarray) -> list[np.ndarray]:
     return np.split(cells[order], ends)
 
 
-def _nearest(
+def _nearest_object(
     tree: KDTree | None,
     anchors: np.ndarray,
     owners: np.ndarray,

@@ -9,15 +9,17 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances.object_voxels import floor_below
+from world2minecraft.reconstruction.instances.object_voxels import floor_layer_below
 
 # Chairs that stand askew: the smallest rectangle around their cells in plan, turned freely.
 
 ANGLES_DEG = np.array([sign * a for a in range(8, 38) for sign in (1, -1)], np.float64)
-CLEARLY = 0.95  # Of the upright rectangle's area. Straight chairs of 0.08 m cells stay above it.
-LIKE_MIRRORED = 0.02  # A rectangle turned the other way that is as small: the turn is open.
-RIM = 0.6  # Cells from the outermost centres to the sides; cells are met by their corners.
-SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, heap, or back alone.
+MAX_AREA_RATIO = (
+    0.95  # Of the upright rectangle's area. Straight chairs of 0.08 m cells stay above it.
+)
+MIN_MIRRORED_EXCESS = 0.02  # A rectangle turned the other way that is as small: the turn is open.
+RIM_CELLS = 0.6  # Cells from the outermost centres to the sides; cells are met by their corners.
+SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, voxels, or back alone.
 
 
 class Rectangle(NamedTuple):
@@ -28,7 +30,7 @@ class Rectangle(NamedTuple):
     sides: np.ndarray
 
 
-def askew_rectangle(cells: np.ndarray, class_id: int, voxel_m: float) -> Rectangle | None:
+def min_area_rectangle(cells: np.ndarray, class_id: int, voxel_m: float) -> Rectangle | None:
     """Return the rectangle of a chair of cells, int [N, 3], turned by 8 to 37 degrees.
 
     None for other classes, where the upright rectangle is about as small, and where the sides
@@ -37,65 +39,65 @@ def askew_rectangle(cells: np.ndarray, class_id: int, voxel_m: float) -> Rectang
     if class_id != SemanticClass.CHAIR:
         return None
     plan = np.unique(cells[:, :2], axis=0) + 0.5
-    upright = np.prod(np.ptp(plan, axis=0) + RIM)
-    every = [_around(plan, angle) for angle in ANGLES_DEG]
+    upright = np.prod(np.ptp(plan, axis=0) + RIM_CELLS)
+    every = [_rectangle_at(plan, angle) for angle in ANGLES_DEG]
     areas = np.round([float(np.prod(one.sides)) for one in every], 9)
     best = every[int(areas.argmin())]
     mirrored = areas[np.sign(ANGLES_DEG) != np.sign(best.angle_deg)].min()
     sides_m = best.sides * voxel_m
     if (
-        areas.min() > CLEARLY * upright
-        or mirrored < (1 + LIKE_MIRRORED) * areas.min()
+        areas.min() > MAX_AREA_RATIO * upright
+        or mirrored < (1 + MIN_MIRRORED_EXCESS) * areas.min()
         or not (SIDES_M[0] <= sides_m.min() and sides_m.max() <= SIDES_M[1])
     ):
         return None
     return best
 
 
-def _around(plan: np.ndarray, angle_deg: float) -> Rectangle:
+def _rectangle_at(plan: np.ndarray, angle_deg: float) -> Rectangle:
     """Return the rectangle of one angle around some points, float64 [N, 2]."""
     cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
     along = plan[:, 0] * cos + plan[:, 1] * sin
     aside = plan[:, 1] * cos - plan[:, 0] * sin
     u, v = ((line.min() + line.max()) / 2 for line in (along, aside))
     middle = np.array([u * cos - v * sin, u * sin + v * cos])
-    return Rectangle(float(angle_deg), middle, np.array([np.ptp(along), np.ptp(aside)]) + RIM)
+    return Rectangle(float(angle_deg), middle, np.array([np.ptp(along), np.ptp(aside)]) + RIM_CELLS)
 
 
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-STANDS_BELOW_M = 1.0  # What begins higher stands on something else; a chair's back does not.
-HANGS_ABOVE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
-BESIDE_CELLS = 2  # What has a wall this near hangs on it.
-TOUCH_CELLS = 2  # What has so much free air below it
-FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.
+MAX_STANDING_BASE_M = 1.0  # What begins higher stands on something else; a chair's back does not.
+MIN_HANGING_BASE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
+WALL_CELLS = 2  # What has a wall this near hangs on it.
+MIN_FREE_CELLS = 2  # What has so much free air below it
+MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.
 
 
-def layers_reached(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> tuple[int, int]:
+def vertical_extent(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> tuple[int, int]:
     """Return the first layer of an object of ``cells``, int [N, 3], and the one past its last."""
     low, high = int(cells[:, 2].min()), int(cells[:, 2].max()) + 1
-    floor = floor_below(cells, grid)
-    if class_id in STANDING and 0 < (low - floor) * grid.voxel_m <= STANDS_BELOW_M:
+    floor = floor_layer_below(cells, grid)
+    if class_id in STANDING and 0 < (low - floor) * grid.voxel_m <= MAX_STANDING_BASE_M:
         return floor, high
-    if class_id == SemanticClass.OBJS and low >= floor + TOUCH_CELLS and _is_in_air(cells, grid):
-        return _pole(cells, grid, floor)
+    if class_id == SemanticClass.OBJS and low >= floor + MIN_FREE_CELLS and _is_in_air(cells, grid):
+        return _lamp_layers(cells, grid, floor)
     return low, high
 
 
 def _is_in_air(cells: np.ndarray, grid: OccupancyGrid) -> bool:
     """Tell whether nothing holds an object: neither below nor beside."""
     labels = grid.labels
-    low = np.maximum(cells[:, :2].min(axis=0) - BESIDE_CELLS, 0)
-    high = cells[:, :2].max(axis=0) + 1 + BESIDE_CELLS
+    low = np.maximum(cells[:, :2].min(axis=0) - WALL_CELLS, 0)
+    high = cells[:, :2].max(axis=0) + 1 + WALL_CELLS
     first, last = int(cells[:, 2].min()), int(cells[:, 2].max()) + 1
     around = labels[low[0] : high[0], low[1] : high[1], first:last]
     if np.isin(around, (SemanticClass.WALL, SemanticClass.WINDOW)).any():
         return False
     columns = np.unique(cells[cells[:, 2] <= first + 1][:, :2], axis=0)
-    under = labels[columns[:, 0], columns[:, 1], first - TOUCH_CELLS : first]
-    return bool((under == 0).all(axis=1).mean() >= FREE_SHARE)
+    under = labels[columns[:, 0], columns[:, 1], first - MIN_FREE_CELLS : first]
+    return bool((under == 0).all(axis=1).mean() >= MIN_FREE_SHARE)
 
 
-def _pole(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]:
+def _lamp_layers(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]:
     """Return the layers of a thing with a post below or a cord above that was not seen."""
     low, high = int(cells[:, 2].min()), int(cells[:, 2].max()) + 1
     x, y = (int(value) for value in np.round(cells[:, :2].mean(axis=0)))
@@ -106,14 +108,14 @@ def _pole(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]
     above = above[: int(floors[0])] if len(floors) else above  # Over that is another storey.
     rest = int(below[-1]) + 1 if len(below) else floor
     on_table = bool(len(below)) and column[below[-1]] == SemanticClass.TABLE
-    hangs = on_table or (low - floor) * grid.voxel_m >= HANGS_ABOVE_M
+    hangs = on_table or (low - floor) * grid.voxel_m >= MIN_HANGING_BASE_M
     if hangs:
         ceiling = above[column[above] == SemanticClass.CEILING]
-        return low, int(ceiling[0]) if len(ceiling) else _ceiling(grid, high)
+        return low, int(ceiling[0]) if len(ceiling) else _ceiling_layer(grid, high)
     return max(rest, floor), high
 
 
-def _ceiling(grid: OccupancyGrid, high: int) -> int:
+def _ceiling_layer(grid: OccupancyGrid, high: int) -> int:
     """Return the layer of the ceiling over most of the room; ``high`` where there is none.
 
     The next floor over ``high`` ends the search: over that is another storey's ceiling.

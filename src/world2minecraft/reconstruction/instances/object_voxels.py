@@ -31,11 +31,11 @@ def cells_by_owner(
     yield from zip(found.tolist(), np.split(cells[order], starts[1:]), strict=False)
 
 
-NEAR_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
-LEAST_FLOOR = 4
+FLOOR_SEARCH_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
+MIN_FLOOR_CELLS = 4
 
 
-class Heap(NamedTuple):
+class ObjectVoxels(NamedTuple):
     """The cells of one object in their box.
 
     ``own`` and ``free`` (seen to be empty) are bool [X, Y, Z], ``colour`` uint8 [X, Y, Z, 3].
@@ -50,7 +50,7 @@ class Heap(NamedTuple):
     voxel_m: float
 
     def only(self, own: np.ndarray) -> "Heap":
-        """Return the heap with only some of its cells, bool [X, Y, Z], in the same box."""
+        """Return the voxels with only some of its cells, bool [X, Y, Z], in the same box."""
         return self._replace(own=own)
 
     def cells_of(self, length_m: float) -> int:
@@ -58,33 +58,33 @@ class Heap(NamedTuple):
         return max(1, int(length_m / self.voxel_m + 0.5))
 
 
-def floor_layer(grid: OccupancyGrid) -> int:
+def main_floor_layer(grid: OccupancyGrid) -> int:
     """Return the layer on the room's main floor, whose top is z = 0."""
     return max(int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5)), 0)
 
 
-def floor_below(cells: np.ndarray, grid: OccupancyGrid) -> int:
+def floor_layer_below(cells: np.ndarray, grid: OccupancyGrid) -> int:
     """Return the layer on the floor under an object of ``cells``, int [N, 3].
 
     A house has a floor on each storey: the highest one counts that lies under or beside the
     object; where none was seen, the main one.
     """
-    low = np.maximum(cells[:, :2].min(axis=0) - NEAR_CELLS, 0)
-    high = cells[:, :2].max(axis=0) + 1 + NEAR_CELLS
+    low = np.maximum(cells[:, :2].min(axis=0) - FLOOR_SEARCH_CELLS, 0)
+    high = cells[:, :2].max(axis=0) + 1 + FLOOR_SEARCH_CELLS
     top = int(cells[:, 2].min()) + 2
     around = grid.labels[low[0] : high[0], low[1] : high[1], :top] == SemanticClass.FLOOR
     counts = np.count_nonzero(around, axis=(0, 1))
-    layers = np.flatnonzero(counts >= max(LEAST_FLOOR, counts.max(initial=0) / 2))
-    return int(layers[-1]) + 1 if len(layers) else floor_layer(grid)
+    layers = np.flatnonzero(counts >= max(MIN_FLOOR_CELLS, counts.max(initial=0) / 2))
+    return int(layers[-1]) + 1 if len(layers) else main_floor_layer(grid)
 
 
-def heap_of(grid: OccupancyGrid, cells: np.ndarray) -> Heap:
-    """Return the heap of some cells, int [N, 3]."""
+def object_voxels(grid: OccupancyGrid, cells: np.ndarray) -> ObjectVoxels:
+    """Return the voxels of some cells, int [N, 3]."""
     low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0) + 1
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     own = np.zeros(high - low, np.bool_)
     own[tuple((cells - low).T)] = True
-    floor = floor_below(cells, grid)
-    return Heap(
+    floor = floor_layer_below(cells, grid)
+    return ObjectVoxels(
         own, grid.labels[box] == 0, grid.colour[box], low, floor - int(low[2]), grid.voxel_m
     )

@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.reconstruction.instances.cabinet_runs import part_rows
+from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import (
     assign_voxels,
@@ -23,11 +23,17 @@ from world2minecraft.reconstruction.instances.merge_pieces import (
     merge_small_pieces,
     merge_stacked,
 )
-from world2minecraft.reconstruction.instances.object_extent import askew_rectangle, layers_reached
+from world2minecraft.reconstruction.instances.object_extent import (
+    min_area_rectangle,
+    vertical_extent,
+)
 from world2minecraft.reconstruction.instances.parameters import FindParameters
-from world2minecraft.reconstruction.instances.split_by_colour import part_by_paint
-from world2minecraft.reconstruction.instances.split_by_support import part_by_hosts
-from world2minecraft.reconstruction.instances.touching_chairs import join_backs, part_chairs
+from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
+from world2minecraft.reconstruction.instances.split_by_support import split_by_support
+from world2minecraft.reconstruction.instances.split_chairs import (
+    merge_chair_backs,
+    split_touching_chairs,
+)
 
 MAX_OBJECTS = 65535
 
@@ -42,7 +48,7 @@ class CenterMap:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FoundObjects:
     """The grid with its instance ids, the objects, the map of centres, and what is left.
 
     ``leftover`` counts the object cells that belong to no object; their instance is 0.
@@ -54,7 +60,7 @@ class Found:
     leftover: int
 
 
-def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> Found:
+def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> FoundObjects:
     """Find the objects of a room.
 
     Objects are ordered by class, then by the middle of their cells (x, y, z), and numbered from 1.
@@ -80,9 +86,9 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
             min_cells=chosen.min_cells,
             join_radius=chosen.join_radius,
         )
-        owners = join_backs(part_chairs(owners, grid), grid)
-        owners = part_rows(owners, grid)
-        owners = part_by_paint(part_by_hosts(owners, grid), grid)
+        owners = merge_chair_backs(split_touching_chairs(owners, grid), grid)
+        owners = split_cabinet_runs(owners, grid)
+        owners = split_by_colour(split_by_support(owners, grid), grid)
         owners = merge_lamp_parts(owners, grid)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
@@ -90,7 +96,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
         marked[tuple(instance.cells.T)] = instance.id
     leftover = int(np.count_nonzero(binary & (marked == 0)))
     centers = CenterMap(density, candidates, cluster)
-    return Found(replace(given, instance=marked), instances, centers, leftover)
+    return FoundObjects(replace(given, instance=marked), instances, centers, leftover)
 
 
 def _instances(
@@ -113,7 +119,9 @@ def _instances(
     )
 
 
-def measured(grid: OccupancyGrid, number: int, class_id: int, cells: np.ndarray) -> ObjectInstance:
+def measure_object(
+    grid: OccupancyGrid, number: int, class_id: int, cells: np.ndarray
+) -> ObjectInstance:
     """Return the object that cells, int32 [N, 3], of a grid are: its box and its front.
 
     Args:
@@ -141,7 +149,7 @@ def _box_m(
     """Return the low corner and the size, both float64 [3], of an object's box in metres."""
     first, last = cells.min(axis=0), cells.max(axis=0) + 1
     if reach:
-        first[2], last[2] = layers_reached(cells, grid, class_id)
+        first[2], last[2] = vertical_extent(cells, grid, class_id)
     low = cell_centers_m(first, grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
     return low, (last - first) * grid.voxel_m
 
@@ -157,7 +165,7 @@ def _instance(
     front = facing(cells, class_id, around)
     low, size = _box_m(grid, cells, class_id, reach)
     center = low + size / 2
-    askew = askew_rectangle(cells, class_id, grid.voxel_m) if reach else None
+    askew = min_area_rectangle(cells, class_id, grid.voxel_m) if reach else None
     if askew is not None:
         center[:2] = grid.origin_m[:2] + askew.middle * grid.voxel_m
         size[:2] = askew.sides * grid.voxel_m

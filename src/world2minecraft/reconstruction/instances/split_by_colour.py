@@ -1,4 +1,4 @@
-"""Small things side by side on one host, told apart by their colours: a ball beside bricks.
+"""Small things side by side on one support, told apart by their colours: a ball beside bricks.
 
 What lies over or under another colour is part of the same thing: a lamp's foot and shade, a pot
 and its leaves, the books of a pile.
@@ -12,28 +12,28 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner
 
-ALIKE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
-LEAST_CELLS = 5  # Of a patch that is a thing of its own.
-WIDE_M = 0.4  # What is narrower in plan is one thing.
-OVER_SHARE = 0.34  # The share of the smaller plan that lies over or under the other.
+MAX_COLOUR_DIFFERENCE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
+MIN_CELLS = 5  # Of a patch that is a thing of its own.
+MIN_WIDTH_M = 0.4  # What is narrower in plan is one thing.
+MIN_SHARED_PLAN = 0.34  # The share of the smaller plan that lies over or under the other.
 STEPS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 
 
-def part_by_paint(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def split_by_colour(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which small things of other colours have own numbers."""
     result = owners.copy()
-    fresh = int(owners.max(initial=0))
+    next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):
-        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= WIDE_M:
+        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= MIN_WIDTH_M:
             continue
-        parts = _parts(cells, grid)
+        parts = _part_of_cells(cells, grid)
         moved = parts > 1
-        result[tuple(cells[moved].T)] = fresh + parts[moved] - 1
-        fresh += max(int(parts.max()) - 1, 0)
+        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
+        next_id += max(int(parts.max()) - 1, 0)
     return result
 
 
-def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def _part_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return the part, int32 [N] from 1, of each cell."""
     low = cells.min(axis=0)
     shape = cells.max(axis=0) + 1 - low
@@ -42,8 +42,8 @@ def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     own[at] = True
     colour = np.zeros((*shape, 3))
     colour[at] = srgb_to_oklab(grid.colour[tuple(cells.T)])
-    patches = _patches(own, colour)
-    joined = _over_one_another(patches)
+    patches = _colour_patches(own, colour)
+    joined = _merge_stacked_patches(patches)
     if joined.max(initial=0) < 2:
         return np.ones(len(cells), np.int32)
     seeds = np.argwhere(joined).astype(np.int32)
@@ -52,7 +52,7 @@ def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     return np.maximum(grown, 1).astype(np.int32)
 
 
-def _patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
+def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
     """Number the patches, int32 [X, Y, Z] from 1, of neighbours that look alike and are many."""
     from scipy.sparse import coo_matrix  # noqa: PLC0415
     from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
@@ -62,7 +62,7 @@ def _patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
     for step in STEPS:
         near = tuple(slice(None, -1) if s else slice(None) for s in step)
         far = tuple(slice(1, None) if s else slice(None) for s in step)
-        alike = np.linalg.norm(colour[near] - colour[far], axis=-1) < ALIKE
+        alike = np.linalg.norm(colour[near] - colour[far], axis=-1) < MAX_COLOUR_DIFFERENCE
         alike &= own[near] & own[far]
         pairs.append(np.stack([index[near][alike], index[far][alike]]))
     first, second = np.concatenate(pairs, axis=1)
@@ -70,19 +70,19 @@ def _patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
     _, number = connected_components(graph, directed=False)
     number = number.reshape(own.shape)
     counts = np.bincount(number[own], minlength=int(number.max()) + 1)
-    kept = np.flatnonzero(counts >= LEAST_CELLS)
+    kept = np.flatnonzero(counts >= MIN_CELLS)
     place = np.zeros(len(counts), np.int32)
     place[kept] = np.arange(1, len(kept) + 1)
     return np.where(own, place[number], 0).astype(np.int32)
 
 
-def _over_one_another(patches: np.ndarray) -> np.ndarray:
-    """Return patches, numbered anew, of which those that share a good part of a plan are one."""
+def _merge_stacked_patches(patches: np.ndarray) -> np.ndarray:
+    """Return patches, renumbered, of which those that share a good part of a plan are one."""
     result = patches.copy()
     while True:
         count = int(result.max(initial=0))
         plans = [(result == n).any(axis=2) for n in range(1, count + 1)]
-        pair = _first_pair(plans)
+        pair = _first_overlapping_pair(plans)
         if pair is None:
             return result
         low, high = pair
@@ -90,10 +90,10 @@ def _over_one_another(patches: np.ndarray) -> np.ndarray:
         result[result > high] -= 1
 
 
-def _first_pair(plans: list[np.ndarray]) -> tuple[int, int] | None:
+def _first_overlapping_pair(plans: list[np.ndarray]) -> tuple[int, int] | None:
     for high in range(1, len(plans)):
         for low in range(high):
             shared = np.count_nonzero(plans[low] & plans[high])
-            if shared >= OVER_SHARE * min(plans[low].sum(), plans[high].sum()):
+            if shared >= MIN_SHARED_PLAN * min(plans[low].sum(), plans[high].sum()):
                 return low + 1, high + 1
     return None

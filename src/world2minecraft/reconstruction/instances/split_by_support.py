@@ -14,22 +14,22 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
 
 # What hangs on a wall: the columns of a curtain or a picture among those of small things.
 
-NEAR_CELLS = 2  # A curtain hangs this near its wall.
+WALL_CELLS = 2  # A curtain hangs this near its wall.
 MIN_SHEET_CELLS = 12  # At 0.08 m, a picture of 0.3 m side.
-HIGH_M = 1.8  # What reaches so high beside a wall hangs there, wherever it ends below.
-CLEAR_M = 0.24  # As does what has so much free air below it.
+MIN_HANGING_TOP_M = 1.8  # What reaches so high beside a wall hangs there, wherever it ends below.
+MIN_CLEARANCE_M = 0.24  # As does what has so much free air below it.
 AROUND_CELLS = 4  # What stands this near is compared:
-UNLIKE = 0.08  # in Oklab, one thing in light and shade differs by less;
-ABOVE_M = 0.16  # and a sheet rises above it,
-FAR_ABOVE_M = 0.5  # or so far that it may have its colour.
+MIN_COLOUR_DIFFERENCE = 0.08  # in Oklab, one thing in light and shade differs by less;
+MIN_RISE_M = 0.16  # and a sheet rises above it,
+MIN_CLEAR_RISE_M = 0.5  # or so far that it may have its colour.
 PLAN_BOX = np.ones((3, 3), np.bool_)
 
 
-class Scene(NamedTuple):
+class Surroundings(NamedTuple):
     """What is known of a box of cells beside their labels."""
 
     colour: np.ndarray  # float [X, Y, Z, 3], in Oklab
@@ -37,8 +37,8 @@ class Scene(NamedTuple):
     voxel_m: float
 
 
-def hung_plans(
-    own: np.ndarray, labels: np.ndarray, stood: np.ndarray, scene: Scene
+def hanging_plans(
+    own: np.ndarray, labels: np.ndarray, stood: np.ndarray, scene: Surroundings
 ) -> list[np.ndarray]:
     """Return the plans, bool [X, Y], of what hangs on a wall.
 
@@ -48,13 +48,15 @@ def hung_plans(
         stood: bool [X, Y], the columns that stand on something.
         scene: what else is known.
     """
-    near = _by_wall(own, labels, scene.floor, scene.voxel_m)
+    near = _columns_at_wall(own, labels, scene.floor, scene.voxel_m)
     sheets, count = label_components(near)
     plans = [sheets == sheet for sheet in range(1, count + 1)]
     return [plan for plan in plans if _is_sheet(plan, stood & ~near, own, scene)]
 
 
-def joined_in_air(plans: list[np.ndarray], own: np.ndarray, stood: np.ndarray) -> list[np.ndarray]:
+def join_plans_in_air(
+    plans: list[np.ndarray], own: np.ndarray, stood: np.ndarray
+) -> list[np.ndarray]:
     """Return the plans, joined where what lies between them stands on nothing: a hood is one."""
     pieces, count = label_components(own & ~stood[:, :, None])
     joined: dict[int, np.ndarray] = {}
@@ -66,22 +68,24 @@ def joined_in_air(plans: list[np.ndarray], own: np.ndarray, stood: np.ndarray) -
     return list(joined.values())
 
 
-def _by_wall(own: np.ndarray, labels: np.ndarray, floor: int, voxel_m: float) -> np.ndarray:
+def _columns_at_wall(own: np.ndarray, labels: np.ndarray, floor: int, voxel_m: float) -> np.ndarray:
     """Return bool [X, Y]: columns of ``own`` that hang beside a wall."""
     wall = ((labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)).any(axis=2)
     if not wall.any():
         return wall
-    near = np.asarray(ndimage.distance_transform_cdt(~wall)) <= NEAR_CELLS
+    near = np.asarray(ndimage.distance_transform_cdt(~wall)) <= WALL_CELLS
     near &= own.any(axis=2)
     top = own.shape[2] - own[:, :, ::-1].argmax(axis=2)
     bottom = own.argmax(axis=2)
     layer = np.arange(own.shape[2])
-    under = (layer < bottom[..., None]) & (layer >= bottom[..., None] - int(CLEAR_M / voxel_m))
+    under = (layer < bottom[..., None]) & (
+        layer >= bottom[..., None] - int(MIN_CLEARANCE_M / voxel_m)
+    )
     clear = (bottom > 0) & ~(under & (labels != 0)).any(axis=2)
-    return near & (((top - floor) >= HIGH_M / voxel_m) | clear)
+    return near & (((top - floor) >= MIN_HANGING_TOP_M / voxel_m) | clear)
 
 
-def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Scene) -> bool:
+def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Surroundings) -> bool:
     """Tell whether what hangs in some columns is no part of what stands beside them.
 
     The leaves of a plant that lean to a wall are no thing of their own.
@@ -95,72 +99,76 @@ def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Scene
         return True
     tops = [np.flatnonzero(cells.any(axis=(0, 1)))[-1] for cells in (sheet, beside)]
     above_m = float(tops[0] - tops[1]) * scene.voxel_m
-    apart = np.median(scene.colour[sheet], axis=0) - np.median(scene.colour[beside], axis=0)
-    unlike = float(np.linalg.norm(apart)) >= UNLIKE
-    return above_m >= FAR_ABOVE_M or (unlike and above_m >= ABOVE_M)
+    difference = np.median(scene.colour[sheet], axis=0) - np.median(scene.colour[beside], axis=0)
+    unlike = float(np.linalg.norm(difference)) >= MIN_COLOUR_DIFFERENCE
+    return above_m >= MIN_CLEAR_RISE_M or (unlike and above_m >= MIN_RISE_M)
 
 
-LEAST_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
-LEAST_CELLS = 8  # Of a part, as of any object.
-LEAST_SHADE = 20  # Cells of a shade that floats.
+MIN_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
+MIN_CELLS = 8  # Of a part, as of any object.
+MIN_SHADE_CELLS = 20  # Cells of a shade that floats.
 UNDER_CELLS = 2  # A thing stands on what lies this near below it.
 
 
-def part_by_hosts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
-    """Return owners, int32 [X, Y, Z], in which small things of other hosts have own numbers."""
+def split_by_support(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], in which small things of other supports have own numbers."""
     result = owners.copy()
-    fresh = int(owners.max(initial=0))
+    next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):
-        if len(cells) < 2 * LEAST_CELLS:
+        if len(cells) < 2 * MIN_CELLS:
             continue
-        parts = _parts(cells, owners, grid)
+        parts = _part_of_cells(cells, owners, grid)
         moved = parts > 1
-        result[tuple(cells[moved].T)] = fresh + parts[moved] - 1
-        fresh += max(int(parts.max()) - 1, 0)
+        result[tuple(cells[moved].T)] = next_id + parts[moved] - 1
+        next_id += max(int(parts.max()) - 1, 0)
     return result
 
 
-def _parts(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return the part, int32 [N] from 1, of each cell, 1 where all hang together."""
-    floor = floor_below(cells, grid)
-    low = np.maximum(cells.min(axis=0) - NEAR_CELLS, 0)
+    floor = floor_layer_below(cells, grid)
+    low = np.maximum(cells.min(axis=0) - WALL_CELLS, 0)
     low[2] = max(int(cells[:, 2].min()) - UNDER_CELLS, 0)
-    high = cells.max(axis=0) + 1 + NEAR_CELLS
+    high = cells.max(axis=0) + 1 + WALL_CELLS
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     labels, own = grid.labels[box], np.zeros(grid.labels[box].shape, np.bool_)
     own[tuple((cells - low).T)] = True
-    scene = Scene(srgb_to_oklab(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
-    seeds = _seeds(own, labels, owners[box], scene)
+    scene = Surroundings(srgb_to_oklab(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
+    seeds = _seed_parts(own, labels, owners[box], scene)
     count = int(seeds.max(initial=0))
     if count < 2:
         return np.ones(len(cells), np.int32)
     at = np.argwhere(seeds).astype(np.int32)
-    grown = _connected(own, assign_voxels(labels, own, at, seeds[tuple(at.T)] - 1))
-    return _large_enough(grown[tuple((cells - low).T)])
+    grown = _split_disconnected(own, assign_voxels(labels, own, at, seeds[tuple(at.T)] - 1))
+    return _merge_small_parts(grown[tuple((cells - low).T)])
 
 
-def _seeds(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: Scene) -> np.ndarray:
-    """Return int32 [X, Y, Z]: the numbers of the hosts in the columns that they hold."""
-    host = _hosts(own, labels, owners, scene.floor)
-    sheets = hung_plans(own, labels, host >= 0, scene)
-    hung = np.logical_or.reduce([np.zeros(host.shape, np.bool_), *sheets])
-    host = np.where(hung, -1, host)
-    stood = host >= 0
-    groups = [own & plan[:, :, None] for plan in joined_in_air(sheets, own, stood)]
-    for number in np.unique(host[stood]):
-        plan = host == number
-        if plan.sum() >= LEAST_COLUMNS:
+def _seed_parts(
+    own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: Surroundings
+) -> np.ndarray:
+    """Return int32 [X, Y, Z]: the numbers of the supports in the columns that they hold."""
+    support = _supports(own, labels, owners, scene.floor)
+    sheets = hanging_plans(own, labels, support >= 0, scene)
+    hung = np.logical_or.reduce([np.zeros(support.shape, np.bool_), *sheets])
+    support = np.where(hung, -1, support)
+    stood = support >= 0
+    groups = [own & plan[:, :, None] for plan in join_plans_in_air(sheets, own, stood)]
+    for number in np.unique(support[stood]):
+        plan = support == number
+        if plan.sum() >= MIN_COLUMNS:
             groups.append(own & plan[:, :, None])
     if sheets:
-        groups += _shades(own & ~(hung | stood)[:, :, None], stood, own & hung[:, :, None], scene)
+        groups += _floating_shades(
+            own & ~(hung | stood)[:, :, None], stood, own & hung[:, :, None], scene
+        )
     seeds = np.zeros(own.shape, np.int32)
     for number, cells in enumerate(groups, start=1):
         seeds[cells] = number
     return seeds
 
 
-def _shades(
-    rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: Scene
+def _floating_shades(
+    rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: Surroundings
 ) -> list[np.ndarray]:
     """Return what floats before a curtain, bool [X, Y, Z] each: a lamp whose post is unseen."""
     pieces, count = label_components(rest)
@@ -170,13 +178,14 @@ def _shades(
     return [
         piece
         for piece in found
-        if np.count_nonzero(piece) >= LEAST_SHADE
+        if np.count_nonzero(piece) >= MIN_SHADE_CELLS
         and not (piece & beside).any()
-        and np.linalg.norm(np.median(scene.colour[piece], axis=0) - curtain) >= UNLIKE
+        and np.linalg.norm(np.median(scene.colour[piece], axis=0) - curtain)
+        >= MIN_COLOUR_DIFFERENCE
     ]
 
 
-def _hosts(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) -> np.ndarray:
+def _supports(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) -> np.ndarray:
     """Return int64 [X, Y]: what each column stands on: 0 the floor, else an owner; -1 nothing.
 
     What lies flat on a table may fill the cells of its top; then the top beside it counts.
@@ -184,11 +193,11 @@ def _hosts(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) 
     object_ = (labels >= OBJECT_CLASSES[0]) & (labels <= OBJECT_CLASSES[-1])
     holder = np.where(object_ & (labels != SemanticClass.OBJS) & (owners > 0), owners, -1)
     holder = np.where(labels == SemanticClass.FLOOR, 0, holder).astype(np.int64)
-    host = np.full(own.shape[:2], -1, np.int64)
+    support = np.full(own.shape[:2], -1, np.int64)
     for x, y in np.argwhere(own.any(axis=2)):
         first = int(own[x, y].argmax())
         if first - floor < UNDER_CELLS:
-            host[x, y] = 0
+            support[x, y] = 0
             continue
         near = (slice(max(x - 1, 0), x + 2), slice(max(y - 1, 0), y + 2))
         below = holder[x, y, max(first - UNDER_CELLS, 0) : first]
@@ -196,12 +205,12 @@ def _hosts(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) 
         for held in (below[::-1], np.sort(beside.reshape(-1))[::-1]):
             known = held[held >= 0]
             if len(known):
-                host[x, y] = known[0]
+                support[x, y] = known[0]
                 break
-    return host
+    return support
 
 
-def _connected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
+def _split_disconnected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
     """Return parts, int32 [X, Y, Z], of which each hangs together: what a curtain joined is two."""
     result = np.zeros_like(parts)
     for number in range(1, int(parts.max(initial=0)) + 1):
@@ -210,10 +219,10 @@ def _connected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
     return result.astype(np.int32)
 
 
-def _large_enough(parts: np.ndarray) -> np.ndarray:
+def _merge_small_parts(parts: np.ndarray) -> np.ndarray:
     """Number the parts anew from 1; cells of a part that is too small join the largest."""
     counts = np.bincount(parts)
-    keep = counts >= LEAST_CELLS
+    keep = counts >= MIN_CELLS
     keep[0] = False
     if not keep.any():
         return np.ones(len(parts), np.int32)

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, first_line
 from world2minecraft.external_models import transformers_hub as hub
-from world2minecraft.external_models.transformers_hub import prepared, single_thread
+from world2minecraft.external_models.transformers_hub import preprocess, single_thread
 
 TASK = "the task is semantic"  # OneFormer is told in words.
 TOKENIZER_FILES = ("tokenizer.json", "vocab.json")
@@ -31,13 +31,13 @@ class HuggingFaceSemantics:
 
     def __init__(self, model: str):
         self._model = model
-        self._transformers = hub.library("a segmenter")
-        self.name = hub.checked_name(model)
-        config = hub.config(model, self._transformers)
+        self._transformers = hub.import_transformers("a segmenter")
+        self.name = hub.display_name(model)
+        config = hub.load_config(model, self._transformers)
         self._kind = _kind(model, config, self._transformers)
         names = getattr(config, "id2label", None) or {}
         self.labels = tuple(str(names[number]) for number in sorted(names))
-        self.identity = hub.identity(model, self._transformers)
+        self.identity = hub.model_revision(model, self._transformers)
         self._config = config
 
     def predict(self, colour: np.ndarray, classes: np.ndarray) -> np.ndarray:
@@ -49,7 +49,7 @@ class HuggingFaceSemantics:
         network, ready = self._network, self._ready
         with single_thread() as torch:
             try:
-                pixels = torch.from_numpy(prepared(colour, ready))
+                pixels = torch.from_numpy(preprocess(colour, ready))
                 found = network(pixel_values=pixels, **self._told)
                 scores = _label_scores(torch, found)  # [C, h, w]
             except (RuntimeError, ValueError) as error:
@@ -65,11 +65,11 @@ class HuggingFaceSemantics:
 
     @cached_property
     def _network(self) -> Any:
-        return hub.network(self._model, self._kind)
+        return hub.load_network(self._model, self._kind)
 
     @cached_property
     def _ready(self) -> dict[str, Any]:
-        ready = hub.preparation(self._model, self._transformers)
+        ready = hub.load_preprocessor(self._model, self._transformers)
         if str(self._config.model_type).startswith("eomt"):  # Its places are those of a square.
             side = self._config.image_size
             ready = {**ready, "size": {"width": side, "height": side}}

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.photos import judged_photos
+from world2minecraft.capture.photo_stream import judged_photos
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
 from world2minecraft.capture.stereo import DepthModel, depth_model

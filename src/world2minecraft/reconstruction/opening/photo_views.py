@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header
-from world2minecraft.capture.photos import CapturePhotos
+from world2minecraft.capture.photo_stream import CapturePhotos
 from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError

@@ -10,7 +10,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.capture.frames import Capture
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.photos import CapturePhotos, judged_photos
+from world2minecraft.capture.photo_stream import CapturePhotos, judged_photos
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.alignment.align import ImplausibleRoomError
+from world2minecraft.capture.alignment.room_frame import ImplausibleRoomError
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.scale import KnownPoints, collect_unscaled, estimate_scale, parse_known
 from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over

@@ -9,7 +9,7 @@ from typing import Any
 
 from world2minecraft.capture import describe_capture
 from world2minecraft.capture.poster import poster_png
-from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import plan_in
 from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json

@@ -10,7 +10,7 @@ import trimesh
 from solid_rooms import SIZE_M, room_quads
 
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.readers.meshes.source import find_solid, load_solid
+from world2minecraft.capture.readers.meshes.mesh_source import find_solid, load_solid
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import InputError
 

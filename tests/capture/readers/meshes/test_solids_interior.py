@@ -6,7 +6,7 @@ from scipy import ndimage
 from solid_rooms import SIZE_M, box_quads, room_quads
 
 from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, votes
-from world2minecraft.capture.readers.meshes.surface_model import Cloud, Mesh
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 
 

@@ -8,7 +8,7 @@ import solid_writers as writers
 from solid_rooms import room_quads
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
-from world2minecraft.capture.readers.meshes.source import load_solid
+from world2minecraft.capture.readers.meshes.mesh_source import load_solid
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import CaptureError
 

@@ -6,7 +6,7 @@ import solid_writers as writers
 
 from world2minecraft.capture.readers.meshes.attributes import as_colour
 from world2minecraft.capture.readers.meshes.ply import fans, load_ply, read_ply
-from world2minecraft.capture.readers.meshes.thinning import MOST_HELD, Thinner
+from world2minecraft.capture.readers.meshes.voxel_downsampling import MOST_HELD, Thinner
 from world2minecraft.core.errors import DamagedFileError
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 2]], float)

@@ -10,7 +10,7 @@ from solid_rooms import Quads
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.meshes.source import load_solid, world_of
+from world2minecraft.capture.readers.meshes.mesh_source import load_solid, world_of
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.fusion import fuse_views

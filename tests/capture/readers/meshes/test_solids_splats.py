@@ -9,8 +9,8 @@ from world2minecraft.capture.readers.meshes.cloud_splatting import (
     Surfels,
     see_points,
 )
-from world2minecraft.capture.readers.meshes.spatial_blocks import surfels_in_blocks
-from world2minecraft.capture.readers.meshes.surface_model import Cloud
+from world2minecraft.capture.readers.meshes.frustum_culling import surfels_in_blocks
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
 from world2minecraft.capture.readers.meshes.surfels import surfels_of
 from world2minecraft.core.coordinates import invert_rigid
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from solid_rooms import CAMERA, SMALL, rays_of, room_quads
 
+from world2minecraft.capture.readers.meshes.frustum_culling import mesh_in_blocks
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh
 from world2minecraft.capture.readers.meshes.mesh_rasterizer import see_triangles
-from world2minecraft.capture.readers.meshes.spatial_blocks import mesh_in_blocks
-from world2minecraft.capture.readers.meshes.surface_model import Mesh
 from world2minecraft.core.coordinates import invert_rigid, look_at
 
 

@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 from solid_rooms import room_quads
 
-from world2minecraft.capture.readers.meshes.surface_model import Cloud, Mesh
-from world2minecraft.capture.readers.meshes.upright import AXES, stance_of, turn_of, unit_of
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh
+from world2minecraft.capture.readers.meshes.orientation_and_unit import (
+    AXES,
+    stance_of,
+    turn_of,
+    unit_of,
+)
 from world2minecraft.capture.readers.meshes.viewpoints import samples_of
 
 ROOMS = {

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
 from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, NEAR_M, lens_of
-from world2minecraft.capture.readers.meshes.surface_model import Cloud
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 

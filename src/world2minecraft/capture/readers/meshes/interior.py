@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh, Solid
 from world2minecraft.capture.readers.meshes.mesh_rasterizer import NO_FACE, faces_seen
-from world2minecraft.capture.readers.meshes.surface_model import Mesh, Solid
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera

@@ -7,8 +7,8 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture.images import MAX_PIXELS
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_FACES, MAX_VERTICES, Mesh
 from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY
-from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_VERTICES, Mesh
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 

@@ -8,7 +8,7 @@ of a triangle are seen.
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.surface_model import Mesh
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 

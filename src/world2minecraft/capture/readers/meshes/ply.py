@@ -10,15 +10,15 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.capture.readers.meshes.attributes import classes_of_numbers, colour_of
-from world2minecraft.capture.readers.meshes.mesh_assembly import Part, joined
-from world2minecraft.capture.readers.meshes.surface_model import (
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
     MAX_FACES,
     MAX_POINTS,
     MAX_VERTICES,
     Loaded,
 )
+from world2minecraft.capture.readers.meshes.mesh_assembly import Part, joined
 from world2minecraft.capture.readers.meshes.text_clouds import parse_numbers
-from world2minecraft.capture.readers.meshes.thinning import Thinner
+from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels
-from world2minecraft.capture.readers.meshes.surface_model import Cloud
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
 
 CELLS_M = (0.06, 0.12, 0.24)  # The first that holds enough points is taken.
 ENOUGH = 6

@@ -12,8 +12,8 @@ from world2minecraft.capture.readers.meshes.attributes import (
     classes_of_numbers,
     colour_of,
 )
-from world2minecraft.capture.readers.meshes.surface_model import MAX_POINTS, Loaded
-from world2minecraft.capture.readers.meshes.thinning import Thinner
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, Loaded
+from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
 

@@ -9,9 +9,9 @@ from urllib.parse import unquote
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_FACES, MAX_VERTICES, Loaded
 from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
 from world2minecraft.capture.readers.meshes.optional_libraries import library
-from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_VERTICES, Loaded
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
 from world2minecraft.core.files import read_bytes

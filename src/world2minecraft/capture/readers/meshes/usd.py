@@ -8,11 +8,11 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
+from world2minecraft.capture.readers.meshes.las_and_e57 import on_disk
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Loaded
 from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
 from world2minecraft.capture.readers.meshes.optional_libraries import library
 from world2minecraft.capture.readers.meshes.ply import fans
-from world2minecraft.capture.readers.meshes.surface_model import Loaded
-from world2minecraft.capture.readers.meshes.survey_clouds import on_disk
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.geometry.colour import linear_to_srgb

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.surface_model import Cloud, Mesh
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh
 from world2minecraft.capture.readers.meshes.surfels import Surfels, cells_of
 from world2minecraft.core.types import Camera
 

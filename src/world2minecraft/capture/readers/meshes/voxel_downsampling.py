@@ -5,7 +5,7 @@ What is held never grows much beyond ``MOST_HELD`` points, however long the file
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.surface_model import Cloud
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
 MOST_HELD = 4_000_000

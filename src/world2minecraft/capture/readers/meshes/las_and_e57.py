@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.attributes import as_colour
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, Loaded
 from world2minecraft.capture.readers.meshes.optional_libraries import library
-from world2minecraft.capture.readers.meshes.surface_model import MAX_POINTS, Loaded
-from world2minecraft.capture.readers.meshes.thinning import Thinner
+from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
 

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageEr
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, ExportRule
-from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.minecraftocc.types import OccSample
 
 RECORD = "export.json"  # What was chosen, in the folder's root,
 SOURCE = "sha256"  # and the sum of the data set that is exported.

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.entities import display_cubes
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 
 EMPTY = FineClass("minecraft:air")
 MOST_CLASSES = 65_535

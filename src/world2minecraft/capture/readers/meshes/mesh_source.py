@@ -12,17 +12,17 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImageHeader
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels, see_points
-from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, outward_share
-from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, see_triangles
-from world2minecraft.capture.readers.meshes.spatial_blocks import (
+from world2minecraft.capture.readers.meshes.frustum_culling import (
     Blocks,
     mesh_in_blocks,
     surfels_in_blocks,
 )
-from world2minecraft.capture.readers.meshes.surface_model import Loaded, Mesh, Solid
+from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, outward_share
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Loaded, Mesh, Solid
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, see_triangles
+from world2minecraft.capture.readers.meshes.orientation_and_unit import stance_of, unit_of
 from world2minecraft.capture.readers.meshes.surfels import surfels_of
 from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
-from world2minecraft.capture.readers.meshes.upright import stance_of, unit_of
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views, samples_of
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.classes import CLASS_COLOURS
@@ -45,9 +45,9 @@ READERS = {
     ".ply": "world2minecraft.capture.readers.meshes.ply:load_ply",
     ".stl": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
     ".off": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
-    ".e57": "world2minecraft.capture.readers.meshes.survey_clouds:load_e57",
-    ".laz": "world2minecraft.capture.readers.meshes.survey_clouds:load_las",
-    ".las": "world2minecraft.capture.readers.meshes.survey_clouds:load_las",
+    ".e57": "world2minecraft.capture.readers.meshes.las_and_e57:load_e57",
+    ".laz": "world2minecraft.capture.readers.meshes.las_and_e57:load_las",
+    ".las": "world2minecraft.capture.readers.meshes.las_and_e57:load_las",
     ".pts": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
     ".xyz": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
     ".xyzrgb": "world2minecraft.capture.readers.meshes.text_clouds:load_text",

@@ -1,4 +1,4 @@
-"""Chairs that touch, told apart: whole chairs are laid over a heap that is too wide for one."""
+"""Chairs that touch, told apart: whole chairs are laid over a voxels that is too wide for one."""
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -8,40 +8,42 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import template
 from world2minecraft.furniture.chair_fitting import AGAINST, OWN, SeatFit, fit_seat, look_at
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_below
+from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
 
-WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
-EASY_WIDE_M = 1.2
-TABLE_M = 1.0
-LEAST_SHARE = 0.15  # Each chair meets at least this share of the heap,
-LEAST_CELLS = 12  # and so many cells: half of a back.
-MOST_OPPOSED = 0.2  # The share of a chair that may stand where nothing was seen to be.
-CLEARLY = 0.1  # By how much of the cells chairs must meet the heap better than an easy chair.
-MOST = 6
-SEAT_M = 0.4  # What begins above this has no seat.
-BACK_M = 0.7  # What ends below this has no back.
-BESIDE_CELLS = 1
-TORN_CELLS = 8  # The top of a back. Fewer cells stay with the chair they joined.
-PAD = 10  # Cells around the heap: a chair's depth and some more.
+MAX_CHAIR_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
+MAX_EASY_CHAIR_M = 1.2
+TABLE_SEARCH_M = 1.0
+MIN_SHARE = 0.15  # Each chair meets at least this share of the voxels,
+MIN_CELLS = 12  # and so many cells: half of a back.
+MAX_OPPOSED_SHARE = 0.2  # The share of a chair that may stand where nothing was seen to be.
+MIN_GAIN = 0.1  # By how much of the cells chairs must meet the voxels better than an easy chair.
+MAX_CHAIRS = 6
+MAX_SEAT_HEIGHT_M = 0.4  # What begins above this has no seat.
+MIN_BACK_HEIGHT_M = 0.7  # What ends below this has no back.
+MAX_GAP_CELLS = 1
+MIN_TORN_CELLS = 8  # The top of a back. Fewer cells stay with the chair they joined.
+MARGIN_CELLS = 10  # Cells around the voxels: a chair's depth and some more.
 
 
-def part_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def split_touching_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
-    owners = _without_far_pieces(owners, grid)
+    owners = _separate_far_pieces(owners, grid)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
     result = owners.copy()
-    fresh = int(owners.max(initial=0))
+    next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
-        if np.ptp(cells[:, :2], axis=0).max() + 1 <= WIDE_M / grid.voxel_m:
+        if np.ptp(cells[:, :2], axis=0).max() + 1 <= MAX_CHAIR_M / grid.voxel_m:
             continue
-        part = _parts(cells, grid.labels, tables, grid.voxel_m, floor_below(cells, grid))
+        part = _chair_of_cells(
+            cells, grid.labels, tables, grid.voxel_m, floor_layer_below(cells, grid)
+        )
         moved = part > 0
-        result[tuple(cells[moved].T)] = fresh + part[moved]
-        fresh += int(part.max())
+        result[tuple(cells[moved].T)] = next_id + part[moved]
+        next_id += int(part.max())
     return result
 
 
-def join_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def merge_chair_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners in which a back without a seat joins a seat without a back beside it.
 
     A scan sees the back of a chair at a table over the table's edge and its seat under it. Both
@@ -51,18 +53,18 @@ def join_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     pieces = {}
     seats, backs = [], []
     for number, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
-        floor = floor_below(cells, grid)
+        floor = floor_layer_below(cells, grid)
         box = cells.min(axis=0), cells.max(axis=0) + 1
         pieces[number] = cells, box
-        if box[1][2] <= floor + BACK_M / grid.voxel_m:
+        if box[1][2] <= floor + MIN_BACK_HEIGHT_M / grid.voxel_m:
             seats.append(number)
-        if box[0][2] >= floor + SEAT_M / grid.voxel_m:
+        if box[0][2] >= floor + MAX_SEAT_HEIGHT_M / grid.voxel_m:
             backs.append(number)
     for number in backs:
-        apart = {n: _apart(pieces[n][1], pieces[number][1]) for n in seats if n != number}
+        apart = {n: _gap_cells(pieces[n][1], pieces[number][1]) for n in seats if n != number}
         near = {one: gap for one, gap in apart.items() if gap is not None}
-        wide = {one: _width(pieces[one][1], pieces[number][1]) for one in near}
-        fitting = [one for one in near if wide[one] <= WIDE_M / grid.voxel_m]
+        wide = {one: _joint_width(pieces[one][1], pieces[number][1]) for one in near}
+        fitting = [one for one in near if wide[one] <= MAX_CHAIR_M / grid.voxel_m]
         if fitting:
             chosen = min(fitting, key=lambda one: (near[one], wide[one], one))
             result[tuple(pieces[number][0].T)] = chosen
@@ -70,16 +72,16 @@ def join_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     return result
 
 
-def _without_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def _separate_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners in which a piece that lies too far from its chair has a number of its own.
 
     Of a chair whose seat was not seen the top of the back is left, and joins a neighbour. With the
     largest piece it is wider than an easy chair.
     """
     result = owners.copy()
-    fresh = int(owners.max(initial=0))
+    next_id = int(owners.max(initial=0))
     for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
-        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= EASY_WIDE_M:
+        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= MAX_EASY_CHAIR_M:
             continue
         own = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
         own[tuple((cells - cells.min(axis=0)).T)] = True
@@ -89,9 +91,12 @@ def _without_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
         main = _box(cells[number == sizes.argmax()])
         for part in range(1, count + 1):
             piece = cells[number == part]
-            if sizes[part] >= TORN_CELLS and _width(main, _box(piece)) > EASY_WIDE_M / grid.voxel_m:
-                fresh += 1
-                result[tuple(piece.T)] = fresh
+            if (
+                sizes[part] >= MIN_TORN_CELLS
+                and _joint_width(main, _box(piece)) > MAX_EASY_CHAIR_M / grid.voxel_m
+            ):
+                next_id += 1
+                result[tuple(piece.T)] = next_id
     return result
 
 
@@ -102,51 +107,51 @@ def _box(cells: np.ndarray) -> "Box":
 Box = tuple[np.ndarray, np.ndarray]
 
 
-def _apart(one: Box, other: Box) -> float | None:
-    """Return how many cells lie between two boxes; None for more than ``BESIDE_CELLS``."""
+def _gap_cells(one: Box, other: Box) -> float | None:
+    """Return how many cells lie between two boxes; None for more than ``MAX_GAP_CELLS``."""
     gap = np.maximum(np.maximum(one[0] - other[1], other[0] - one[1]), 0)
-    return float(gap.sum()) if gap.max() <= BESIDE_CELLS else None
+    return float(gap.sum()) if gap.max() <= MAX_GAP_CELLS else None
 
 
-def _width(one: Box, other: Box) -> float:
+def _joint_width(one: Box, other: Box) -> float:
     """Return the longer side in plan of two boxes together."""
     return float((np.maximum(one[1], other[1]) - np.minimum(one[0], other[0]))[:2].max())
 
 
-def _parts(
+def _chair_of_cells(
     cells: np.ndarray, labels: np.ndarray, tables: np.ndarray, voxel_m: float, floor: int
 ) -> np.ndarray:
     """Return the chair, int32 [N] from 0, of each cell; all 0 where it is one."""
-    code, corner = _window(cells, labels)
+    code, corner = _crop(cells, labels)
     own = cells - corner
-    look = look_at(cells, tables, int(TABLE_M / voxel_m))
-    fits = _laid(code.copy(), own, floor - int(corner[2]), voxel_m, look)
+    look = look_at(cells, tables, int(TABLE_SEARCH_M / voxel_m))
+    fits = _fit_chairs(code.copy(), own, floor - int(corner[2]), voxel_m, look)
     if len(fits) < 2 or not _clearly_better(fits, code, own, floor - int(corner[2]), voxel_m):
         return np.zeros(len(cells), np.int32)
     apart = np.stack([KDTree(fit.cells).query(own)[0] for fit in fits])
     return np.round(apart, 9).argmin(axis=0).astype(np.int32)
 
 
-def _window(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _crop(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return what was seen around some cells, as codes uint8 [X, Y, Z], and its first cell."""
-    low = np.maximum(cells.min(axis=0) - (PAD, PAD, 0), 0)
+    low = np.maximum(cells.min(axis=0) - (MARGIN_CELLS, MARGIN_CELLS, 0), 0)
     low[2] = 0
-    high = np.minimum(cells.max(axis=0) + 1 + PAD, labels.shape)
+    high = np.minimum(cells.max(axis=0) + 1 + MARGIN_CELLS, labels.shape)
     seen = labels[low[0] : high[0], low[1] : high[1], low[2] : high[2]]
     code = np.where((seen <= SemanticClass.WINDOW) & (seen != UNKNOWN), AGAINST, 0)
     code[tuple((cells - low).T)] = OWN
     return code.astype(np.uint8), low
 
 
-def _laid(
+def _fit_chairs(
     code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float, look: np.ndarray
 ) -> list[SeatFit]:
-    """Lay chairs over the heap, each where it meets most of what the ones before left."""
+    """Lay chairs over the voxels, each where it meets most of what the ones before left."""
     fits: list[SeatFit] = []
-    while len(fits) < MOST:
+    while len(fits) < MAX_CHAIRS:
         fit = fit_seat(template("chair"), code, floor, voxel_m, look)
-        least = max(LEAST_CELLS, LEAST_SHARE * len(own))
-        if fit is None or fit.met.sum() < least or fit.opposed > MOST_OPPOSED:
+        least = max(MIN_CELLS, MIN_SHARE * len(own))
+        if fit is None or fit.met.sum() < least or fit.opposed > MAX_OPPOSED_SHARE:
             break
         fits.append(fit)
         code[tuple(np.argwhere(code == OWN)[fit.met].T)] = 0
@@ -156,10 +161,10 @@ def _laid(
 def _clearly_better(
     fits: list[SeatFit], code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float
 ) -> bool:
-    """Return whether several chairs meet the heap better than one easy chair does."""
-    if (np.ptp(own[:, :2], axis=0).max() + 1) * voxel_m > EASY_WIDE_M:
+    """Return whether several chairs meet the voxels better than one easy chair does."""
+    if (np.ptp(own[:, :2], axis=0).max() + 1) * voxel_m > MAX_EASY_CHAIR_M:
         return True
     easy = [fit_seat(template(name), code, floor, voxel_m, np.zeros(2))
             for name in ("armchair", "office_chair")]  # fmt: skip
     single = max(fit.gain for fit in easy if fit is not None)
-    return sum(fit.gain for fit in fits) >= single + CLEARLY * 2 * len(own)
+    return sum(fit.gain for fit in fits) >= single + MIN_GAIN * 2 * len(own)

@@ -22,8 +22,8 @@ from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.navigation.data.item_building import (
     COMPOSITIONS,
     PAPER_WALKS,
-    cut_as_the_paper,
-    items_of,
+    build_items,
+    cut_to_paper_size,
 )
 from world2minecraft.navigation.data.recorded_walks import At, recorded_tours, streams_of
 from world2minecraft.navigation.data.scene_items import (
@@ -72,7 +72,7 @@ class SceneJob:
     at: At = "eye"  # what streams tell that do not say it
 
 
-def work_jobs(
+def run_scene_jobs(
     jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = silent
 ) -> list[SceneWork]:
     """Return what comes of scenes, in their order. The largest ones are begun first.
@@ -88,23 +88,23 @@ def work_jobs(
     """
     first = sorted(range(len(jobs)), key=lambda n: (-jobs[n].rule.trajectories, n))
     wanted = sum(job.rule.trajectories for job in jobs)
-    walks, works = _Count(wanted, len(jobs), progress), dict[int, SceneWork]()
+    walks, works = _WalkCounter(wanted, len(jobs), progress), dict[int, SceneWork]()
     with opened_engine("pool", min(workers, len(jobs))) as engine:
-        for place, work in engine.run(_worked, [jobs[n] for n in first], walks.add):
+        for place, work in engine.run(_run_job, [jobs[n] for n in first], walks.add):
             works[first[place]] = work
             own = jobs[first[place]].rule.trajectories
             walks.scene_done(work.scene_id, len(work.trajectories), own)
     return [works[n] for n in range(len(jobs))]
 
 
-def _worked(job: SceneJob, tick: Tick) -> SceneWork:
+def _run_job(job: SceneJob, tick: Tick) -> SceneWork:
     """Work a scene: what processes are sent to do."""
     scene = open_scene(job.path)
     recorded = recorded_tours(scene, job.streams, job.at)
     return work_scene(scene, Path(job.folder), job.composition, job.split, job.rule, tick, recorded)
 
 
-class _Count:
+class _WalkCounter:
     """How many walks there are; what a scene could not give is counted when it is done."""
 
     def __init__(self, wanted: int, scenes: int, progress: Progress):
@@ -125,13 +125,13 @@ class _Count:
         self._told(done, self._wanted, f"{name}: {given} walks")
 
 
-PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
+WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
 RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 
 @dataclass(frozen=True)
 class BuildRule:
-    """How a set is made. ``trajectories`` of each scene; None takes ``PER_SCENE``.
+    """How a set is made. ``trajectories`` of each scene; None takes ``WALKS_PER_SCENE``.
 
     ``paper_size`` cuts to the paper's counts, and asks each scene for its share of them.
     ``paper_split`` holds out walks of the same scenes, as the paper does; ``unseen_share`` of the
@@ -160,12 +160,12 @@ class BuildRule:
         """Return how many walks each scene is asked for, by the scenes' compositions."""
         scenes = Counter(kinds.values())
         share = {kind: -(-PAPER_WALKS[kind] // scenes[kind]) for kind in scenes}
-        usual = share if self.paper_size else PER_SCENE
+        usual = share if self.paper_size else WALKS_PER_SCENE
         return {name: self.trajectories or usual[kind] for name, kind in kinds.items()}
 
 
 @dataclass(frozen=True)
-class Built:
+class BuiltSet:
     """What came of building."""
 
     items: list[Item]
@@ -182,13 +182,13 @@ def composition_of(path: str | Path) -> str:
     return "base" if found else "extend"
 
 
-def build_set(
+def build_navigation_set(
     paths: Sequence[str | Path],
     out: str | Path,
     rule: BuildRule | None = None,
     progress: Progress = silent,
     workers: int = 1,
-) -> Built:
+) -> BuiltSet:
     """Make a set of scenes.
 
     Args:
@@ -223,18 +223,18 @@ def build_set(
         )
         for path, kind in wanted.items()
     ]  # fmt: skip
-    works = work_jobs(jobs, workers, progress)
+    works = run_scene_jobs(jobs, workers, progress)
     if how.paper_split:
         _split_as_the_paper(works, how.work.seed)
-    items = without_shared_pictures(items_of(works, how.work.seed))
-    items = cut_as_the_paper(items, how.paper_split) if how.paper_size else items
+    items = without_shared_pictures(build_items(works, how.work.seed))
+    items = cut_to_paper_size(items, how.paper_split) if how.paper_size else items
     if not items:
         raise UsageError(
             "no scene gave an item: they lack things to go to, or floor to walk on; name furnished "
             "ones, or have some made: --rooms 3"
         )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
-    return Built(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
+    return BuiltSet(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
 
 
 def _split_as_the_paper(works: Sequence[SceneWork], seed: int) -> None:

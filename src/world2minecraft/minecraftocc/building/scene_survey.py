@@ -19,12 +19,12 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.building.process_registry import of_the_crew
 from world2minecraft.minecraftocc.building.recorded_views import given_views
-from world2minecraft.minecraftocc.labels.materials import fine_names
+from world2minecraft.minecraftocc.labels.fine_classes import fine_names
 from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.store.folder import SCENES
 from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views, write_views
-from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.rendering import LookLight, prepare_scene
 

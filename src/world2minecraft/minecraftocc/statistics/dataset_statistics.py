@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.statistics.counting import (
     add_sample,
     count_samples,
 )
-from world2minecraft.minecraftocc.statistics.values import DatasetStatistics
+from world2minecraft.minecraftocc.statistics.types import DatasetStatistics
 from world2minecraft.minecraftocc.store import OccStore, open_store
 from world2minecraft.minecraftocc.store.folder import META, SCENES
 
