@@ -16,7 +16,7 @@ from PIL import Image
 
 from benchmarks.rows import Row
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 
 BLOCKS, OTHER_FILES, STATES, REPEATS = 1500, 20_000, 200, 4
 FACINGS = ("north", "east", "south", "west")
@@ -38,7 +38,7 @@ def run() -> list[Row]:
 
 def _times(path: Path) -> tuple[float, float]:
     start = time.process_time()
-    looks = PackLooks([path])
+    looks = ResourcePackModels([path])
     opened = time.process_time()
     for index in range(STATES):
         model = looks.model(f"minecraft:block_{index}[facing={FACINGS[index % 4]}]")

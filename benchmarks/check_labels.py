@@ -42,7 +42,7 @@ from world2minecraft.minecraftocc.tours import nyu_camera
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
-from world2minecraft.rendering.block_models import OwnLooks
+from world2minecraft.rendering.block_models import BuiltinModels
 
 EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.
 NYU = nyu_camera()
@@ -114,7 +114,7 @@ def check_frame(
     beside = pose.copy()
     beside[:3, 3] += spoil_m * pose[:3, 0]
     occ = label_image(voxels, region, camera, beside, picture.depth_m)
-    truth = oracle_picture(house.volume, OwnLooks(16), camera, pose)
+    truth = oracle_picture(house.volume, BuiltinModels(16), camera, pose)
     depth = np.where(np.isfinite(truth.depth), truth.depth, 0).astype(np.float32)
     hits = reference.hits(voxels, region, reference.scene_cells_seen(voxels, camera, pose, depth))
     counts["frames"] += 1

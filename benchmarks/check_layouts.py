@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.core.files import write_json
-from world2minecraft.navigation.running.tables import markdown_of, text_of
+from world2minecraft.navigation.running.tables import format_markdown, format_text
 from world2minecraft.paper.layouts import ComparedScene, score_scene, summary_of
 from world2minecraft.paper.layouts.importers import How, read_layouts_of
 from world2minecraft.paper.layouts.reference import true_scene
@@ -57,7 +57,7 @@ def main(words: list[str]) -> int:
         parser.error("give --layoutgpt FILE or --runs DIR")
     if options.json:
         write_json(options.json, told)
-    write = markdown_of if options.markdown else text_of
+    write = format_markdown if options.markdown else format_text
     print(write(layout_table(told)), write(other_table(told)), "\n".join(NOTES), sep="\n\n")
     return int(missed > 0)
 

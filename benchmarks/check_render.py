@@ -32,7 +32,7 @@ from benchmarks.render_scenes import (
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering import Picture, prepare_scene, render_volume
-from world2minecraft.rendering.block_elements import LookSource
+from world2minecraft.rendering.block_elements import ModelSource
 
 LEAST_EQUAL, MOST_MEDIAN_M = 0.9999, 1e-4
 SPOIL_M = 1e-3
@@ -43,7 +43,7 @@ class Case(NamedTuple):
 
     name: str
     volume: Callable[[], BlockVolume]
-    looks: Callable[[], LookSource]
+    looks: Callable[[], ModelSource]
     inside: bool
 
 
@@ -76,7 +76,7 @@ CASES = (
 
 def compare(
     volume: BlockVolume,
-    looks: LookSource,
+    looks: ModelSource,
     camera: Camera,
     cameras: list[np.ndarray],
     spoil_m: float = 0.0,
@@ -98,7 +98,7 @@ def compare(
 
 
 def differences(
-    picture: Picture, volume: BlockVolume, looks: LookSource, camera: Camera, pose: np.ndarray
+    picture: Picture, volume: BlockVolume, looks: ModelSource, camera: Camera, pose: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return bool [H, W] of the pixels with equal ids, and the depth errors of those, in metres."""
     truth = oracle_picture(volume, looks, camera, pose)

@@ -24,11 +24,11 @@ from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 from world2minecraft.rendering.block_elements import (
     BlockModel,
     Element,
-    FaceLook,
-    LookSource,
+    ElementFace,
+    ModelSource,
     face_uv,
 )
-from world2minecraft.rendering.block_models.builtin import OwnLooks
+from world2minecraft.rendering.block_models.builtin import BuiltinModels
 from world2minecraft.rendering.texture import Texture
 
 KINDS = 24
@@ -104,7 +104,7 @@ def _random_box(rng: np.random.Generator) -> Element:
 
 def _box(low, high, name: str, turn, rng: np.random.Generator, shown: float) -> Element:
     faces = tuple(
-        FaceLook(name, face_uv(side, low, high, rotation_deg=90 * int(rng.integers(4))))
+        ElementFace(name, face_uv(side, low, high, rotation_deg=90 * int(rng.integers(4))))
         if rng.random() < shown
         else None
         for side in range(6)
@@ -295,9 +295,9 @@ def _put_storey(states: np.ndarray, floor: int, furnished: float, rng: np.random
         rooms[0, 1:4, z - 3 : z + 3] = rooms[-1, 1:4, z - 3 : z + 3] = PANE_Z
 
 
-def scene_looks() -> LookSource:
+def scene_looks() -> ModelSource:
     """Return where the models and textures of these scenes come from: the renderer's own."""
-    return OwnLooks()
+    return BuiltinModels()
 
 
 def poses(
@@ -305,7 +305,7 @@ def poses(
     count: int,
     seed: int,
     *,
-    looks: LookSource | None = None,
+    looks: ModelSource | None = None,
     inside: bool = False,
 ) -> list[np.ndarray]:
     """Return cameras that stand indoors: a block lies above and below each.
@@ -337,7 +337,7 @@ def poses(
     return found
 
 
-def _partly(volume: BlockVolume, looks: LookSource) -> np.ndarray:
+def _partly(volume: BlockVolume, looks: ModelSource) -> np.ndarray:
     """Tell, bool [X, Y, Z], which cells hold more or less than one cube."""
     partly = np.zeros(len(volume.palette), bool)
     for row, state in enumerate(volume.palette):

@@ -9,13 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.capture.alignment.axis_profiles import profile
-from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
+from world2minecraft.capture.alignment.axis_profiles import axis_profile
+from world2minecraft.capture.alignment.gravity import find_ground, rotation_to_z
 from world2minecraft.capture.alignment.room_frame import (
     ImplausibleRoomError,
     align,
     align_surface,
-    realigned,
+    realign,
 )
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.core.types import Scan
@@ -104,7 +104,7 @@ def test_depth_without_surface_is_refused(box_room):
 
 def test_frame_of_up_is_a_rotation_that_lifts_up():
     for up in Rotation.random(20, random_state=1).as_matrix()[:, 0]:
-        frame = frame_of_up(up)
+        frame = rotation_to_z(up)
         np.testing.assert_allclose(frame @ up, [0, 0, 1], atol=1e-12)
         np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(frame) == pytest.approx(1)
@@ -113,11 +113,11 @@ def test_frame_of_up_is_a_rotation_that_lifts_up():
 def test_profile_counts_patches_once_however_often_they_were_seen():
     x, y = np.meshgrid(np.arange(0.05, 1.0, 0.1), np.arange(0.05, 2.0, 0.1))
     table = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 0.72)])
-    once, thrice = profile(table, 2), profile(np.repeat(table, 3, axis=0), 2)
+    once, thrice = axis_profile(table, 2), axis_profile(np.repeat(table, 3, axis=0), 2)
     assert once.area_at(0.72) == thrice.area_at(0.72) == pytest.approx(2.0)
     assert len(once.peaks(0.5)) == 1
     assert once.peaks(0.5)[0] == pytest.approx(0.72, abs=0.02)
-    assert len(profile(np.zeros((0, 3)), 2).peaks(0.1)) == 0
+    assert len(axis_profile(np.zeros((0, 3)), 2).peaks(0.1)) == 0
 
 
 @pytest.mark.parametrize("off_deg", [0.0, 4.0])
@@ -139,8 +139,8 @@ def test_a_room_found_anew_keeps_the_up_that_is_known(surfaces):
     side[:2, :2] = [[0, -1], [1, 0]]
     lying = replace(surface, cameras=surface.cameras @ side)
     scan = Scan([], np.eye(4), np.array([4.2, 3.1, 2.6]), (), world_up=np.array([0, 0, 1.0]))
-    assert realigned(scan, lying).scan_to_room[2, 2] > 0.9999
-    assert realigned(replace(scan, world_up=None), lying).scan_to_room[2, 2] < 0.5
+    assert realign(scan, lying).scan_to_room[2, 2] > 0.9999
+    assert realign(replace(scan, world_up=None), lying).scan_to_room[2, 2] < 0.5
 
 
 def test_up_stays_near_what_is_known(surfaces):

@@ -11,10 +11,10 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.quality import diagnostics as doubts
 from world2minecraft.capture.quality.picture_quality import (
-    _flattened,
-    bare_share,
-    shared_share,
+    _high_pass,
+    overlap_share,
     sharpness,
+    textureless_share,
 )
 from world2minecraft.capture.quality.view_directions import SECTORS, directions_of, up_of_cameras
 from world2minecraft.capture.summary import as_data, describe, summary_lines
@@ -220,7 +220,7 @@ def test_dark_and_bare_pictures(tmp_path):
     assert level_of(photos(tmp_path / "q", wall[:14] + bare), "bare") == "warn"
     assert level_of(photos(tmp_path / "r", wall), "dark") is None
     assert level_of(photos(tmp_path / "r", wall), "bare") is None
-    assert bare_share(np.full((64, 64), 9.0, np.float32)) == 1
+    assert textureless_share(np.full((64, 64), 9.0, np.float32)) == 1
 
 
 def test_low_overlap(tmp_path):
@@ -233,14 +233,14 @@ def test_low_overlap(tmp_path):
 def test_the_shared_part_of_two_pictures_is_measured(step):
     wall = texture(3)
     one, other = wall[:, :160], wall[:, step : step + 160]
-    assert shared_share(_flattened(one), _flattened(other)) == pytest.approx(
+    assert overlap_share(_high_pass(one), _high_pass(other)) == pytest.approx(
         1 - step / 160, abs=0.08
     )
 
 
 def test_pictures_of_other_shapes_are_not_compared():
     upright = np.ascontiguousarray(np.swapaxes(texture()[:, :160], 0, 1))
-    assert np.isnan(shared_share(_flattened(texture()[:, :160]), _flattened(upright)))
+    assert np.isnan(overlap_share(_high_pass(texture()[:, :160]), _high_pass(upright)))
 
 
 def test_turning_on_the_spot(tmp_path, box_room):

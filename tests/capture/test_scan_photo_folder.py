@@ -9,8 +9,8 @@ from PIL.PngImagePlugin import PngInfo
 
 from world2minecraft.capture.images import check_whole, read_colour, read_header
 from world2minecraft.capture.options import ScanOptions, parse_options
-from world2minecraft.capture.photo_stream import judged_photos
-from world2minecraft.capture.poster_marker import MARK
+from world2minecraft.capture.photo_stream import photos_of_capture
+from world2minecraft.capture.poster_marker import SOFTWARE_TAG
 from world2minecraft.capture.readers.photo_exif import UprightPhoto, photo_facts
 from world2minecraft.capture.readers.photos import natural_key, thinned
 from world2minecraft.capture.sources import find_capture
@@ -52,7 +52,7 @@ def _photos(folder, count=4, suffix=".jpg", **exif):
 def _refused(place, *words, kind=InputError):
     with pytest.raises(kind) as caught:
         judged = judge_capture(place, ScanOptions())
-        assert not list(judged_photos(judged))
+        assert not list(photos_of_capture(judged))
         raise CaptureError(place, f"no photo: {judged}")
     line = str(caught.value)
     assert "\n" not in line
@@ -80,7 +80,7 @@ def test_heic_photos_are_read_and_found_when_cut_short(tmp_path):
     heif.register_heif_opener()
     _photos(tmp_path, 3, ".heic", film_mm=26)
     judged = judge_capture(tmp_path, ScanOptions())
-    photos = list(judged_photos(judged))
+    photos = list(photos_of_capture(judged))
     assert len(photos) == 3 and photos[0].camera is not None and photos[0].camera_guessed
     assert np.abs(photos[0].colour.astype(int) - _picture(0)).mean() < 12
     path = tmp_path / "IMG_1.heic"
@@ -119,7 +119,7 @@ def test_zips_and_wrapped_folders_are_read_alike(tmp_path):
         for path in sorted((tmp_path / "room" / "photos").iterdir()):
             archive.write(path, f"photos/{path.name}")
     both = [
-        list(judged_photos(judge_capture(tmp_path / name, ScanOptions())))
+        list(photos_of_capture(judge_capture(tmp_path / name, ScanOptions())))
         for name in ("room", "room.zip")
     ]
     assert [photo.name for photo in both[0]] == [photo.name for photo in both[1]]
@@ -239,7 +239,7 @@ def test_what_phones_append_to_a_jpeg_is_no_damage(tmp_path):
 def test_the_page_of_a_scan_is_no_photo(tmp_path):
     _photos(tmp_path)
     told = PngInfo()
-    told.add_text("Software", MARK)
+    told.add_text("Software", SOFTWARE_TAG)
     page = Image.fromarray(_picture(9))
     page.save(tmp_path / "capture-scan.png", pnginfo=told)
     page.save(tmp_path / "my-scan.png")

@@ -6,7 +6,7 @@ from PIL import Image
 from world2minecraft.capture import write_plain
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.photo_stream import CapturePhotos, judged_photos, shrunk
+from world2minecraft.capture.photo_stream import CapturePhotos, downscale, photos_of_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.types import Camera
 
@@ -31,17 +31,17 @@ def _slow_mean(colour, height, width):
 def test_a_shrunk_picture_is_the_mean_over_each_footprint():
     colour = np.random.default_rng(0).integers(0, 256, (36, 60, 3)).astype(np.uint8)
     for longest in (30, 20):
-        small = shrunk(colour, longest)
+        small = downscale(colour, longest)
         assert small.shape == (longest * 36 // 60, longest, 3)
         assert np.abs(small - _slow_mean(colour, *small.shape[:2])).max() <= 1.0
-    assert shrunk(colour, 60) is colour
-    assert shrunk(colour[:, :20], 18).shape == (18, 10, 3)
+    assert downscale(colour, 60) is colour
+    assert downscale(colour[:, :20], 18).shape == (18, 10, 3)
 
 
 def test_photos_of_a_posed_capture_keep_names_order_poses_and_look(tmp_path, box_room):
     views = box_room.views(4)
     write_plain(tmp_path, views)
-    photos = judged_photos(judge_capture(tmp_path, ScanOptions()), longest_px=80)
+    photos = photos_of_capture(judge_capture(tmp_path, ScanOptions()), longest_px=80)
     for _ in range(2):  # Read again, they are the same.
         read = list(photos)
         assert [photo.name for photo in read] == [view.name for view in views]
@@ -51,7 +51,7 @@ def test_photos_of_a_posed_capture_keep_names_order_poses_and_look(tmp_path, box
             assert (photo.camera.fx_px, photo.camera.cx_px) == (65.0, 40.0)
             assert not photo.camera_guessed
             assert np.allclose(photo.camera_to_scan, view.camera_to_scan)
-    full = next(iter(judged_photos(judge_capture(tmp_path, ScanOptions()))))
+    full = next(iter(photos_of_capture(judge_capture(tmp_path, ScanOptions()))))
     assert np.array_equal(full.colour, views[0].colour)
 
 

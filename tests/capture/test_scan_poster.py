@@ -10,11 +10,16 @@ from PIL import Image
 from world2minecraft.capture import describe_capture, write_plain
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.poster import is_poster, poster, poster_png
-from world2minecraft.capture.poster.canvas import FIRST, PAPER, Sheet, blend, plain
-from world2minecraft.capture.poster.page import marks_of
-from world2minecraft.capture.poster.panels import Placed, chosen_pictures, heat, shaded
-from world2minecraft.capture.quality.picture_quality import picture_of
+from world2minecraft.capture.poster import draw_poster, is_poster, poster_png
+from world2minecraft.capture.poster.canvas import FIRST, PAPER, Sheet, blend_colours, to_ascii
+from world2minecraft.capture.poster.page import picture_marks
+from world2minecraft.capture.poster.panels import (
+    PanelTransform,
+    direction_heatmap,
+    select_pictures,
+    shade_top_view,
+)
+from world2minecraft.capture.quality.picture_quality import measure_picture
 from world2minecraft.capture.summary import describe
 from world2minecraft.capture.validation import judge
 
@@ -46,12 +51,12 @@ def test_size_and_bytes(scanned, photos):
 
 def test_the_same_capture_gives_the_same_page(scanned):
     again = describe_capture(scanned.folder)
-    np.testing.assert_array_equal(poster(again), poster(scanned))
+    np.testing.assert_array_equal(draw_poster(again), draw_poster(scanned))
 
 
 def test_the_way_of_the_camera_lies_within_the_plan(scanned):
     plan = scanned.survey.plan
-    placed = Placed(plan, (40, 140), (780, 800))
+    placed = PanelTransform(plan, (40, 140), (780, 800))
     for pose in plan.cameras:
         x, y = placed.at(*pose[:2, 3])
         assert 40 < x < 820
@@ -63,7 +68,7 @@ def test_the_way_of_the_camera_lies_within_the_plan(scanned):
 
 
 def test_north_is_up_and_metres_keep_their_shape(scanned):
-    placed = Placed(scanned.survey.plan, (0, 0), (700, 800))
+    placed = PanelTransform(scanned.survey.plan, (0, 0), (700, 800))
     (left, low), (right, high) = placed.at(0, 0), placed.at(1, 1)
     assert right > left
     assert high < low
@@ -78,7 +83,7 @@ def test_the_plan_has_the_room_s_size_and_walls(scanned):
         for x, y in ((0.0, 2.0), (plan.room_size_m[0], 2.0), (1.0, 0.0), (1.0, plan.room_size_m[1]))
     ]
     assert min(wall) > 0.5
-    assert shaded(plan).shape == (*plan.seen.shape, 3)
+    assert shade_top_view(plan).shape == (*plan.seen.shape, 3)
 
 
 def _row(plan, y_m):
@@ -92,9 +97,9 @@ def _column(plan, x_m):
 
 
 def test_what_is_doubtful_is_marked_and_shown(photos):
-    marks = marks_of(photos)
+    marks = picture_marks(photos)
     assert marks[4] == "dark"
-    shown = chosen_pictures(photos.survey.pictures, marks, 4)
+    shown = select_pictures(photos.survey.pictures, marks, 4)
     assert [picture.index for picture in shown] == sorted(picture.index for picture in shown)
     assert 4 in [picture.index for picture in shown] or len(marks) > 1
     assert len(shown) == 4
@@ -102,7 +107,7 @@ def test_what_is_doubtful_is_marked_and_shown(photos):
 
 def test_a_solid_s_pictures_are_not_marked(photos):
     solid = replace(photos, route=replace(photos.route, kind="solid"))
-    assert marks_of(solid) == {}
+    assert picture_marks(solid) == {}
 
 
 def test_one_of_ours_is_known_again(scanned, tmp_path):
@@ -117,7 +122,7 @@ def test_one_of_ours_is_known_again(scanned, tmp_path):
 
 def test_looks_are_darkest_where_most_were(scanned):
     seen = scanned.survey.directions.seen
-    colours = heat(scanned.survey.directions).astype(int).sum(axis=2)[::-1]
+    colours = direction_heatmap(scanned.survey.directions).astype(int).sum(axis=2)[::-1]
     assert colours[seen == seen.max()].max() < colours[seen == seen[seen > 0].min()].min()
     assert (colours[seen == 0] > colours[seen > 0].max()).all()
 
@@ -131,14 +136,14 @@ def test_lines_fit_their_width():
     long = "w2m reconstruct " + "a" * 200
     assert sheet.width(sheet.clipped(long, 20, 300), 20) <= 300
     assert sheet.clipped("short", 20, 300) == "short"
-    assert plain("K\u00fcche \u2192 3") == "Kuche ? 3"
+    assert to_ascii("K\u00fcche \u2192 3") == "Kuche ? 3"
 
 
 def test_colours_blend_from_end_to_end():
-    assert blend(FIRST, PAPER, 0) == FIRST
-    assert blend(FIRST, PAPER, 1) == PAPER
+    assert blend_colours(FIRST, PAPER, 0) == FIRST
+    assert blend_colours(FIRST, PAPER, 1) == PAPER
 
 
 def test_a_thumb_is_small_and_keeps_its_shape():
-    picture = picture_of("a", 0, np.zeros((640, 480, 3), np.uint8))
+    picture = measure_picture("a", 0, np.zeros((640, 480, 3), np.uint8))
     assert picture.thumb.shape == (360, 270, 3)

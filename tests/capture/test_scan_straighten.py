@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.capture.alignment.axis_profiles import face_place_m, looks
+from world2minecraft.capture.alignment.axis_profiles import face_position_m, points_per_cell
 from world2minecraft.capture.alignment.room_frame import (
     align_surface,
+    axis_aligning_rotation,
     find_faces,
-    straightening_turn,
 )
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
@@ -43,13 +43,13 @@ def test_a_small_lean_is_found(box_room, degrees):
     surface = collect_oriented_points(box_room.views(14, noise_seed=1))
     lean = np.eye(4)
     lean[:3, :3] = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
-    left = straightening_turn(surface.transformed(lean)) @ lean[:3, :3]
+    left = axis_aligning_rotation(surface.transformed(lean)) @ lean[:3, :3]
     assert np.degrees(Rotation.from_matrix(left).magnitude()) < 0.05
 
 
 def test_nothing_to_see_turns_nothing():
     nothing = sheet(0.0, 0.0, 0.0)
-    np.testing.assert_array_equal(straightening_turn(nothing), np.eye(3))
+    np.testing.assert_array_equal(axis_aligning_rotation(nothing), np.eye(3))
     assert find_faces(nothing).count == 0
 
 
@@ -62,16 +62,16 @@ def test_faces_near_each_other_are_not_counted_twice():
 def test_a_wall_is_where_most_of_it_is(leaf):
     """A door's leaf behind it, or a picture before it, does not move it by a millimetre."""
     scene = both(sheet(1.0, 0, 2), sheet(1.0 + leaf, 0, 0.9))
-    assert face_place_m(scene, 0, 1.0 + leaf) == pytest.approx(1.0, abs=0.001)
+    assert face_position_m(scene, 0, 1.0 + leaf) == pytest.approx(1.0, abs=0.001)
 
 
 def test_a_place_without_surface_is_returned():
-    assert face_place_m(sheet(1.0, 0, 2), 0, 3.0) == 3.0
+    assert face_position_m(sheet(1.0, 0, 2), 0, 3.0) == 3.0
 
 
 def test_looks_count_the_points_of_a_patch():
     points = np.array([[0, 0.01, 0.01], [5, 0.02, 0.03], [0, 0.15, 0.01]])
-    np.testing.assert_array_equal(looks(points, 0), [2, 2, 1])
+    np.testing.assert_array_equal(points_per_cell(points, 0), [2, 2, 1])
 
 
 def test_the_room_of_exact_depth_is_found_to_a_millimetre(box_room):

@@ -7,10 +7,10 @@ import pytest
 from PIL import Image
 
 from world2minecraft.capture.alignment.image_rotation import (
-    TurnedImage,
-    quarter_turns_of,
-    turned_camera,
-    turned_frame,
+    RotatedImage,
+    find_quarter_turns,
+    rotate_camera,
+    rotate_frame,
 )
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import check_whole, read_colour, read_header, read_raw
@@ -37,25 +37,25 @@ def _frame(pose, **other):
 
 @pytest.mark.parametrize("turns", range(4))
 def test_the_turn_that_is_needed_is_found(turns):
-    assert quarter_turns_of([_frame(_rolled(turns))] * 3, UP) == turns
-    upright = turned_frame(_frame(_rolled(turns)), turns)
-    assert quarter_turns_of([upright], UP) == 0
+    assert find_quarter_turns([_frame(_rolled(turns))] * 3, UP) == turns
+    upright = rotate_frame(_frame(_rolled(turns)), turns)
+    assert find_quarter_turns([upright], UP) == 0
     np.testing.assert_allclose(upright.camera_to_world, _rolled(0), atol=1e-12)
 
 
 def test_the_majority_decides_and_a_tie_changes_nothing():
     side, right = _frame(_rolled(1)), _frame(_rolled(0))
-    assert quarter_turns_of([side, side, right], UP) == 1
-    assert quarter_turns_of([side, right, right], UP) == 0
-    assert quarter_turns_of([side, right], UP) == 0
+    assert find_quarter_turns([side, side, right], UP) == 1
+    assert find_quarter_turns([side, right, right], UP) == 0
+    assert find_quarter_turns([side, right], UP) == 0
 
 
 def test_cameras_that_look_straight_down_have_no_say():
     down = np.eye(4)
     down[:3, :3] = np.diag([1.0, -1.0, -1.0])
-    assert quarter_turns_of([_frame(down)] * 5 + [_frame(_rolled(3))], UP) == 3
-    assert quarter_turns_of([_frame(down)], UP) == 0
-    assert quarter_turns_of([_frame(None)], UP) == 0
+    assert find_quarter_turns([_frame(down)] * 5 + [_frame(_rolled(3))], UP) == 3
+    assert find_quarter_turns([_frame(down)], UP) == 0
+    assert find_quarter_turns([_frame(None)], UP) == 0
 
 
 @pytest.mark.parametrize("turns", range(5))
@@ -65,7 +65,7 @@ def test_each_pixel_shows_the_same_place_of_the_world(turns):
     depth_to_colour = np.eye(4)
     depth_to_colour[:3, 3] = [0.03, -0.01, 0.002]
     frame = _frame(_rolled(1), depth_to_colour=depth_to_colour)
-    turned = turned_frame(frame, turns)
+    turned = rotate_frame(frame, turns)
     points = rng.uniform([-0.5, -0.4, 1], [0.5, 0.4, 3], (200, 3))
     for lens, other, pose, new_pose in (
         (LENS, turned.colour_camera, frame.camera_to_world, turned.camera_to_world),
@@ -90,9 +90,9 @@ def test_four_turns_are_none():
     frame = _frame(_rolled(2))
     turned = frame
     for _ in range(4):
-        turned = turned_frame(turned, 1)
+        turned = rotate_frame(turned, 1)
     np.testing.assert_allclose(turned.camera_to_world, frame.camera_to_world, atol=1e-12)
-    assert turned.colour_camera == turned_camera(LENS, 4) == LENS
+    assert turned.colour_camera == rotate_camera(LENS, 4) == LENS
 
 
 def test_all_images_of_a_frame_are_turned_alike(tmp_path):
@@ -103,21 +103,21 @@ def test_all_images_of_a_frame_are_turned_alike(tmp_path):
     Image.fromarray(depth).save(tmp_path / "d.png")
     paths = {"colour_path": tmp_path / "c.png", "depth_path": tmp_path / "d.png"}
     paths |= {"trust_path": tmp_path / "d.png", "labels_path": tmp_path / "d.png"}
-    frame = turned_frame(_frame(_rolled(1), **paths), 1)
+    frame = rotate_frame(_frame(_rolled(1), **paths), 1)
     assert read_header(frame.colour_path).size == (12, 16)
     np.testing.assert_array_equal(read_colour(frame.colour_path), np.rot90(colour))
     for image in (frame.depth_path, frame.trust_path, frame.labels_path):
-        assert isinstance(image, TurnedImage)
+        assert isinstance(image, RotatedImage)
         assert (image.stem, image.name, str(image)) == ("d", "d.png", str(tmp_path / "d.png"))
         check_whole(image)
         np.testing.assert_array_equal(read_raw(image), np.rot90(depth))
-    half = TurnedImage(tmp_path / "d.png", 2)
+    half = RotatedImage(tmp_path / "d.png", 2)
     assert read_header(half).size == (8, 6)
 
 
 def test_a_frame_without_images_or_pose_is_turned_too():
     bare = replace(_frame(None), colour_camera=None)
-    turned = turned_frame(bare, 3)
+    turned = rotate_frame(bare, 3)
     assert turned.camera_to_world is None
     assert turned.colour_path is None
-    assert turned_frame(bare, 4) is bare
+    assert rotate_frame(bare, 4) is bare

@@ -9,7 +9,7 @@ import pytest
 from scipy import ndimage
 
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.photo_stream import judged_photos
+from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.video import look_through, picked
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
@@ -98,7 +98,7 @@ def test_pictures_are_those_of_the_video_and_the_same_again(tmp_path):
     path = _film(tmp_path / "walk.mp4", _walk())
     with av.open(str(path)) as container:
         every = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    photos = judged_photos(judge_capture(path, ScanOptions(frames=6)))
+    photos = photos_of_capture(judge_capture(path, ScanOptions(frames=6)))
     for _ in range(2):
         for photo in photos:
             assert np.array_equal(photo.colour, every[int(photo.name.removeprefix("frame-"))])
@@ -110,10 +110,10 @@ def test_pictures_are_those_of_the_video_and_the_same_again(tmp_path):
 @pytest.mark.parametrize("degrees", [0, 90, 180, 270])
 def test_rotation_flags_turn_the_pictures_upright(tmp_path, degrees):
     path = _film(tmp_path / "walk.mp4", _walk(24))
-    plain = next(iter(judged_photos(judge_capture(path, ScanOptions())))).colour
+    plain = next(iter(photos_of_capture(judge_capture(path, ScanOptions())))).colour
     turned = _turned(_film(tmp_path / "turned.mp4", _walk(24)), degrees)
     judged = judge_capture(turned, ScanOptions())
-    photo = next(iter(judged_photos(judged)))
+    photo = next(iter(photos_of_capture(judged)))
     assert np.array_equal(photo.colour, np.rot90(plain, -degrees // 90))
     header = judged.frames[0].colour_path.header()
     assert header.size == (photo.colour.shape[1], photo.colour.shape[0])

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.formats.block_meshes import Faces, faces_of_boxes
+from world2minecraft.formats.block_meshes import Faces, visible_faces
 
 
 def faces(boxes, owner=None, material=None, is_clear=(False, True)):
     count = len(boxes)
     owner = np.zeros(count, np.int32) if owner is None else np.array(owner, np.int32)
     material = np.zeros(count, np.int32) if material is None else np.array(material, np.int32)
-    return faces_of_boxes(
+    return visible_faces(
         np.array(boxes, np.int32).reshape(-1, 6), owner, material, np.array(is_clear)
     )
 

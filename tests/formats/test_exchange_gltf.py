@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
-from world2minecraft.formats.block_meshes import bodies_of
+from world2minecraft.formats.block_meshes import volume_meshes
 from world2minecraft.formats.gltf import (
     GlbWriter,
     gltf_bytes,
@@ -291,7 +291,7 @@ def test_a_colour_that_no_face_shows_makes_no_body():
     inside[1, 1, 1] = 2
     labels = np.full((3, 3, 3), 10, np.uint8)
     volume = BlockVolume(inside, PALETTE, labels, inside * 0 + 4, (0, 0, 0), np.eye(4))
-    bodies, looks = bodies_of(volume)
+    bodies, looks = volume_meshes(volume)
     assert [body.name for body in bodies] == ["furn_4"]
     assert len(bodies[0].looks) == 6
     assert len(looks) == 2
@@ -300,7 +300,7 @@ def test_a_colour_that_no_face_shows_makes_no_body():
 def test_an_unlabelled_volume_is_one_body():
     plain = furnished()
     plain = replace(plain, semantic=plain.semantic * 0, instance=plain.instance * 0)
-    assert [body.name for body in bodies_of(plain)[0]] == ["blocks"]
+    assert [body.name for body in volume_meshes(plain)[0]] == ["blocks"]
 
 
 # Habitat.
@@ -360,7 +360,7 @@ def test_ids_have_colours_of_their_own():
 
 
 def test_ids_above_the_limit_and_bad_names_are_refused(tmp_path):
-    bodies, _ = bodies_of(replace(furnished(), instance=furnished().instance * 1200))
+    bodies, _ = volume_meshes(replace(furnished(), instance=furnished().instance * 1200))
     with pytest.raises(UsageError, match="Habitat reads ids up to 10,000; the objects go to 10,8"):
         semantic_ids(bodies)
     with pytest.raises(UsageError, match=r"scene name '\.\./x' must be"):

@@ -27,7 +27,7 @@ from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.physics import BlockWorld, Keys, standing_place, step
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
-from world2minecraft.navigation.server.body import join
+from world2minecraft.navigation.server.player import join
 
 pytestmark = pytest.mark.live
 __all__ = ["node"]  # A fixture.
@@ -251,14 +251,14 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
 def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.episode_runner import walk_episode
-    from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
-    from world2minecraft.navigation.server.scene import ServerGround, open_server_scene
+    from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
+    from world2minecraft.navigation.server.scene import ServerSimulator, open_server_scene
 
     server, folder = flat_server
     with join(server.address, folder=user_cache_dir() / "live-test") as body:
         scene = open_server_scene(body, labels=folder)
-        episode = episode_of(scene, Wish("Go to the piano"))
-        walk = walk_episode(ServerGround(scene), episode, make_agent("oracle", None))
+        episode = episode_of_sentence(scene, GoalRequest("Go to the piano"))
+        walk = walk_episode(ServerSimulator(scene), episode, make_agent("oracle", None))
     assert walk.end == "stopped" and walk.score.ne_m < 0.5
 
 

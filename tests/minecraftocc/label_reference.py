@@ -14,12 +14,12 @@ from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.minecraftocc.types import LabelRegion, SceneVoxels
-from world2minecraft.rendering.block_elements import Element, LookSource
+from world2minecraft.rendering.block_elements import Element, ModelSource
 
 SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-6, 0.006, 0.001
 
 
-def solid_parts(volume: BlockVolume, looks: LookSource) -> Iterator[tuple[tuple, np.ndarray]]:
+def solid_parts(volume: BlockVolume, looks: ModelSource) -> Iterator[tuple[tuple, np.ndarray]]:
     """Give who each part belongs to, and its middle and three half edges, float64 [4, 3]."""
     models = [looks.model(state) for state in volume.palette]
     for cell in np.argwhere(volume.states):

@@ -42,7 +42,7 @@ from world2minecraft.minecraftocc.store import open_store, verify_store
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.store.shard import member_at
 from world2minecraft.rendering import LookLight, prepare_scene, render_volume
-from world2minecraft.rendering.presentation.shot_frames import exposed
+from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
 from world2minecraft.rendering.views import Shot, camera_of
 
 REGION = RegionRule("paper", (20, 20, 12), 0.25)
@@ -114,7 +114,7 @@ def test_a_sample_is_what_the_renderer_and_the_labeller_say(made, worlds):
     scene = prepare_scene(volume)
     mine = [one for one in store.samples() if one.scene_id == sample.scene_id]
     light = LookLight(hour=sample.facts["hour"])
-    lit = exposed(scene, light, [Shot(one.camera, one.camera_to_room) for one in mine])
+    lit = with_common_exposure(scene, light, [Shot(one.camera, one.camera_to_room) for one in mine])
     picture = render_volume(
         lit, sample.camera, sample.camera_to_room, outputs=("colour", "depth"), light=light
     )

@@ -11,7 +11,7 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.labels import voxelization as module
 from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
 from world2minecraft.minecraftocc.types import FineClass
-from world2minecraft.rendering.block_models import OwnLooks
+from world2minecraft.rendering.block_models import BuiltinModels
 
 MARGIN = 2e-4
 
@@ -21,7 +21,7 @@ def test_cells_are_those_of_the_slow_reference(scale, voxel_m):
     volume = room_of_things(scale, share=0.04 if scale == 2.0 else 0.1)
     voxels = scene_voxels(volume, designs_of(volume), voxel_m=voxel_m)
     assert voxels.voxel_m == (voxel_m or 1 / scale)
-    parts = reference.solid_parts(volume, OwnLooks(16))
+    parts = reference.solid_parts(volume, BuiltinModels(16))
     shares = reference.filled(parts, voxels.origin_m, voxels.voxel_m)
     assert set(map(tuple, np.argwhere(voxels.fine > 0).tolist())) == set(shares)
     things = [(8, 7), (11, 9)]

@@ -17,10 +17,10 @@ from world2minecraft.navigation.prompts import question_of
 from world2minecraft.navigation.running.item_evaluation import accuracy, evaluate, write_result
 from world2minecraft.navigation.running.tables import (
     answers_table,
-    markdown_of,
+    format_markdown,
+    format_text,
     paired_table,
     read_result,
-    text_of,
 )
 
 ACTIONS = {"A": "move forward", "B": "turn left", "C": "turn right", "D": "stop"}
@@ -246,8 +246,8 @@ def test_each_reply_is_kept_and_the_table_is_the_papers(tmp_path):
         ["majority", "baseline"], ["tiny", "none"], ["tiny", "sft"],
     ]  # fmt: skip
     assert table[3][2] == "100.0 [44, 100] n=3" and table[3][6] == "-"
-    assert text_of(table).splitlines()[0].startswith("model     training")
-    assert markdown_of(table).splitlines()[1].startswith("| --- | ---: |")
+    assert format_text(table).splitlines()[0].startswith("model     training")
+    assert format_markdown(table).splitlines()[1].startswith("| --- | ---: |")
     pairs = {(row[0], row[1]): row[2:] for row in paired_table(results)[1:]}
     only_tuned = sum(item.answer != "A" for item in some_items())
     assert pairs["tiny (none)", "tiny (sft)"][:3] == ["8", "0", str(only_tuned)]

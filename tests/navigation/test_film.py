@@ -4,8 +4,8 @@ import numpy as np
 from PIL import ImageFont
 from small_flat import flat_volume
 
-from world2minecraft.navigation.running.film import compose, plain, wrapped
-from world2minecraft.navigation.running.floor_map import GOAL, HERE, PlanMap, plan_of
+from world2minecraft.navigation.running.film import compose, printable, wrap_text
+from world2minecraft.navigation.running.floor_map import GOAL, HERE, PlanMap, floor_plans
 from world2minecraft.navigation.values import Stance
 
 
@@ -39,7 +39,7 @@ def test_a_plan_is_cut_to_a_part():
 
 
 def test_a_plan_of_a_scene_shows_its_rooms(flat):
-    x0, z0, x1, z1 = plan_of(flat)._box
+    x0, z0, x1, z1 = floor_plans(flat)._box
     assert x0 < 1 and z0 < 1 and x1 > 18 and z1 > 8  # Both rooms with their walls.
 
 
@@ -61,9 +61,9 @@ def test_texts_of_anyone_fit():
     font = ImageFont.load_default(14)
     texts = ["a" * 5000, "word " * 900, "", "\u4e2d\u6587 \x1b[31m\n\n end", "\U0001f600"]
     for text in texts:
-        lines = wrapped(text, font, 200, 3)
+        lines = wrap_text(text, font, 200, 3)
         assert len(lines) <= 3 and all(font.getlength(line) <= 200 for line in lines)
-    assert plain("a\u4e2d\x1bb\tc") == "a??b c"
+    assert printable("a\u4e2d\x1bb\tc") == "a??b c"
 
 
 def test_a_frame_has_one_size_whatever_the_view():

@@ -10,11 +10,16 @@ from tests.navigation.vln_sets import next_action, next_view
 from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.navigation.exporters.options import HandoffRule, held_out, parts_of, shuffled
+from world2minecraft.navigation.exporters.options import (
+    ExportOptions,
+    group_items,
+    shuffle_items,
+    validation_group,
+)
 from world2minecraft.navigation.exporters.training_costs import (
     GRPO_BATCH,
-    LEAST_PIXELS,
-    MOST_PIXELS,
+    MAX_PIXELS,
+    MIN_PIXELS,
     grpo_plan,
     image_tokens,
     sft_steps,
@@ -25,7 +30,7 @@ sides = st.integers(28, 4000)
 
 @given(sides, sides)
 def test_a_picture_takes_the_tokens_of_qwens_own_processor(width, height):
-    rows, columns = smart_resize(height, width, 28, LEAST_PIXELS, MOST_PIXELS)
+    rows, columns = smart_resize(height, width, 28, MIN_PIXELS, MAX_PIXELS)
     if max(width, height) / min(width, height) < 100:
         assert image_tokens(width, height, 1 << 30) == rows * columns // 28**2
 
@@ -34,7 +39,7 @@ def test_a_picture_takes_the_tokens_of_qwens_own_processor(width, height):
 def test_the_trainers_limit_holds_but_for_the_rounding(width, height, max_pixels):
     tokens = image_tokens(width, height, max_pixels)
     ratio = max(width, height) / min(width, height)
-    if ratio < 4 and max_pixels > 16 * LEAST_PIXELS:
+    if ratio < 4 and max_pixels > 16 * MIN_PIXELS:
         assert tokens <= 1.2 * max_pixels / 28**2
 
 
@@ -87,22 +92,22 @@ MANY = [
 
 
 def test_the_order_is_of_chance_and_of_nothing_else():
-    order = shuffled(MANY, 0)
-    assert order == shuffled(reversed(MANY), 0)
-    assert order != shuffled(MANY, 1)
+    order = shuffle_items(MANY, 0)
+    assert order == shuffle_items(reversed(MANY), 0)
+    assert order != shuffle_items(MANY, 1)
     assert sorted(item.item_id for item in order) == sorted(item.item_id for item in MANY)
     first = Counter(item.composition for item in order[:320])
     assert 120 < first["base"] < 200  # Of 320; a file that is not shuffled has all.
 
 
 def test_combined_is_the_union_and_only_of_two():
-    parts = parts_of(MANY, HandoffRule())
+    parts = group_items(MANY, ExportOptions())
     assert [(part.composition, len(part.items)) for part in parts] == [
         ("base", 320),
         ("extend", 320),
         ("combined", 640),
     ]
-    alone = parts_of([item for item in MANY if item.composition == "base"], HandoffRule())
+    alone = group_items([item for item in MANY if item.composition == "base"], ExportOptions())
     assert [part.composition for part in alone] == ["base"]
 
 
@@ -113,16 +118,18 @@ def test_scenes_not_seen_validate_before_ways_not_seen():
         next_view("barn", 2, "val_unseen"),
         next_action("barn", 2, "val_unseen"),
     ]
-    parts = parts_of(items, HandoffRule())
-    assert held_out(parts, parts[0]).name == "mcvln_next_view_base_val_unseen"
-    parts = parts_of(items[:2], HandoffRule())
-    assert held_out(parts, parts[0]).split == "val_seen"
-    assert held_out(parts[:1], parts[0]) is None
+    parts = group_items(items, ExportOptions())
+    assert validation_group(parts, parts[0]).name == "mcvln_next_view_base_val_unseen"
+    parts = group_items(items[:2], ExportOptions())
+    assert validation_group(parts, parts[0]).split == "val_seen"
+    assert validation_group(parts[:1], parts[0]) is None
 
 
 def test_a_set_without_what_is_wanted_is_told():
     with pytest.raises(UsageError) as caught:
-        parts_of([next_view(step=2)], HandoffRule(tasks=("next_action",), compositions=("base",)))
+        group_items(
+            [next_view(step=2)], ExportOptions(tasks=("next_action",), compositions=("base",))
+        )
     assert str(caught.value) == (
         "the set has no item of next_action that is base; it has base next_view"
     )
@@ -142,5 +149,5 @@ def test_a_set_without_what_is_wanted_is_told():
 )
 def test_choices_that_cannot_be_are_refused(choice, reason):
     with pytest.raises((UsageError, UnknownNameError)) as caught:
-        HandoffRule(**choice)
+        ExportOptions(**choice)
     assert reason in str(caught.value)

@@ -22,8 +22,8 @@ from world2minecraft.navigation.exporters.vlnce import (
     block_to_habitat,
     positions,
     rotation,
-    sparse,
     split_words,
+    subsample_path,
     vocabulary,
 )
 from world2minecraft.navigation.records import write_episodes
@@ -124,7 +124,7 @@ def test_a_long_instruction_is_cut_and_signs_are_words(tmp_path):
 @given(st.lists(st.tuples(*[st.floats(-50, 50)] * 3), min_size=1, max_size=30))
 def test_a_sparse_way_keeps_its_ends_and_leaves_no_short_gap(way):
     way = [list(place) for place in way]
-    kept = sparse(way)
+    kept = subsample_path(way)
     assert kept[0] == way[0] and kept[-1] == way[-1]
     gaps = [math.dist(one, two) for one, two in pairwise(kept[:-1])]
     assert all(gap >= 2.0 for gap in gaps)

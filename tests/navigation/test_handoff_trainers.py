@@ -18,7 +18,7 @@ from world2minecraft.core.errors import (
     UnknownNameError,
     UsageError,
 )
-from world2minecraft.navigation.exporters import HandoffRule, export_set
+from world2minecraft.navigation.exporters import ExportOptions, export_set
 from world2minecraft.navigation.exporters.loader_checks import (
     check_easyr1,
     check_llamafactory,
@@ -142,7 +142,7 @@ def loaded(root, recipe):
 
 @pytest.mark.parametrize("style", ["paths", "embedded"])
 def test_easyr1_loads_every_row_of_both_styles(folder, items, tmp_path, style):
-    done = export_set(folder, "easyr1", tmp_path / "out", HandoffRule(image_style=style))
+    done = export_set(folder, "easyr1", tmp_path / "out", ExportOptions(image_style=style))
     assert (done.out / "images").is_dir() == (style == "paths")
     for stem in ("next_view_combined", "next_action_extend"):
         recipe = yaml.safe_load((done.out / f"{stem}_grpo.yaml").read_text())
@@ -237,7 +237,7 @@ def test_the_same_set_gives_the_same_bytes(folder, tmp_path, format):
 
 
 def test_max_samples_takes_first_rows_of_a_shuffled_file(folder, tmp_path):
-    done = export_set(folder, "llamafactory", tmp_path / "out", HandoffRule(max_samples=6))
+    done = export_set(folder, "llamafactory", tmp_path / "out", ExportOptions(max_samples=6))
     assert done.notes == [
         "mcvln_next_view_combined_train: max_samples 6 leaves 4 rows out, the same in every epoch, "
         "as in the paper; --max-samples 0 takes all",
@@ -251,7 +251,7 @@ def test_max_samples_takes_first_rows_of_a_shuffled_file(folder, tmp_path):
     rows = json.loads((done.out / "mcvln_next_action_combined_train.json").read_text())
     scenes = {row["id"].split("-")[0] for row in rows[:6]}
     assert scenes == {"kitchen", "villa"}
-    all_rows = export_set(folder, "llamafactory", tmp_path / "all", HandoffRule(max_samples=0))
+    all_rows = export_set(folder, "llamafactory", tmp_path / "all", ExportOptions(max_samples=0))
     assert not all_rows.notes
     assert "max_samples" not in (all_rows.out / "next_action_base_sft.yaml").read_text()
 
@@ -259,7 +259,7 @@ def test_max_samples_takes_first_rows_of_a_shuffled_file(folder, tmp_path):
 def test_pictures_that_overflow_a_prompt_are_told(tmp_path):
     folder = small_set(tmp_path / "set", width=1280, height=720)
     with pytest.raises(UsageError) as caught:
-        export_set(folder, "easyr1", tmp_path / "out", HandoffRule(max_pixels=1 << 24))
+        export_set(folder, "easyr1", tmp_path / "out", ExportOptions(max_pixels=1 << 24))
     assert re.fullmatch(
         r"item \S+ takes up to 8,\d\d\d tokens, over the 4,096 of a prompt; export with "
         "--max-pixels set lower",
@@ -307,7 +307,7 @@ def test_a_folder_of_something_else_is_left_alone(folder, tmp_path):
         export_set(folder, "trl", tmp_path / "mine")
     export_set(folder, "trl", tmp_path / "trl")
     with pytest.raises(ConflictError, match=r"by other choices \(seed 0, not 1\); name another"):
-        export_set(folder, "trl", tmp_path / "trl", HandoffRule(seed=1))
+        export_set(folder, "trl", tmp_path / "trl", ExportOptions(seed=1))
     with pytest.raises(UnknownNameError, match="did you mean 'easyr1'"):
         export_set(folder, "easyr2", tmp_path / "x")
 
@@ -321,7 +321,7 @@ def test_an_export_that_fails_leaves_nothing_so_that_it_can_be_tried_again(forma
     large = small_set(tmp_path / "large", width=1280, height=960)
     if format in ("llamafactory", "easyr1", "trl"):
         with pytest.raises(UsageError, match="export with --max-pixels set lower"):
-            export_set(large, format, tmp_path / "out", HandoffRule(max_pixels=1 << 24))
+            export_set(large, format, tmp_path / "out", ExportOptions(max_pixels=1 << 24))
         assert not (tmp_path / "out").exists()
     assert export_set(large, format, tmp_path / "out").written
 

@@ -14,12 +14,12 @@ from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
 from world2minecraft.navigation.environment.observations import Eyes
-from world2minecraft.navigation.server import body as body_module
-from world2minecraft.navigation.server import installing
+from world2minecraft.navigation.server import mineflayer_install as installing
+from world2minecraft.navigation.server import player as body_module
 from world2minecraft.navigation.server.actions import forward_keys
 from world2minecraft.navigation.server.blocks import MAX_CELLS, checked_box, state_of
-from world2minecraft.navigation.server.body import Bridge, ServerBody, join
 from world2minecraft.navigation.server.env import ServerEnv
+from world2minecraft.navigation.server.player import Bridge, ServerBody, join
 from world2minecraft.navigation.server.scene import open_server_scene
 from world2minecraft.navigation.values import Move
 
@@ -305,16 +305,16 @@ def test_it_is_an_environment_of_gymnasium():
 def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.episode_runner import walk_episode
-    from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
-    from world2minecraft.navigation.server.scene import ServerGround
+    from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
+    from world2minecraft.navigation.server.scene import ServerSimulator
 
     with fake() as body:
         scene = open_server_scene(body, labels=flat_path)
-        episode = episode_of(scene, Wish("Go to the piano"))
+        episode = episode_of_sentence(scene, GoalRequest("Go to the piano"))
         assert episode.scene == str(flat_path)
         for name in ("oracle", "shortest"):
             agent = make_agent(name, None)
-            walk = walk_episode(ServerGround(scene), episode, agent)
+            walk = walk_episode(ServerSimulator(scene), episode, agent)
             assert walk.end == "stopped" and walk.score.ne_m < 1.0, name
             assert walk.stances[-1].feet == body.body.position  # For real, not in thought alone.
             assert walk.score.length_m < 2 * walk.score.shortest_m

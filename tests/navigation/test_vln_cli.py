@@ -16,8 +16,8 @@ from world2minecraft import cli
 from world2minecraft.cli.vln.live_view import LinesLive, half_blocks, safe
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.records import read_episodes, write_items
-from world2minecraft.navigation.running.item_evaluation import picked_items
-from world2minecraft.navigation.running.sentence_goals import named_in
+from world2minecraft.navigation.running.item_evaluation import select_items
+from world2minecraft.navigation.running.sentence_goals import find_named_landmark
 from world2minecraft.navigation.running.trace import read_trace
 from world2minecraft.navigation.scene import camera_of
 from world2minecraft.navigation.values import Stance
@@ -126,12 +126,12 @@ def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
 
 def test_the_words_say_where_to_go(flat):
     for words in ("Walk past the red table to the PIANO.", "upright piano"):
-        assert named_in(flat, words).name == "upright piano"
-    assert named_in(flat, "Leave the piano and go to the table").noun == "table"
+        assert find_named_landmark(flat, words).name == "upright piano"
+    assert find_named_landmark(flat, "Leave the piano and go to the table").noun == "table"
     with pytest.raises(UsageError, match="nothing of flat is named by 'go home, pianos!'; it has"):
-        named_in(flat, "Go home, pianos!")
+        find_named_landmark(flat, "Go home, pianos!")
     with pytest.raises(UsageError, match="2 things are called 'chair'; say one of 'chair beside"):
-        named_in(flat, "Go to the chair")
+        find_named_landmark(flat, "Go to the chair")
 
 
 GOLDEN = [
@@ -218,14 +218,14 @@ def test_baselines_are_evaluated_by_name(tmp_path, capsys):
 
 def test_items_are_picked(tmp_path):
     items = [next_action("flat", step, "val_seen") for step in range(8)]
-    assert picked_items(items) == items
-    drawn = picked_items(items, count=3, seed=1)
-    assert len(drawn) == 3 and drawn == picked_items(items, count=3, seed=1)
+    assert select_items(items) == items
+    drawn = select_items(items, count=3, seed=1)
+    assert len(drawn) == 3 and drawn == select_items(items, count=3, seed=1)
     assert drawn == [item for item in items if item in drawn]
     with pytest.raises(UsageError, match="none of 8 items is of split train"):
-        picked_items(items, split="train")
+        select_items(items, split="train")
     with pytest.raises(UsageError, match="no split is named 'tets'; did you mean 'test'"):
-        picked_items(items, split="tets")
+        select_items(items, split="tets")
 
 
 def test_the_terminal_shows_no_commands_of_others():
@@ -239,8 +239,8 @@ def test_the_terminal_shows_no_commands_of_others():
 
 
 def test_the_nearest_floor_is_where_one_begins(flat, flat_path, tmp_path):
-    from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
+    from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
 
-    wish = Wish("Go to the piano", start=Stance(3.1, 70.0, 3.2, 45.0))
-    episode = episode_of(flat, wish)
+    wish = GoalRequest("Go to the piano", start=Stance(3.1, 70.0, 3.2, 45.0))
+    episode = episode_of_sentence(flat, wish)
     assert episode.start.yaw_deg == 45.0 and episode.start.y == pytest.approx(65.0)

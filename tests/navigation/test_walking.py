@@ -11,7 +11,7 @@ from tests.external_models.test_chat import model_at
 from world2minecraft.core.errors import InputError, OutputError
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent
-from world2minecraft.navigation.running.course import run_course, write_course
+from world2minecraft.navigation.running.episode_evaluation import evaluate_agent, write_walks_result
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.running.tables import read_result, walks_table
 from world2minecraft.navigation.running.trace import TraceWriter, read_trace
@@ -103,7 +103,7 @@ def test_an_episode_that_cannot_be_walked_is_told_before_the_first_is(tmp_path):
     episodes = [an_episode(), an_episode(name="lost", goal=(9.0, 64.0, 0.0))]
     told = "field: no way leads from the start of episode lost to its goal; were the blocks changed"
     with pytest.raises(InputError, match=told):
-        run_course(episodes, lambda _: Walled(), agent, observers=lambda *_: ())
+        evaluate_agent(episodes, lambda _: Walled(), agent, observers=lambda *_: ())
     assert not agent.sights
     with pytest.raises(InputError, match=told):
         walk_episode(Walled(), episodes[1], agent)
@@ -120,10 +120,10 @@ def test_a_trace_of_anyone_is_checked(tmp_path):
 
 def test_a_course_is_told_beside_stop_random_and_oracle(tmp_path):
     episodes = [an_episode(name=f"e{n}", goal=(2.0, 64.0, float(n))) for n in range(3)]
-    walks, beside = run_course(
+    walks, beside = evaluate_agent(
         episodes, lambda _: OpenField(), AGENTS.load("shortest")(), observers=lambda *_: ()
     )
-    told = write_course(tmp_path, walks, beside, {"training": "none"})
+    told = write_walks_result(tmp_path, walks, beside, {"training": "none"})
     table = walks_table([read_result(tmp_path)])
     assert [row[0] for row in table] == ["agent", "shortest", "stop", "random", "oracle"]
     assert [row[table[0].index("SR 0.5 m")] for row in table[1:]][::3] == ["100.0%", "100.0%"]

@@ -15,7 +15,7 @@ from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.navigation.running.episode_ground import SceneGround
+from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.values import Stance
 from world2minecraft.paper import figure
@@ -100,7 +100,7 @@ def test_what_an_agent_saw_that_kept_no_views_is_drawn_again(finished, tmp_path)
     lines = [{"scene": "OUT"}, {"stance": asdict(east)}, {"end": "x", "stance": asdict(north)}]
     (walk / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     views = views_of_walk(finished / "OUT", walk, 6)
-    ground = SceneGround(scene)
+    ground = SceneSimulator(scene)
     assert len(views) == 2
     for view, stance in zip(views, (east, north), strict=True):
         np.testing.assert_array_equal(view, ground.view(stance))

@@ -3,15 +3,15 @@
 import numpy as np
 from scenes import PALETTE
 
-from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, face_uv
-from world2minecraft.rendering.plain_models import PlainLooks
+from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, face_uv
+from world2minecraft.rendering.plain_models import PlainModels
 from world2minecraft.rendering.texture import Texture
 
 WHOLE = ((0, 0, 0), (1, 1, 1))
 
 
-def faces(texture: str, low=(0, 0, 0), high=(1, 1, 1)) -> tuple[FaceLook, ...]:
-    return tuple(FaceLook(texture, face_uv(side, low, high)) for side in range(6))
+def faces(texture: str, low=(0, 0, 0), high=(1, 1, 1)) -> tuple[ElementFace, ...]:
+    return tuple(ElementFace(texture, face_uv(side, low, high)) for side in range(6))
 
 
 def diagonal() -> np.ndarray:
@@ -42,11 +42,11 @@ def texture_of(name: str) -> Texture:
 
 
 class FewLooks:
-    """Models by the palette's index; all else as ``PlainLooks``."""
+    """Models by the palette's index; all else as ``PlainModels``."""
 
     def __init__(self, kinds: dict[int, str]):
         self._kinds = {PALETTE[index]: kind for index, kind in kinds.items()}
-        self._rest = PlainLooks()
+        self._rest = PlainModels()
 
     def model(self, state: str) -> BlockModel:
         return MODELS[self._kinds[state]] if state in self._kinds else self._rest.model(state)

@@ -18,7 +18,7 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.entities import display_cubes
-from world2minecraft.rendering.block_elements import BlockModel, Element, LookSource
+from world2minecraft.rendering.block_elements import BlockModel, Element, ModelSource
 from world2minecraft.rendering.texture import Texture
 
 NO_FACE = 255
@@ -46,7 +46,7 @@ class Hits:
 class WithoutGlass:
     """Looks in which all that is translucent is not there: what lies behind glass is first."""
 
-    def __init__(self, looks: LookSource):
+    def __init__(self, looks: ModelSource):
         self.looks = looks
 
     def model(self, state: str) -> BlockModel | None:
@@ -68,7 +68,7 @@ class WithoutGlass:
 
 
 def oracle_picture(
-    volume: BlockVolume, looks: LookSource, camera: Camera, camera_to_room: np.ndarray
+    volume: BlockVolume, looks: ModelSource, camera: Camera, camera_to_room: np.ndarray
 ) -> Hits:
     """Return the first surface that each pixel meets; ``depth`` is the camera's z in metres."""
     u, v = np.meshgrid(np.arange(camera.width_px) + 0.5, np.arange(camera.height_px) + 0.5)
@@ -99,7 +99,7 @@ def has_face(hits: Hits, face: np.ndarray) -> np.ndarray:
     return np.where(none, best == 0, (best > 0) & (likeness >= best - 1e-6))
 
 
-def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.ndarray) -> Hits:
+def cast(volume: BlockVolume, looks: ModelSource, origin: np.ndarray, rays: np.ndarray) -> Hits:
     """Cast ``rays`` float64 [N, 3] from ``origin`` float64 [3], both in cells of the volume."""
     count = len(rays)
     rays = np.where(np.abs(rays) < 1e-12, 1e-12, rays)
@@ -129,7 +129,7 @@ def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.nd
 class Panes:
     """Looks whose textures have no holes: those of glass."""
 
-    def __init__(self, looks: LookSource):
+    def __init__(self, looks: ModelSource):
         self._looks = looks
         self.model = looks.model
 
@@ -138,12 +138,12 @@ class Panes:
         return texture and replace(texture, translucent=True)
 
 
-def looks_of(state: str, looks: LookSource) -> LookSource:
+def looks_of(state: str, looks: ModelSource) -> ModelSource:
     """Return what the textures of a state are taken from."""
     return Panes(looks) if "glass" in state.partition("[")[0] else looks
 
 
-def _elements(looks: LookSource, state: str) -> tuple[Element, ...]:
+def _elements(looks: ModelSource, state: str) -> tuple[Element, ...]:
     model = looks.model(state)
     return model.elements if model else ()
 
@@ -159,7 +159,7 @@ def reaches_out(element: Element) -> bool:
 
 def meet(
     element: Element,
-    looks: LookSource,
+    looks: ModelSource,
     origin: np.ndarray,
     rays: np.ndarray,
     turn: np.ndarray | None = None,
@@ -194,7 +194,7 @@ def meet(
     return depth, np.where(going_up, -1, 1)[:, None] * gradient[axis]
 
 
-def _is_there(element: Element, looks: LookSource, face: np.ndarray, points: np.ndarray):
+def _is_there(element: Element, looks: ModelSource, face: np.ndarray, points: np.ndarray):
     """Tell, bool [N], whether a face has something at points of the element's frame."""
     there = np.ones(len(points), bool)
     for side, look in enumerate(element.faces):
@@ -212,7 +212,7 @@ def _is_there(element: Element, looks: LookSource, face: np.ndarray, points: np.
     return there
 
 
-def _walk(volume: BlockVolume, looks: LookSource, models, origin, rays, hits: Hits) -> None:
+def _walk(volume: BlockVolume, looks: ModelSource, models, origin, rays, hits: Hits) -> None:
     """Go from cell to cell with all rays that have met nothing yet."""
     shape = np.array(volume.states.shape)
     joined = [
@@ -257,7 +257,7 @@ def _first_cells(shape: np.ndarray, origin: np.ndarray, rays: np.ndarray):
     return cell, active
 
 
-def _joins(state: str, model, looks: LookSource) -> bool:
+def _joins(state: str, model, looks: ModelSource) -> bool:
     """Whether it is a see-through cube that shows no face to its like."""
     if len(model) != 1 or "leaves" in state.partition("[")[0]:
         return False

@@ -12,7 +12,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.rendering import LookLight, prepare_scene, render_volume
 from world2minecraft.rendering.batch import BATCH_OUTPUTS, batch_arrays, render_batch
 from world2minecraft.rendering.batch import drawing as draw_module
-from world2minecraft.rendering.editable_scene import LiveScene
+from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.light_parameters import DAY, exposure_of
 from world2minecraft.rendering.picture import OUTPUTS
 
@@ -131,7 +131,7 @@ def test_calls_from_many_threads_at_once_do_not_meet(scene, poses):
 
 
 def test_an_edit_is_seen_by_the_next_batch(volume, poses):
-    live = LiveScene(volume)
+    live = EditableScene(volume)
     before = render_batch(live.scene, SMALL, poses, outputs=("block",)).block_index
     cell = np.argwhere(volume.states)[0]
     live.set_blocks(np.argwhere(volume.states), ["minecraft:air"] * int((volume.states > 0).sum()))

@@ -13,8 +13,8 @@ from world2minecraft.core.errors import UsageError, WorkerError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import RenderPool, render_batch
-from world2minecraft.rendering.batch.pool import runs_of
-from world2minecraft.rendering.editable_scene import LiveScene
+from world2minecraft.rendering.batch.pool import split_into_tasks
+from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.picture import OUTPUTS
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
@@ -86,8 +86,8 @@ def test_order_is_kept_and_sizes_may_differ(pool, poses):
 
 def test_poses_are_cut_into_tasks_of_one_size():
     cameras = [SMALL] * 70 + [WIDE] * 2 + [SMALL]
-    assert list(runs_of(cameras)) == [(0, 64), (64, 70), (70, 71), (71, 72), (72, 73)]
-    assert list(runs_of([])) == []
+    assert list(split_into_tasks(cameras)) == [(0, 64), (64, 70), (70, 71), (71, 72), (72, 73)]
+    assert list(split_into_tasks([])) == []
 
 
 def test_jobs_may_be_shorter_than_a_worker_is_slow(volume, poses):
@@ -144,7 +144,7 @@ def test_an_error_in_a_worker_comes_out_and_the_pool_goes_on(pool, poses):
 
 
 def test_edits_are_seen_after_an_update(pool, volume, poses):
-    live = LiveScene(volume)
+    live = EditableScene(volume)
     live.set_blocks(np.argwhere(volume.states)[:20], ["minecraft:glowstone"] * 20)
     before = names_of(pool)[0]
     pool.update(live.scene)

@@ -11,7 +11,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene, render_volume
 from world2minecraft.rendering.batch import render_batch, render_stream
-from world2minecraft.rendering.batch.streaming import ahead_of, done_behind
+from world2minecraft.rendering.batch.streaming import ordered_map, prefetch
 from world2minecraft.rendering.output import colour_bytes
 from world2minecraft.rendering.views.cameras import Shot
 
@@ -114,7 +114,7 @@ def test_ahead_is_bounded_and_ends_with_its_user():
         finally:
             closed.set()
 
-    stream = ahead_of(things(), 2)
+    stream = prefetch(things(), 2)
     assert [next(stream) for _ in range(3)] == [0, 1, 2]
     stream.close()
     assert closed.is_set()
@@ -130,7 +130,7 @@ def test_ahead_overlaps_with_its_user():
         second.set()
         yield 1
 
-    stream = ahead_of(things())
+    stream = prefetch(things())
     assert next(stream) == 0
     assert second.wait(30)
     assert list(stream) == [1]
@@ -144,7 +144,7 @@ def test_work_is_done_behind_in_order_and_bounded():
             taken.append(n)
             yield n
 
-    stream = done_behind(things(), lambda n: n * n, threads=3, most=5)
+    stream = ordered_map(things(), lambda n: n * n, threads=3, most=5)
     assert next(stream) == 0
     assert len(taken) <= 5
     assert list(stream) == [n * n for n in range(1, 20)]
@@ -167,5 +167,5 @@ def test_a_failed_work_stops_the_taking():
         return n
 
     with pytest.raises(RuntimeError, match="broken"):
-        list(done_behind(things(), work, threads=1, most=50))
+        list(ordered_map(things(), work, threads=1, most=50))
     assert len(taken) <= 5

@@ -15,22 +15,22 @@ from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering import scene_tables as tables_module
 from world2minecraft.rendering.gpu import scene_buffers as packing
 from world2minecraft.rendering.gpu.device import BINDINGS, shader_text
-from world2minecraft.rendering.gpu.readback_buffers import MOST_JOBS, plan_of
+from world2minecraft.rendering.gpu.readback_buffers import MAX_JOBS, plan_submissions
 from world2minecraft.rendering.gpu.uniforms import (
     AT_CORNERS,
     AT_ENCODE,
     SCALARS,
     TONE_BYTES,
     VIEW,
-    Ask,
-    layout_of,
+    PictureRequest,
+    entry_distance,
     parameter_bytes,
+    plane_layout,
     struct_text,
     tone_words,
     view_of,
-    way_ahead,
 )
-from world2minecraft.rendering.light_parameters import DAY, lamp_of
+from world2minecraft.rendering.light_parameters import DAY, shading_parameters
 from world2minecraft.rendering.scene_tables import ABSOLUTE, BOXES, FLAGS, FULL, TURN
 
 
@@ -42,8 +42,8 @@ def scene_of(seed=0):
 
 
 def ask_of(scene, size=(36, 48), outputs=("colour",), samples=1):
-    layout = layout_of(outputs, True)
-    return Ask(size, (30.0, 30.0, 24.0, 18.0), 1.0, samples, layout)
+    layout = plane_layout(outputs, True)
+    return PictureRequest(size, (30.0, 30.0, 24.0, 18.0), 1.0, samples, layout)
 
 
 def test_cells_say_what_space_and_looks_say():
@@ -58,7 +58,7 @@ def test_cells_say_what_space_and_looks_say():
 
 def test_turned_elements_carry_points_as_before_from_their_anchors():
     tables = scene_of().tables
-    scene = packing.packed(scene_of())
+    scene = packing.pack_scene(scene_of())
     elements = scene.tables[scene.offsets["at_elements"] : scene.offsets["at_turns"]]
     elements = elements.reshape(-1, packing.ELEMENT_WORDS)
     turns = scene.tables[scene.offsets["at_turns"] : -1].reshape(-1, packing.TURN_WORDS)
@@ -78,8 +78,8 @@ def test_turned_elements_carry_points_as_before_from_their_anchors():
 
 def test_bytes_are_known_before_they_are_made():
     scene = scene_of()
-    buffers = packing.packed(scene).buffers
-    assert {name: array.nbytes for name, array in buffers.items()} == packing.bytes_of(scene)
+    buffers = packing.pack_scene(scene).buffers
+    assert {name: array.nbytes for name, array in buffers.items()} == packing.buffer_bytes(scene)
     assert {array.dtype.itemsize for array in buffers.values()} == {4}
 
 
@@ -107,7 +107,7 @@ def test_no_parallel_ray_enters_the_grid_before_the_way_ahead(seed):
     pose = np.concatenate(
         [np.linalg.qr(rng.normal(size=(3, 3)))[0] * 4, rng.normal(size=(3, 1)) * 80], axis=1
     )
-    ahead = way_ahead(pose, shape)
+    ahead = entry_distance(pose, shape)
     points = rng.uniform(0, shape, (200, 3))
     ways = (points - pose[:, 3]) @ pose[:, 2] / (pose[:, 2] @ pose[:, 2])
     assert ahead >= 0
@@ -118,8 +118,8 @@ def test_the_struct_and_its_bytes_have_the_same_members():
     scene = scene_of()
     members = re.findall(r"  (\w+): (\w+),", struct_text())
     assert members == list(SCALARS)
-    offsets = packing.packed(scene).offsets
-    data = parameter_bytes(ask_of(scene), lamp_of(DAY, scene), scene, offsets, 36)
+    offsets = packing.pack_scene(scene).offsets
+    data = parameter_bytes(ask_of(scene), shading_parameters(DAY, scene), scene, offsets, 36)
     assert len(data) % 16 == 0
     words = np.frombuffer(data, np.uint32)
     names = [name for name, _ in SCALARS]
@@ -129,7 +129,7 @@ def test_the_struct_and_its_bytes_have_the_same_members():
 
 
 def test_the_tone_is_a_table_of_light_and_a_table_of_the_screen():
-    lamp = lamp_of(DAY, scene_of())
+    lamp = shading_parameters(DAY, scene_of())
     words = tone_words(lamp)
     assert np.array_equal(words[:256].view(np.float32), lamp.tone.decode)
     assert np.array_equal(words[AT_ENCODE:AT_CORNERS].view(np.uint8), lamp.tone.encode)
@@ -159,9 +159,9 @@ def test_the_shader_names_each_binding_once_and_few_enough():
 def test_a_plan_covers_a_picture_within_its_bytes(size, samples):
     ask = ask_of(scene_of(), size, ("colour", "opaque", "normal"), samples)
     for pictures in (1, 1000, None):
-        plan = plan_of(ask, pictures)
+        plan = plan_submissions(ask, pictures)
         assert 1 <= plan.band_rows <= size[0]
-        assert 1 <= plan.jobs <= MOST_JOBS
+        assert 1 <= plan.jobs <= MAX_JOBS
         assert plan.words == plan.band_rows * size[1] * ask.layout.planes
         assert 4 * plan.words * plan.jobs <= 64 << 20
 

@@ -13,8 +13,8 @@ from test_render_cubes import random_entity
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.rendering import LookLight, prepare_scene, render_parallel, render_volume
-from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.editable_scene import LiveScene
+from world2minecraft.rendering.block_models import BuiltinModels
+from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.gpu import GpuRenderer
 from world2minecraft.rendering.gpu import readback_buffers as slots
 from world2minecraft.rendering.light_parameters import NEUTRAL
@@ -65,7 +65,7 @@ def test_models_that_nobody_would_make_equal_the_kernels(seed):
 @pytest.mark.parametrize("seed", range(2))
 def test_panes_and_furniture_in_our_own_looks_equal_the_kernels(seed):
     volume = storeys((16, 8, 16), ground=0, furnished=0.2, seed=seed)
-    scene = prepare_scene(volume, OwnLooks(16))
+    scene = prepare_scene(volume, BuiltinModels(16))
     gpu = gpu_of(scene)
     for pose in poses_in(volume, 3, seed):
         how = {"outputs": EVERYTHING, "light": LIGHTS["sun"]}
@@ -157,7 +157,7 @@ def test_bands_and_batches_of_any_size_change_nothing(slot_bytes, monkeypatch):
     scene, poses = many(count=3)
     gpu = gpu_of(scene)
     whole = list(gpu.render_many(CAMERA, poses, outputs=EVERYTHING))
-    cut = slots.plan_of
+    cut = slots.plan_submissions
     monkeypatch.setattr(
         "world2minecraft.rendering.gpu.renderer.plan_of",
         lambda ask, pictures: cut(ask, pictures, slot_bytes),
@@ -192,7 +192,7 @@ def test_an_update_shows_the_new_blocks():
 def test_blocks_set_in_a_live_scene_are_there_after_an_update():
     rng = np.random.default_rng(13)
     volume = random_volume(rng)
-    live, pose = LiveScene(volume), random_pose(rng, volume)
+    live, pose = EditableScene(volume), random_pose(rng, volume)
     gpu = gpu_of(live.scene)
     cells = np.argwhere(volume.states == 0)[::3]
     live.set_blocks(cells, ["minecraft:sea_lantern"] * len(cells), semantic=7)

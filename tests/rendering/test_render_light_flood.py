@@ -8,7 +8,12 @@ from tests.rendering.light_worlds import PALETTE, SLOW_SHAPES, random_world
 
 from world2minecraft.minecraft.rules.light import DIMS, SHUT, SOLID
 from world2minecraft.rendering.light import light_field
-from world2minecraft.rendering.light.propagation import light_rows, units, whole_reach, word_of
+from world2minecraft.rendering.light.propagation import (
+    light_tables,
+    light_units,
+    opacity_word,
+    rounded_reach,
+)
 
 TOP = 15
 
@@ -112,23 +117,23 @@ def test_a_roof_of_slabs_or_stairs_keeps_a_room_dark():
 
 
 def test_what_states_are_to_light():
-    assert word_of("minecraft:air") == 0
-    assert word_of("minecraft:stone") == SHUT | SOLID
-    assert word_of("minecraft:tinted_glass") == SHUT | SOLID
-    assert word_of("minecraft:glass") == 0
-    assert word_of("minecraft:ice") == DIMS
-    assert word_of("minecraft:oak_fence[waterlogged=true]") == DIMS
-    slab = word_of("minecraft:oak_slab[type=bottom]")
+    assert opacity_word("minecraft:air") == 0
+    assert opacity_word("minecraft:stone") == SHUT | SOLID
+    assert opacity_word("minecraft:tinted_glass") == SHUT | SOLID
+    assert opacity_word("minecraft:glass") == 0
+    assert opacity_word("minecraft:ice") == DIMS
+    assert opacity_word("minecraft:oak_fence[waterlogged=true]") == DIMS
+    slab = opacity_word("minecraft:oak_slab[type=bottom]")
     assert [slab >> 4 * side & 15 for side in range(6)] == [3, 3, 15, 0, 5, 5]
-    words, gives = light_rows(("minecraft:air", "minecraft:lantern"))
+    words, gives = light_tables(("minecraft:air", "minecraft:lantern"))
     assert words[0] == SHUT
     assert gives.tolist() == [0, 0, 15]
 
 
 def test_a_reach_out_of_range_is_refused():
     with pytest.raises(ValueError, match=r"^reach may be 1 to 16 blocks a light level, not 0.5$"):
-        whole_reach(0.5)
-    assert units(15, whole_reach(16)) == 240
+        rounded_reach(0.5)
+    assert light_units(15, rounded_reach(16)) == 240
 
 
 @pytest.mark.parametrize("shape", [(0, 3, 3), (1, 1, 1), (3, 1, 2)])

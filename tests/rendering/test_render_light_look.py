@@ -14,12 +14,12 @@ from world2minecraft.rendering.light import (
 )
 from world2minecraft.rendering.light.sky import sky_at, sun_direction
 from world2minecraft.rendering.light.tone_mapping import (
-    develop,
     filmic_tone,
     linear_to_srgb,
     screen_tone,
     srgb_to_linear,
     tone_map,
+    tone_map_picture,
 )
 
 
@@ -177,7 +177,7 @@ def test_the_tone_map_keeps_order_and_never_reaches_white():
 def test_the_kernel_s_tone_is_numpy_s(tone):
     rng = np.random.default_rng(0)
     colours = rng.random((200, 3)) * 3
-    expected = develop(colours, tone)
+    expected = tone_map_picture(colours, tone)
     for colour, shown in zip(colours, expected, strict=True):
         assert on_screen(*colour, tone) == pytest.approx(tuple(shown), abs=1)
 

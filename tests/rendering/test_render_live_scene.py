@@ -11,8 +11,8 @@ from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.rendering import prepare_scene, render_volume
-from world2minecraft.rendering.editable_scene import LiveScene
-from world2minecraft.rendering.empty_space_boxes import edited_boxes, empty_boxes
+from world2minecraft.rendering.editable_scene import EditableScene
+from world2minecraft.rendering.empty_space_boxes import find_empty_boxes, update_empty_boxes
 from world2minecraft.rendering.scene_tables import BOXES, FULL
 
 OUTPUTS = ("colour", "semantic", "instance", "opaque")
@@ -36,22 +36,22 @@ def test_boxes_stay_air_and_hold_their_cells_through_edits(seed):
     rng = np.random.default_rng(seed)
     shape = tuple(rng.integers(2, 9, 3))
     kinds = np.where(rng.random(shape) < 0.2, FULL, 0).astype(np.int8)
-    space, bounds = empty_boxes(kinds)
+    space, bounds = find_empty_boxes(kinds)
     for _ in range(6):
         cells = np.stack([rng.integers(0, side, 4) for side in shape], axis=1)
         new = rng.choice([FULL, BOXES, 0], 4).astype(np.int8)
         for cell, kind in zip(cells, new, strict=True):
             kinds[tuple(cell)] = kind
-        bounds = edited_boxes(space, bounds, cells, new)
+        bounds = update_empty_boxes(space, bounds, cells, new)
         assert_boxes_fit(space, bounds, kinds)
 
 
 def test_a_table_of_boxes_that_grew_too_long_is_made_anew():
     kinds = np.zeros((24, 24, 1), np.int8)
-    space, bounds = empty_boxes(kinds)
+    space, bounds = find_empty_boxes(kinds)
     cells = np.argwhere(np.indices((24, 24)).sum(axis=0) % 2 == 0)
     cells = np.pad(cells, ((0, 0), (0, 1)))
-    bounds = edited_boxes(space, bounds, cells, np.full(len(cells), FULL, np.int8))
+    bounds = update_empty_boxes(space, bounds, cells, np.full(len(cells), FULL, np.int8))
     kinds[tuple(cells.T)] = FULL
     assert len(bounds) == (kinds == 0).sum()
     assert_boxes_fit(space, bounds, kinds)
@@ -61,7 +61,7 @@ def test_a_table_of_boxes_that_grew_too_long_is_made_anew():
 def test_after_edits_the_scene_draws_what_a_new_one_draws(seed):
     rng = np.random.default_rng(seed)
     volume = random_volume(rng, share=0.15)
-    live = LiveScene(volume, LOOKS)
+    live = EditableScene(volume, LOOKS)
     states = volume.states.copy()
     semantic, instance = volume.semantic.copy(), volume.instance.copy()
     for step in range(5):
@@ -95,7 +95,7 @@ def _inner(anew, live) -> np.ndarray:
 def test_the_volume_that_was_given_never_changes():
     volume = random_volume(np.random.default_rng(3))
     before = volume.semantic.copy(), volume.instance.copy(), volume.states.copy()
-    live = LiveScene(volume, LOOKS)
+    live = EditableScene(volume, LOOKS)
     live.set_blocks(np.array([[1, 1, 1]]), [PALETTE[1]], semantic=7, instance=9)
     for old, new in zip(before, (volume.semantic, volume.instance, volume.states), strict=True):
         assert np.array_equal(old, new)
@@ -105,7 +105,7 @@ def test_the_volume_that_was_given_never_changes():
 def test_a_state_that_no_palette_had_is_drawn():
     states = np.zeros((7, 3, 3), np.int64)
     states[6] = 1
-    live = LiveScene(volume_of(states, scale=1.0))
+    live = EditableScene(volume_of(states, scale=1.0))
     live.set_blocks(np.array([[4, 1, 1]]), ["minecraft:gold_block"], semantic=11)
     assert live.volume_states[1][-1] == "minecraft:gold_block"
     pose = np.linalg.inv(live.scene.room_to_grid)
@@ -122,7 +122,7 @@ def test_a_state_that_no_palette_had_is_drawn():
 def test_what_reached_out_goes_with_its_block():
     states = np.zeros((5, 6, 5), np.int64)
     states[2, 0, 2] = 4
-    live = LiveScene(volume_of(states, scale=1.0), LOOKS)
+    live = EditableScene(volume_of(states, scale=1.0), LOOKS)
     assert (live.scene.tables.space < 0).sum() == 4  # Four blocks tall.
     live.set_blocks(np.array([[2, 0, 2]]), ["minecraft:air"])
     assert (live.scene.tables.space < 0).sum() == 0
@@ -131,7 +131,7 @@ def test_what_reached_out_goes_with_its_block():
 
 
 def test_bad_edits_are_refused():
-    live = LiveScene(random_volume(np.random.default_rng(4)), LOOKS)
+    live = EditableScene(random_volume(np.random.default_rng(4)), LOOKS)
     with pytest.raises(UsageError, match=r"^cell \(9, 0, 0\) is not in the volume of \(9, 7, 8\)$"):
         live.set_blocks(np.array([[9, 0, 0]]), [PALETTE[1]])
     with pytest.raises(UsageError, match="^1 cells need as many states, not 2$"):

@@ -6,8 +6,13 @@ import pytest
 from world2minecraft.minecraft.block_states import known_blocks, states_of
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 from world2minecraft.rendering.block_elements import BlockModel, Element
-from world2minecraft.rendering.block_models import OwnLooks, stand_in_share, stand_ins
-from world2minecraft.rendering.block_models.models import QUARTERS, model_of, quarter, turned
+from world2minecraft.rendering.block_models import BuiltinModels, stand_in_share, stand_ins
+from world2minecraft.rendering.block_models.models import (
+    QUARTERS,
+    model_of,
+    rotate_element,
+    rotation_from_north,
+)
 
 STATES_EACH = 9  # Spread over all of a block: every facing, half and shape comes up somewhere.
 UNSEEN = ("air", "barrier", "light", "structure_void", "moving_piston")
@@ -116,8 +121,8 @@ def test_no_two_faces_of_a_model_lie_in_one_place():
 def test_each_facing_is_the_northern_one_turned(state):
     north = model_of(state.format("north"))
     for facing in QUARTERS:
-        turn = quarter(facing)
-        moved = BlockModel(tuple(turned(one, turn) for one in north.elements))
+        turn = rotation_from_north(facing)
+        moved = BlockModel(tuple(rotate_element(one, turn) for one in north.elements))
         assert painted(moved) == painted(model_of(state.format(facing)))
 
 
@@ -126,7 +131,7 @@ def test_four_quarter_turns_are_none():
         model = model_of(state)
         elements = model.elements
         for _ in range(4):
-            elements = tuple(turned(one, quarter("east")) for one in elements)
+            elements = tuple(rotate_element(one, rotation_from_north("east")) for one in elements)
         assert painted(BlockModel(elements)) == painted(model)
 
 
@@ -136,7 +141,10 @@ def test_signs_turn_by_sixteenths_and_heads_look_the_other_way():
     for name in ("oak_sign", "red_banner", "oak_hanging_sign"):
         there = model_of(f"{name}[rotation=4]")
         moved = BlockModel(
-            tuple(turned(one, quarter("east")) for one in model_of(f"{name}[rotation=0]").elements)
+            tuple(
+                rotate_element(one, rotation_from_north("east"))
+                for one in model_of(f"{name}[rotation=0]").elements
+            )
         )
         assert painted(moved) == painted(there)
         assert all(one.turn is not None for one in model_of(f"{name}[rotation=1]").elements)
@@ -207,14 +215,14 @@ def test_lights_shine_and_burnt_out_ones_do_not():
     ],
 )
 def test_values_that_no_game_has_do_no_harm(state):
-    looks = OwnLooks()
+    looks = BuiltinModels()
     for element in looks.model(state).elements:
         for face in filter(None, element.faces):
             assert looks.texture(face.texture) is not None
 
 
 def test_a_block_that_no_rule_knows_is_drawn_and_marked():
-    model = OwnLooks().model("mod:oddity")
+    model = BuiltinModels().model("mod:oddity")
     assert model.stand_in
     assert len(model.elements) == 1
     states = ["minecraft:stone", "mod:oddity", "mod:oddity", "mod:red_glass_slab[type=top]"]

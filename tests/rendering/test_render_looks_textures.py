@@ -6,8 +6,12 @@ import pytest
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.block_states import known_blocks
-from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.block_models.face_pictures import letters_of, picture_of, pictures
+from world2minecraft.rendering.block_models import BuiltinModels
+from world2minecraft.rendering.block_models.face_pictures import (
+    letters_of,
+    load_pictures,
+    picture_of,
+)
 from world2minecraft.rendering.block_models.models import model_of
 from world2minecraft.rendering.block_models.rules import material_of
 from world2minecraft.rendering.block_models.texture_recipes import (
@@ -23,7 +27,7 @@ def textures_of(state: str) -> set[str]:
 
 
 def test_all_textures_of_all_blocks_can_be_made():
-    looks = OwnLooks()
+    looks = BuiltinModels()
     names = set().union(*(textures_of(block) for block in known_blocks()))
     assert len(names) > 500
     for name in sorted(names):
@@ -36,7 +40,7 @@ def test_blocks_have_their_own_colour():
     for name in ("oak_planks", "red_wool", "stone", "lime_concrete", "white_terracotta"):
         (texture,) = textures_of(name)
         assert split_recipe(texture)[1][0] == colour_of(name)
-        made = OwnLooks().texture(texture)
+        made = BuiltinModels().texture(texture)
         assert made is not None
         assert np.abs(made.colour[..., :3].mean((0, 1)) - colour_of(name)).max() <= 2
 
@@ -79,7 +83,7 @@ def test_slabs_go_on_in_the_pattern_of_their_block():
 
 
 def test_pictures_are_square_and_all_letters_are_known():
-    for name, picture in pictures().items():
+    for name, picture in load_pictures().items():
         letters = letters_of(picture)
         assert letters.ndim == 2, name
         assert letters.shape[0] == letters.shape[1], name
@@ -103,4 +107,4 @@ def test_a_picture_keeps_its_place_at_any_size():
 def test_unknown_pictures_and_foreign_names():
     with pytest.raises(UnknownNameError, match="no picture is named 'tnt_sid'"):
         picture_of("own:picture#808080?name=tnt_sid", 16)
-    assert OwnLooks().texture("minecraft:block/stone") is None
+    assert BuiltinModels().texture("minecraft:block/stone") is None

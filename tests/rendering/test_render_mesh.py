@@ -15,7 +15,7 @@ from world2minecraft.rendering.light.settings import (
     NEUTRAL_HEADLIGHT,
 )
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
-from world2minecraft.rendering.mesh.baking import CORNERS, merged
+from world2minecraft.rendering.mesh.baking import CORNERS, merge_faces
 
 PALETTE = (
     "minecraft:air",
@@ -239,7 +239,7 @@ def test_faces_are_joined_to_the_same_surface():
     cells = np.argwhere(mask)
     look = rng.integers(-1, 3, len(cells))
     for side in range(6):
-        found = merged(cells, np.full(len(cells), side), look)
+        found = merge_faces(cells, np.full(len(cells), side), look)
         covered = {}
         for first, length in zip(found.first, found.length, strict=True):
             for step in np.ndindex(*length):

@@ -5,7 +5,7 @@ import pytest
 from oracle import NO_FACE, SIGNS, cast, has_face, meet, oracle_picture
 from scenes import CAMERA, random_pose, random_volume, slow_picture, volume_of
 
-from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, face_uv
+from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, face_uv
 from world2minecraft.rendering.texture import Texture
 
 SOLID = Texture(np.full((16, 16, 4), 255, np.uint8))
@@ -16,7 +16,7 @@ TEXTURES = {"solid": SOLID, "half": Texture(HALF), "tinted": Texture(HALF, trans
 
 def box(low=(0, 0, 0), high=(1, 1, 1), texture: str | None = "solid", turn=None) -> Element:
     looks = (
-        None if texture is None else FaceLook(texture, face_uv(side, low, high, (0, 0, 16, 16)))
+        None if texture is None else ElementFace(texture, face_uv(side, low, high, (0, 0, 16, 16)))
         for side in range(6)
     )
     return Element(low, high, tuple(looks), turn)

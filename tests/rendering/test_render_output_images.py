@@ -22,11 +22,11 @@ from world2minecraft.rendering.output import (
     depth_bytes,
     exr_bytes,
     file_name,
+    id_names,
     index_bytes,
     layers_named,
     needs_of,
     number_bytes,
-    table_of_names,
 )
 
 depths = hnp.arrays(
@@ -194,7 +194,7 @@ def test_layers_have_their_files():
 
 def test_the_table_says_what_numbers_mean():
     volume = random_volume(np.random.default_rng(1))
-    table = table_of_names(volume)
+    table = id_names(volume)
     assert table["state"]["0"] == "minecraft:air"
     assert table["state"]["6"] == "minecraft:red_concrete"
     assert table["class"]["5"] == "chair"

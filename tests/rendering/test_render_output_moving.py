@@ -124,6 +124,6 @@ def test_no_frame_and_other_suffixes_are_told(tmp_path):
 
 
 def test_too_many_frames_are_told_before_memory_ends(tmp_path, monkeypatch):
-    monkeypatch.setattr(moving, "MOST_HELD_BYTES", 2 * 36 * 48 * 3)
+    monkeypatch.setattr(moving, "MAX_BUFFERED_BYTES", 2 * 36 * 48 * 3)
     with pytest.raises(LimitError, match="over 2 frames of this size; take fewer, smaller, or"):
         write(tmp_path / "a.gif")

@@ -2,11 +2,11 @@
 
 import pytest
 
-from world2minecraft.rendering.resource_packs.model_json import Part, parts_of
+from world2minecraft.rendering.resource_packs.model_json import ModelPart, select_parts
 
 
 def models(root, **properties) -> list[str]:
-    return [part.model for part in parts_of(root, properties)]
+    return [part.model for part in select_parts(root, properties)]
 
 
 def test_a_variant_is_found_by_a_part_of_the_properties():
@@ -28,7 +28,7 @@ def test_a_property_that_a_state_lacks_counts_as_any():
 def test_no_variant_says_for_what():
     root = {"variants": {"axis=x": {"model": "a"}}}
     with pytest.raises(ValueError, match=r"^has no variant for 'axis=z'$"):
-        parts_of(root, {"axis": "z"})
+        select_parts(root, {"axis": "z"})
 
 
 def test_of_a_list_the_heaviest_counts_and_the_first_of_equals():
@@ -40,7 +40,7 @@ def test_of_a_list_the_heaviest_counts_and_the_first_of_equals():
 
 def test_turns_and_lock_are_read():
     turned = {"model": "a", "x": 90, "y": 270, "z": -90, "uvlock": True}
-    assert parts_of({"variants": {"": turned}}, {}) == (Part("a", 90, 270, 270, True),)
+    assert select_parts({"variants": {"": turned}}, {}) == (ModelPart("a", 90, 270, 270, True),)
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_turns_and_lock_are_read():
 def test_conditions(when, holds):
     state = {"north": "true", "up": "true", "height": "low", "level": "3"}
     root = {"multipart": [{"when": when, "apply": {"model": "a"}}]}
-    assert bool(parts_of(root, state)) == holds
+    assert bool(select_parts(root, state)) == holds
 
 
 def test_all_cases_that_hold_are_drawn_in_order():
@@ -80,8 +80,8 @@ def test_all_cases_that_hold_are_drawn_in_order():
             {"when": {"east": "true"}, "apply": {"model": "side", "y": 90, "uvlock": True}},
         ]
     }
-    parts = parts_of(root, {"north": "false", "east": "true"})
-    assert parts == (Part("post"), Part("side", y_deg=90, uv_lock=True))
+    parts = select_parts(root, {"north": "false", "east": "true"})
+    assert parts == (ModelPart("post"), ModelPart("side", y_deg=90, uv_lock=True))
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_all_cases_that_hold_are_drawn_in_order():
 )
 def test_what_is_wrong_is_said(root, text):
     with pytest.raises(ValueError) as caught:
-        parts_of(root, {"a": "b"})
+        select_parts(root, {"a": "b"})
     assert str(caught.value) == text
 
 
@@ -113,4 +113,4 @@ def test_conditions_nested_without_end_are_refused():
     for _ in range(40):
         when = {"OR": [when]}
     with pytest.raises(ValueError, match="nested too deep"):
-        parts_of({"multipart": [{"when": when, "apply": {"model": "a"}}]}, {"a": "b"})
+        select_parts({"multipart": [{"when": when, "apply": {"model": "a"}}]}, {"a": "b"})

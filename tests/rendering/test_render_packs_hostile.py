@@ -22,7 +22,7 @@ from pack_making import (
 )
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 from world2minecraft.rendering.resource_packs import pack_files as archive
 from world2minecraft.rendering.resource_packs import pack_files as resources
 
@@ -35,13 +35,13 @@ TEACHES = (
 
 def refusal(path, kind: type[InputError] = DamagedFileError) -> str:
     with pytest.raises(kind) as caught:
-        PackLooks([path])
+        ResourcePackModels([path])
     assert type(caught.value) is kind
     return caught.value.reason
 
 
 def problem(tmp_path, files, state="minecraft:thing") -> str:
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model(state) is None
     assert looks.problem_count == len(looks.problems) == 1
     told = "1 thing of the packs could not be read, the first: " + looks.problems[0]
@@ -87,14 +87,14 @@ def test_packs_of_other_kinds_are_told_apart(tmp_path):
 
 def test_a_zip_with_its_folder_around_it_is_read(tmp_path):
     files = {f"MyPack/{name}": value for name, value in cube_files("stone", RED).items()}
-    assert PackLooks([zip_pack(tmp_path / "a.zip", files)]).model("stone") is not None
+    assert ResourcePackModels([zip_pack(tmp_path / "a.zip", files)]).model("stone") is not None
 
 
 def test_a_zip_that_lists_too_much_is_refused_unread(tmp_path):
     path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
     data = bytearray(path.read_bytes())
     at = data.rfind(b"PK\x05\x06")
-    data[at + 12 : at + 16] = (archive.MOST_DIRECTORY_BYTES + 1).to_bytes(4, "little")
+    data[at + 12 : at + 16] = (archive.MAX_DIRECTORY_BYTES + 1).to_bytes(4, "little")
     path.write_bytes(data)
     assert refusal(path, LimitError) == "lists more than 400,000 files"
 
@@ -104,7 +104,7 @@ def test_a_large_zip_that_lists_too_much_is_refused_unread(tmp_path):
     path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
     data = path.read_bytes()
     at = data.rfind(b"PK\x05\x06")
-    most = (archive.MOST_DIRECTORY_BYTES + 1).to_bytes(8, "little")
+    most = (archive.MAX_DIRECTORY_BYTES + 1).to_bytes(8, "little")
     record = b"PK\x06\x06" + bytes(36) + most + bytes(8)
     locator = b"PK\x06\x07" + bytes(4) + at.to_bytes(8, "little") + bytes(4)
     path.write_bytes(data[:at] + record + locator + data[at:])
@@ -112,7 +112,7 @@ def test_a_large_zip_that_lists_too_much_is_refused_unread(tmp_path):
 
 
 def test_too_many_files_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(archive, "MOST_FILES", 2)
+    monkeypatch.setattr(archive, "MAX_FILES", 2)
     path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
     assert refusal(path, LimitError) == "lists 3 files; at most 2 are read"
     folder = folder_pack(tmp_path / "b", cube_files("stone", RED))
@@ -122,13 +122,13 @@ def test_too_many_files_are_refused(tmp_path, monkeypatch):
 def test_a_bomb_is_not_unpacked(tmp_path):
     files = cube_files("thing", RED)
     files[MODEL.format("thing")] = b" " * (3 << 20)
-    looks = PackLooks([zip_pack(tmp_path / "a.zip", files)])
+    looks = ResourcePackModels([zip_pack(tmp_path / "a.zip", files)])
     assert looks.model("thing") is None
     assert looks.problems[0].startswith(
         "assets/minecraft/models/block/thing.json of a.zip: unpacks to "
     )
     files[MODEL.format("thing")] = b" " * (5 << 20)
-    looks = PackLooks([zip_pack(tmp_path / "b.zip", files)])
+    looks = ResourcePackModels([zip_pack(tmp_path / "b.zip", files)])
     assert looks.model("thing") is None
     assert looks.problems[0].endswith("has 5,242,880 bytes; at most 4,194,304 are read")
 
@@ -140,7 +140,7 @@ def test_a_damaged_member_falls_through(tmp_path):
             stored.writestr(name, content(value))
     data = path.read_bytes()
     path.write_bytes(data.replace(b'"elements"', b'"elementz"', 1))
-    looks = PackLooks([path])
+    looks = ResourcePackModels([path])
     assert looks.model("thing") is None
     assert "cannot be unpacked (Bad CRC-32" in looks.problems[0]
 
@@ -157,7 +157,7 @@ def test_names_never_lead_out_of_a_pack(tmp_path):
 
 def test_names_in_a_zip_are_only_keys(tmp_path):
     files = cube_files("thing", RED) | {"../assets/minecraft/blockstates/evil.json": {}}
-    looks = PackLooks([zip_pack(tmp_path / "a.zip", files)])
+    looks = ResourcePackModels([zip_pack(tmp_path / "a.zip", files)])
     assert looks.model("thing") is not None
     assert looks.model("evil") is None
 
@@ -170,13 +170,13 @@ def test_links_and_pipes_in_a_folder_are_left_out(tmp_path):
     if hasattr(os, "mkfifo"):
         os.mkfifo(pack / PICTURE.format("endless"))
     for name in ("linked", "endless"):
-        assert PackLooks([pack]).texture(f"minecraft:block/{name}") is None
+        assert ResourcePackModels([pack]).texture(f"minecraft:block/{name}") is None
 
 
 def test_a_broken_file_falls_through_to_the_pack_below(tmp_path):
     good = folder_pack(tmp_path / "good", cube_files("thing", RED))
     bad = {BLOCK.format("thing"): b"{,", PICTURE.format("thing"): b"\x89PNG"}
-    looks = PackLooks([good, folder_pack(tmp_path / "bad", bad)])
+    looks = ResourcePackModels([good, folder_pack(tmp_path / "bad", bad)])
     assert looks.model("thing") is not None
     assert looks.problem_count == 2
     assert looks.problems[0].startswith(
@@ -267,29 +267,29 @@ def test_parts_and_blocks_without_end(tmp_path, monkeypatch):
         "minecraft:thing: its models have more than 2,048 elements together"
     )
     monkeypatch.setattr(
-        "world2minecraft.rendering.resource_packs.pack_models.MOST_ELEMENTS_OF_ALL", 0
+        "world2minecraft.rendering.resource_packs.pack_models.MAX_TOTAL_ELEMENTS", 0
     )
     assert problem(tmp_path / "b", cube_files("thing", RED)) == (
         "minecraft:thing: comes after 0 elements of other blocks"
     )
-    monkeypatch.setattr(resources, "MOST_JSON_BYTES_OF_ALL", 9)
+    monkeypatch.setattr(resources, "MAX_TOTAL_JSON_BYTES", 9)
     assert "more than 9 bytes of JSON" in problem(tmp_path / "c", cube_files("thing", RED))
 
 
 def test_problems_are_counted_and_only_some_are_kept(tmp_path):
     files = {BLOCK.format(f"thing_{index}"): b"no" for index in range(70)}
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     for _ in range(2):
         assert all(looks.model(f"thing_{index}") is None for index in range(70))
     assert looks.problem_count == 70
-    assert len(looks.problems) == resources.MOST_PROBLEMS
+    assert len(looks.problems) == resources.MAX_PROBLEMS
     assert looks.summary.startswith(
         "70 things of the packs could not be read, the first: assets/minecraft/blockstates/thing_0"
     )
 
 
 def test_nothing_is_said_of_a_good_pack(tmp_path):
-    looks = PackLooks([folder_pack(tmp_path / "pack", cube_files("stone", RED))])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", cube_files("stone", RED))])
     assert looks.model("stone") is not None
     assert (looks.summary, looks.problems) == ("", [])
 
@@ -299,7 +299,7 @@ def test_nothing_is_said_of_a_good_pack(tmp_path):
 )
 def test_a_broken_description_does_not_lose_the_pack(tmp_path, meta):
     files = cube_files("stone", RED) | {"pack.mcmeta": meta}
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model("stone") is not None
     assert looks.problem_count == 1
 
@@ -339,7 +339,7 @@ def test_values_of_any_kind_never_escape_as_errors(tmp_path_factory, state, mode
         PICTURE.format("thing") + ".mcmeta": json.dumps({"animation": meta}).encode(),
         "pack.mcmeta": json.dumps({"overlays": meta}).encode(),
     }
-    looks = PackLooks([folder_pack(tmp_path_factory.mktemp("pack"), files)])
+    looks = ResourcePackModels([folder_pack(tmp_path_factory.mktemp("pack"), files)])
     for name in ("thing", "other"):
         model = looks.model(name)
         assert model is None or model.elements
@@ -352,9 +352,9 @@ def test_bytes_of_any_kind_never_escape_as_errors(tmp_path_factory, data):
     broken = content(RED)[:at] + data
     path = tmp_path_factory.mktemp("pack")
     files |= {PICTURE.format("thing"): broken, BLOCK.format("other"): data}
-    looks = PackLooks([folder_pack(path / "a", files)])
+    looks = ResourcePackModels([folder_pack(path / "a", files)])
     looks.model("thing")
     looks.model("other")
     (path / "b.zip").write_bytes(data + b"PK\x05\x06" + data)
     with pytest.raises(InputError):
-        PackLooks([path / "b.zip"])
+        ResourcePackModels([path / "b.zip"])

@@ -6,14 +6,14 @@ from pack_making import PICTURE, folder_pack, plain
 
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 from world2minecraft.rendering.block_elements import FACE_NAMES, BlockModel
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 
 RED = plain(200, 0, 0)
 
 
 def model_of(tmp_path, state: str, *pictures: str) -> BlockModel | None:
     files = {PICTURE.format(name): RED for name in pictures}
-    return PackLooks([folder_pack(tmp_path / "pack", files)]).model(state)
+    return ResourcePackModels([folder_pack(tmp_path / "pack", files)]).model(state)
 
 
 def sides_of(model: BlockModel | None) -> dict[str, str]:
@@ -99,7 +99,7 @@ def test_blocks_of_newer_games_and_mods_are_cubes_or_crosses(tmp_path):
     flower = RED.copy()
     flower[:, :5] = 0
     files = {PICTURE.format("open_eyeblossom"): flower}
-    looks = PackLooks([folder_pack(tmp_path / "flowers", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "flowers", files)])
     plant = looks.model("minecraft:open_eyeblossom")
     assert plant is not None and plant.elements[0].turn is not None
 
@@ -121,7 +121,7 @@ def test_a_model_that_lacks_its_parent_wears_its_texture_all_the_same(tmp_path):
         "assets/minecraft/blockstates/stone.json": {"variants": {"": {"model": "block/stone"}}},
         "assets/minecraft/models/block/stone.json": {"parent": "block/cube_all"},
     }
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.model("stone") is not None
     assert looks.problems == [
         "minecraft:stone: model block/stone: its parent minecraft:block/cube_all is in none of the "

@@ -16,17 +16,17 @@ from pack_making import (
 )
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.rendering.block_elements import FACE_NAMES, BlockModel, LookStack
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.block_elements import FACE_NAMES, BlockModel, ModelSourceStack
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 
 RED, GREEN, BLUE = plain(200, 0, 0), plain(0, 200, 0), plain(0, 0, 200)
 
 
-def looks_of(tmp_path, files, **options) -> PackLooks:
-    return PackLooks([folder_pack(tmp_path / "pack", files)], **options)
+def looks_of(tmp_path, files, **options) -> ResourcePackModels:
+    return ResourcePackModels([folder_pack(tmp_path / "pack", files)], **options)
 
 
-def model_of(looks: PackLooks, state: str) -> BlockModel:
+def model_of(looks: ResourcePackModels, state: str) -> BlockModel:
     model = looks.model(state)
     assert model is not None, looks.problems
     return model
@@ -37,7 +37,7 @@ def textures_by_side(model: BlockModel, index: int = 0) -> dict[str, str]:
     return {name: face.texture for name, face in faces if face is not None}
 
 
-def colour_at(looks: PackLooks, state: str) -> list[int]:
+def colour_at(looks: ResourcePackModels, state: str) -> list[int]:
     face = model_of(looks, state).elements[0].faces[0]
     assert face is not None
     texture = looks.texture(face.texture)
@@ -47,7 +47,7 @@ def colour_at(looks: PackLooks, state: str) -> list[int]:
 
 @pytest.mark.parametrize("make", [folder_pack, zip_pack])
 def test_a_cube_of_one_texture(tmp_path, make):
-    looks = PackLooks([make(tmp_path / "pack.zip", cube_files("stone", RED))])
+    looks = ResourcePackModels([make(tmp_path / "pack.zip", cube_files("stone", RED))])
     model = model_of(looks, "minecraft:stone")
     (element,) = model.elements
     assert (element.low, element.high, element.turn) == ((0, 0, 0), (1, 1, 1), None)
@@ -61,9 +61,9 @@ def test_a_cube_of_one_texture(tmp_path, make):
 def test_the_last_pack_wins_file_by_file(tmp_path):
     jar = zip_pack(tmp_path / "client.jar", cube_files("stone", RED) | cube_files("dirt", BLUE))
     pack = folder_pack(tmp_path / "mine", {PICTURE.format("stone"): GREEN})
-    assert colour_at(PackLooks([jar, pack]), "stone") == [0, 200, 0, 255]
-    assert colour_at(PackLooks([jar, pack]), "dirt") == [0, 0, 200, 255]
-    assert colour_at(PackLooks([pack, jar]), "stone") == [200, 0, 0, 255]
+    assert colour_at(ResourcePackModels([jar, pack]), "stone") == [0, 200, 0, 255]
+    assert colour_at(ResourcePackModels([jar, pack]), "dirt") == [0, 0, 200, 255]
+    assert colour_at(ResourcePackModels([pack, jar]), "stone") == [200, 0, 0, 255]
 
 
 def test_a_stack_asks_the_packs_first_and_ours_for_the_rest(tmp_path):
@@ -76,7 +76,7 @@ def test_a_stack_asks_the_packs_first_and_ours_for_the_rest(tmp_path):
         def texture(self, name):
             return None
 
-    stack = LookStack((packs, Ours()))
+    stack = ModelSourceStack((packs, Ours()))
     assert stack.model("stone") is packs.model("stone")
     assert stack.model("minecraft:chest").stand_in
     assert packs.texture("own:stone#888888") is None
@@ -88,7 +88,7 @@ def test_mods_have_namespaces_of_their_own(tmp_path):
         "assets/tmeo/models/block/chair.json": {**CUBE, "textures": {"all": "tmeo:block/seat"}},
         "assets/tmeo/textures/block/seat.png": RED,
     }
-    looks = PackLooks([zip_pack(tmp_path / "mod.jar", files)])
+    looks = ResourcePackModels([zip_pack(tmp_path / "mod.jar", files)])
     assert set(textures_by_side(model_of(looks, "tmeo:chair")).values()) == {"tmeo:block/seat"}
     assert looks.model("minecraft:chair") is None
 
@@ -191,7 +191,7 @@ def tinted_block(block: str, index: int = 0) -> dict:
     return block_files(block, one_model(block), model, **{block: RED})
 
 
-def tints_of(looks: PackLooks, state: str) -> dict:
+def tints_of(looks: ResourcePackModels, state: str) -> dict:
     faces = model_of(looks, state).elements[0].faces
     return {name: face.tint for name, face in zip(FACE_NAMES, faces, strict=True) if face}
 

@@ -9,9 +9,9 @@ from pack_making import PICTURE, block_files, cube_files, folder_pack, one_model
 from world2minecraft.core.coordinates import block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering import prepare_scene, render_volume
-from world2minecraft.rendering.block_elements import FACE_NAMES, LookStack
-from world2minecraft.rendering.plain_models import PlainLooks
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.block_elements import FACE_NAMES, ModelSourceStack
+from world2minecraft.rendering.plain_models import PlainModels
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 
 CAMERA = Camera(64, 48, 60.0, 60.0, 32.0, 24.0)
 COLOURS = {
@@ -45,8 +45,8 @@ def room(point) -> np.ndarray:
 
 
 def seen(tmp_path, files, states, side: str, target=(0.5, 0.5, 0.5)):
-    packs = PackLooks([folder_pack(tmp_path / "pack", files)])
-    scene = prepare_scene(volume_of(*states), LookStack((packs, PlainLooks())))
+    packs = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
+    scene = prepare_scene(volume_of(*states), ModelSourceStack((packs, PlainModels())))
     eye = np.array(target) + AWAY[side]
     return render_volume(scene, CAMERA, look_at(room(eye), room(target)))
 
@@ -143,8 +143,8 @@ def test_a_pool_has_no_walls_within(tmp_path):
         volume = volume_of(*states)
         cells = np.minimum(volume.states, 2).astype(np.uint16)  # One state of water.
         volume = replace(volume, states=cells, palette=volume.palette[:3])
-        packs = PackLooks([folder_pack(tmp_path / str(count), files)])
-        scene = prepare_scene(volume, LookStack((packs, PlainLooks())))
+        packs = ResourcePackModels([folder_pack(tmp_path / str(count), files)])
+        scene = prepare_scene(volume, ModelSourceStack((packs, PlainModels())))
         target = np.array([0.5, 0.5, count + 1])
         pose = look_at(room(target + np.array([0, 0, 3])), room(target))
         colour = render_volume(scene, CAMERA, pose).colour

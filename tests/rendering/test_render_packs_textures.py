@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pack_making import PICTURE, cube_files, folder_pack, plain, png
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.rendering.resource_packs import PackLooks
+from world2minecraft.rendering.resource_packs import ResourcePackModels
 from world2minecraft.rendering.resource_packs.textures import (
     decode_png,
     first_frame,
@@ -22,7 +22,7 @@ RED, GREEN, BLUE = plain(200, 0, 0), plain(0, 200, 0), plain(0, 0, 200)
 
 
 def texture_of(tmp_path, files, name="block/a", **options) -> Texture:
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)], **options)
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)], **options)
     texture = looks.texture(f"minecraft:{name}")
     assert texture is not None, looks.problems
     return texture
@@ -77,7 +77,7 @@ def test_a_tall_picture_without_animation_is_squeezed_whole(tmp_path):
 def test_a_broken_animation_shows_no_texture_and_says_why(tmp_path):
     files = {PICTURE.format("a"): RED}
     files[PICTURE.format("a") + ".mcmeta"] = {"animation": {"frames": [7]}}
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     assert looks.texture("minecraft:block/a") is None
     assert looks.problems == [
         "assets/minecraft/textures/block/a.png of pack: its first frame is 7, but it has 1"
@@ -103,7 +103,7 @@ def test_textures_become_squares_of_a_power_of_two(tmp_path, shape, most_px, sid
 def test_the_usual_size_is_that_of_most_textures(tmp_path, sides, most_px, usual):
     files = {PICTURE.format(f"t{n}"): plain(1, 2, 3, side=side) for n, side in enumerate(sides)}
     files |= {PICTURE.format("broken"): b"no", "assets/minecraft/textures/item/a.png": RED}
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)], most_px=most_px)
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)], most_px=most_px)
     assert looks.texture_px == usual
     assert looks.problems == []
 
@@ -111,13 +111,13 @@ def test_the_usual_size_is_that_of_most_textures(tmp_path, sides, most_px, usual
 def test_the_usual_size_is_that_of_the_highest_packs(tmp_path):
     jar = folder_pack(tmp_path / "jar", {PICTURE.format("a"): RED})
     fine = folder_pack(tmp_path / "fine", {PICTURE.format("a"): plain(1, 2, 3, side=32)})
-    assert PackLooks([jar, fine]).texture_px == 32
+    assert ResourcePackModels([jar, fine]).texture_px == 32
 
 
 def test_a_size_that_is_no_power_of_two_is_refused(tmp_path):
     folder = folder_pack(tmp_path / "pack", cube_files("stone", RED))
     with pytest.raises(UsageError, match="most_px must be a power of two such as 64, not 48"):
-        PackLooks([folder], most_px=48)
+        ResourcePackModels([folder], most_px=48)
 
 
 def slow_area(pixels: np.ndarray, side: int, times: int) -> np.ndarray:
@@ -171,7 +171,7 @@ def test_a_clear_block_makes_its_textures_clear_whatever_they_are_called(tmp_pat
     files = cube_files("tinted_glass", RED)
     files["assets/minecraft/models/block/tinted_glass.json"]["textures"] = {"all": "block/pale"}
     files[PICTURE.format("pale")] = plain(90, 90, 90, 120)
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     model = looks.model("tinted_glass")
     assert model is not None
     face = model.elements[0].faces[0]
@@ -226,7 +226,7 @@ def test_maps_of_an_animation_are_cut_like_it(tmp_path):
 
 def test_a_broken_map_is_left_out_and_said(tmp_path):
     files = {PICTURE.format("a"): RED, PICTURE.format("a_n"): b"no picture"}
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     texture = looks.texture("minecraft:block/a")
     assert texture is not None and texture.normal is None
     assert looks.problems == ["assets/minecraft/textures/block/a_n.png of pack: is no PNG"]
@@ -240,7 +240,7 @@ def test_joined_textures_keep_the_maps_of_what_is_seen(tmp_path):
         PICTURE.format("b"): over,
         PICTURE.format("b_s"): plain(255, 0, 0),
     }
-    looks = PackLooks([folder_pack(tmp_path / "pack", files)])
+    looks = ResourcePackModels([folder_pack(tmp_path / "pack", files)])
     texture = looks.texture("minecraft:block/a+minecraft:block/b*00ff00")
     assert texture is not None and texture.roughness is not None
     assert texture.colour[0, 0].tolist() == [0, 200, 0, 255]

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pack_making import look_up
 
-from world2minecraft.rendering.block_elements import FACE_NAMES, Element, FaceLook, face_uv
+from world2minecraft.rendering.block_elements import FACE_NAMES, Element, ElementFace, face_uv
 from world2minecraft.rendering.resource_packs.elements import (
-    carry,
+    apply_quarter_turn,
     element_of,
     free_turn,
     is_quarter,
@@ -89,7 +89,7 @@ def textures_of_faces(rng: np.random.Generator) -> dict[str, np.ndarray]:
     return {f"#{name}": rng.integers(0, 256, (16, 16, 4)).astype(np.uint8) for name in FACE_NAMES}
 
 
-def face_at(element: Element, point: np.ndarray) -> FaceLook:
+def face_at(element: Element, point: np.ndarray) -> ElementFace:
     """The face of an aligned element that a point on its surface, but no edge, belongs to."""
     sides = [
         2 * axis + end
@@ -123,7 +123,7 @@ def test_a_turned_block_shows_the_colours_of_the_slow_reference(x_deg, y_deg):
     rng = np.random.default_rng(x_deg * 7 + y_deg)
     low, high = BOX
     rect, rotation = (1, 2, 15, 13), 90
-    element = carry(
+    element = apply_quarter_turn(
         made(raw_element(low, high, uv=list(rect), rotation=rotation)), quarter_turn(x_deg, y_deg)
     )
     textures = textures_of_faces(rng)
@@ -146,7 +146,7 @@ def test_a_locked_texture_lies_as_on_a_box_made_in_the_new_place(x_deg, y_deg):
     """Each face keeps its texture, and has the texture points that its new side has by default."""
     matrix = quarter_turn(x_deg, y_deg)
     low, high = BOX
-    locked = carry(made(raw_element(low, high)), matrix, uv_lock=True)
+    locked = apply_quarter_turn(made(raw_element(low, high)), matrix, uv_lock=True)
     ends = np.array([locked.low, locked.high]) * 16
     for side, name in enumerate(FACE_NAMES):
         face = locked.faces[side]
@@ -164,8 +164,8 @@ def test_a_locked_part_of_a_texture_moves_with_its_place(y_deg):
     for name, face in stated["faces"].items():
         face["uv"] = list(default_rect(name, stated["from"], stated["to"]))
     turns = quarter_turn(0, y_deg)
-    a = carry(made(stated), turns, uv_lock=True)
-    b = carry(made(raw_element([8, 8, 0], [16, 16, 16])), turns, uv_lock=True)
+    a = apply_quarter_turn(made(stated), turns, uv_lock=True)
+    b = apply_quarter_turn(made(raw_element([8, 8, 0], [16, 16, 16])), turns, uv_lock=True)
     for one, other in zip(a.faces, b.faces, strict=True):
         assert one is not None and other is not None
         np.testing.assert_allclose(one.uv, other.uv, atol=1e-12)
@@ -191,7 +191,7 @@ def test_angles_are_counted_around(angle, same):
 def test_a_turn_and_its_inverse_leave_an_element_as_it_was(x, y, z):
     element = made(raw_element(*BOX))
     matrix = quarter_turn(x, y, z)
-    back = carry(carry(element, matrix), np.linalg.inv(matrix))
+    back = apply_quarter_turn(apply_quarter_turn(element, matrix), np.linalg.inv(matrix))
     assert back.low == pytest.approx(element.low) and back.high == pytest.approx(element.high)
     for one, other in zip(back.faces, element.faces, strict=True):
         assert one is not None and other is not None
@@ -213,7 +213,7 @@ def test_an_element_of_its_own_turn_keeps_its_box_and_gets_the_product():
     raw["rotation"] = {"origin": [8, 8, 8], "axis": "y", "angle": 45, "rescale": True}
     element = made(raw)
     assert element.turn is not None
-    moved = carry(element, quarter_turn(0, 90))
+    moved = apply_quarter_turn(element, quarter_turn(0, 90))
     assert (moved.low, moved.high) == (element.low, element.high)
     assert moved.turn is not None
     np.testing.assert_allclose(moved.turn, quarter_turn(0, 90) @ element.turn)
@@ -224,9 +224,11 @@ def test_an_element_of_its_own_turn_keeps_its_box_and_gets_the_product():
 def test_the_lock_of_a_turned_element_is_that_of_its_own_side():
     raw = raw_element([0, 0, 0], [16, 16, 16])
     raw["rotation"] = {"origin": [8, 8, 8], "axis": "y", "angle": 22.5}
-    locked = carry(made(raw), quarter_turn(0, 90), uv_lock=True)
+    locked = apply_quarter_turn(made(raw), quarter_turn(0, 90), uv_lock=True)
     up = locked.faces[FACE_NAMES.index("up")]
-    straight = carry(made(raw_element([0, 0, 0], [16, 16, 16])), quarter_turn(0, 90), uv_lock=True)
+    straight = apply_quarter_turn(
+        made(raw_element([0, 0, 0], [16, 16, 16])), quarter_turn(0, 90), uv_lock=True
+    )
     flat = straight.faces[FACE_NAMES.index("up")]
     assert up is not None and flat is not None
     np.testing.assert_allclose(up.uv, flat.uv @ quarter_turn(0, 90), atol=1e-12)

@@ -7,19 +7,19 @@ from scenes import volume_of
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering import LookLight, prepare_scene
-from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, face_uv
+from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, face_uv
 from world2minecraft.rendering.light.sky import sun_direction
-from world2minecraft.rendering.path_tracing import lamps_of
+from world2minecraft.rendering.path_tracing import emitters_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.light_sampling import UNSEEN_SOFT
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
 from world2minecraft.rendering.path_tracing.scattering import new_path
-from world2minecraft.rendering.path_tracing.sky_light import SkyLight, even_sky, sky_light
+from world2minecraft.rendering.path_tracing.sky_light import SkyLight, sky_light, uniform_sky
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.texture import Texture
 
 SMALL = Camera(32, 24, 24.0, 24.0, 16.0, 12.0)
-NO_SKY = even_sky(0.0, 0.0, 0.0)
+NO_SKY = uniform_sky(0.0, 0.0, 0.0)
 GREY_SRGB = 188  # 0.5 of linear light.
 GREY = ((GREY_SRGB / 255 + 0.055) / 1.055) ** 2.4
 
@@ -34,7 +34,7 @@ class OneGrey:
         if state in ("minecraft:air", "minecraft:light[level=15]"):
             return BlockModel()
         kind = self.kinds.get(state, "grey")
-        faces = tuple(FaceLook(kind, face_uv(side, (0, 0, 0), (1, 1, 1))) for side in range(6))
+        faces = tuple(ElementFace(kind, face_uv(side, (0, 0, 0), (1, 1, 1))) for side in range(6))
         return BlockModel(
             (Element((0, 0, 0), (1, 1, 1), faces, emission=15 if kind == "glow" else 0),)
         )
@@ -73,7 +73,7 @@ def film_of(
     film = new_film(camera.height_px, camera.width_px)
     trace_rows(
         scene.tables, scene.material, scene.side_px, LookLight().tone.decode,
-        lamps_of(scene) if lamps is None else lamps, sky, pose, rays, (0, camera.height_px),
+        emitters_of(scene) if lamps is None else lamps, sky, pose, rays, (0, camera.height_px),
         (0, samples), np.uint32(seed), depth, new_path(), film,
     )  # fmt: skip
     return film
@@ -94,7 +94,7 @@ def test_a_block_under_an_even_sky_shows_its_albedo():
     states = np.zeros((3, 3, 3), np.uint16)
     states[1, 1, 1] = 1
     film = film_of(prepare_scene(volume(states), OneGrey()), (4, 4, 5), (1.5, 1.5, 1.5),
-                   even_sky(1.0, 1.0, 1.0), samples=4)  # fmt: skip
+                   uniform_sky(1.0, 1.0, 1.0), samples=4)  # fmt: skip
     whole = film.samples[..., 0] == film.samples[..., 1]
     np.testing.assert_allclose(radiance(film)[whole], GREY, rtol=1e-3)
 
@@ -102,7 +102,7 @@ def test_a_block_under_an_even_sky_shows_its_albedo():
 def test_a_closed_room_that_shines_everywhere_is_a_furnace():
     states = closed_room()
     scene = prepare_scene(volume(states), OneGrey({"minecraft:stone": "glow"}))
-    lamps = lamps_of(scene)
+    lamps = emitters_of(scene)
     shine = 0.3
     lamps = lamps._replace(light=np.full_like(lamps.light, shine))
     film = film_of(scene, (3, 3, 3), (4.7, 2.4, 3.2), NO_SKY, samples=64, depth=40, lamps=lamps)
@@ -150,7 +150,7 @@ def from_box(lamps, row, at, up, steps=40) -> np.ndarray:
 
 def test_the_light_of_a_lamp_is_the_one_worked_out_by_hand():
     scene = prepare_scene(volume(floor_with((8, 4, 8, 2)), LAMP), LAMP_LOOKS)
-    lamps = lamps_of(scene)
+    lamps = emitters_of(scene)
     assert len(lamps.cell) == 1 and lamps.shown[0] == 63
     tiny = Camera(4, 4, 400.0, 400.0, 2.0, 2.0)
     for at in ((8.5, 1, 8.5), (4.5, 1, 7.0), (14.0, 1, 12.0)):
@@ -161,7 +161,7 @@ def test_the_light_of_a_lamp_is_the_one_worked_out_by_hand():
 
 def test_a_lamp_that_no_list_names_is_found_by_chance_alone():
     scene = prepare_scene(volume(floor_with((8, 3, 8, 2)), LAMP), LAMP_LOOKS)
-    dim = lamps_of(scene)
+    dim = emitters_of(scene)
     dim = dim._replace(light=dim.light * 0.05)  # Else rare light would be cut.
     unlisted = dim._replace(near_start=np.zeros_like(dim.near_start), near=dim.near[:0])
     tiny = Camera(8, 8, 400.0, 400.0, 4.0, 4.0)
@@ -183,7 +183,7 @@ def test_a_block_of_light_that_is_not_seen_lights_all_the_same():
     palette = ("minecraft:air", "minecraft:stone", "minecraft:light[level=15]")
     whole = volume(floor_with((8, 4, 8, 2)), palette)
     scene = prepare_scene(whole, OneGrey(), hidden_lamps=True)
-    lamps = lamps_of(scene)
+    lamps = emitters_of(scene)
     assert lamps.element.tolist() == [-1]
     tiny = Camera(4, 4, 400.0, 400.0, 2.0, 2.0)
     film = film_of(scene, (8.5, 2.5, 9.0), (8.5, 1, 8.5), NO_SKY, 256, 1, tiny)
@@ -201,11 +201,11 @@ def test_a_lamp_that_is_turned_is_where_its_box_is():
         def model(self, state: str) -> BlockModel:
             if "glow" not in state:
                 return super().model(state)
-            faces = tuple(FaceLook("glow", np.zeros((2, 4))) for _ in range(6))
+            faces = tuple(ElementFace("glow", np.zeros((2, 4))) for _ in range(6))
             box = (0.0, 0.25, 0.5), (0.25, 0.75, 1.0)
             return BlockModel((Element(*box, faces, turn=turn, emission=15),))
 
-    lamps = lamps_of(prepare_scene(volume(floor_with((8, 4, 8, 2)), LAMP), Turned()))
+    lamps = emitters_of(prepare_scene(volume(floor_with((8, 4, 8, 2)), LAMP), Turned()))
     np.testing.assert_allclose(lamps.centre[0], [8.75, 4.5, 8 + 1 - 0.125], atol=1e-6)
     for pair in range(3):
         np.testing.assert_allclose(
@@ -218,7 +218,7 @@ def test_shadows_point_away_from_the_sun(hour):
     states = floor_with((8, 1, 8, 1), (8, 2, 8, 1))
     scene = prepare_scene(volume(states), OneGrey())
     sky = sky_light(LookLight(hour=hour))
-    black = even_sky(0.0, 0.0, 0.0).background
+    black = uniform_sky(0.0, 0.0, 0.0).background
     sun = sky.background._replace(
         **{
             name: getattr(black, name)
@@ -243,7 +243,7 @@ def test_a_mirror_of_metal_shows_what_lies_before_it():
     states[:, :, 0], states[:, :, 8] = 2, 3
     looks = OneGrey({"minecraft:iron_block": "mirror", "minecraft:red_wool": "red"})
     scene = prepare_scene(volume(states, palette), looks)
-    film = film_of(scene, (4.5, 4.5, 6), (4.5, 4.5, 1), even_sky(1.0, 1.0, 1.0), 64, 3)
+    film = film_of(scene, (4.5, 4.5, 6), (4.5, 4.5, 1), uniform_sky(1.0, 1.0, 1.0), 64, 3)
     seen = (film.gloss / film.samples[..., 1:])[8:16, 12:20].mean(axis=(0, 1))
     assert seen[0] > 0.2 and seen[1] < 0.1 * seen[0] and seen[2] < 0.1 * seen[0]
 

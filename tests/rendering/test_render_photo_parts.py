@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.jit import lean
-from world2minecraft.rendering.path_tracing.denoise import SWEEPS, filtered
-from world2minecraft.rendering.path_tracing.rng import EVEN_USES, mixed, pair
+from world2minecraft.rendering.path_tracing.denoise import SWEEPS, denoise_light
+from world2minecraft.rendering.path_tracing.rng import EVEN_USES, hash_uint32, sample_pair
 from world2minecraft.rendering.path_tracing.scattering import (
-    follow_gloss,
-    gloss_of,
+    evaluate_gloss,
     new_path,
+    sample_gloss,
     set_lobes,
 )
 
@@ -17,14 +17,14 @@ from world2minecraft.rendering.path_tracing.scattering import (
 @lean
 def pairs(key, use, out):
     for sample in range(len(out)):
-        out[sample, 0], out[sample, 1] = pair(key, sample, use)
+        out[sample, 0], out[sample, 1] = sample_pair(key, sample, use)
 
 
 @pytest.mark.parametrize("use", [0, 1, EVEN_USES - 1])
 def test_sixteen_samples_lie_one_in_each_square(use):
     for key in range(20):
         out = np.empty((16, 2))
-        pairs(mixed(np.uint32(key)), use, out)
+        pairs(hash_uint32(np.uint32(key)), use, out)
         assert (out >= 0).all() and (out < 1).all()
         for across, down in ((16, 1), (8, 2), (4, 4), (2, 8), (1, 16)):
             cells = np.floor(out * [across, down]).astype(int)
@@ -34,7 +34,7 @@ def test_sixteen_samples_lie_one_in_each_square(use):
 def test_uses_and_pixels_know_nothing_of_each_other():
     out = np.empty((6, 1024, 2))
     for row, (key, use) in enumerate(((1, 0), (1, 1), (1, 2), (2, 0), (1, 20), (1, 21))):
-        pairs(mixed(np.uint32(key)), use, out[row])
+        pairs(hash_uint32(np.uint32(key)), use, out[row])
     columns = np.swapaxes(out, 1, 2).reshape(12, 1024)
     correlation = np.corrcoef(columns) - np.eye(12)
     assert np.abs(correlation).max() < 0.15  # By chance it is 0.1.
@@ -51,7 +51,7 @@ def gloss_sum(state, steps):
         flat = np.sqrt(1 - up * up)
         for b in range(steps):
             turn = 2 * np.pi * (b + 0.5) / steps
-            _, density = gloss_of(s, flat * np.cos(turn), flat * np.sin(turn), up)
+            _, density = evaluate_gloss(s, flat * np.cos(turn), flat * np.sin(turn), up)
             total += density * 2 * np.pi / (steps * steps)
     return total
 
@@ -61,8 +61,8 @@ def gloss_draws(state, count, view, out):
     s = state[0]
     for n in range(count):
         s.d[0], s.d[1], s.d[2] = view[0], view[1], view[2]
-        first, second = pair(np.uint32(7), n, 0)
-        share, density = follow_gloss(s, first, second)
+        first, second = sample_pair(np.uint32(7), n, 0)
+        share, density = sample_gloss(s, first, second)
         out[n, 0], out[n, 1], out[n, 2] = s.d[0], s.d[1], s.d[2]
         out[n, 3], out[n, 4] = share, density
 
@@ -99,7 +99,7 @@ def mean_height(state, steps):
         flat = np.sqrt(1 - up * up)
         for b in range(steps):
             turn = 2 * np.pi * (b + 0.5) / steps
-            _, density = gloss_of(s, flat * np.cos(turn), flat * np.sin(turn), up)
+            _, density = evaluate_gloss(s, flat * np.cos(turn), flat * np.sin(turn), up)
             total += up * density * 2 * np.pi / (steps * steps)
     return total
 
@@ -136,7 +136,7 @@ def test_the_filter_keeps_an_even_light_to_the_bit():
     light = np.full((24, 32, 3), 0.7, np.float32)
     count = np.full((24, 32), 16, np.float32)
     squares = (light @ np.array([0.2126, 0.7152, 0.0722])) ** 2
-    result = filtered(light, squares.astype(np.float32), count, guides(24, 32), SWEEPS, once)
+    result = denoise_light(light, squares.astype(np.float32), count, guides(24, 32), SWEEPS, once)
     np.testing.assert_allclose(result, 0.7, rtol=1e-6)
 
 
@@ -151,7 +151,7 @@ def test_the_filter_takes_the_grain_and_leaves_the_shadow_s_edge():
     mean = np.where(np.arange(64)[None] < 32, 0.2, 2.0) * np.ones((48, 1))
     light, squares = grainy(np.random.default_rng(0), mean)
     count = np.full(mean.shape, 16, np.float32)
-    result = filtered(light, squares, count, guides(*mean.shape), SWEEPS, once)[..., 0]
+    result = denoise_light(light, squares, count, guides(*mean.shape), SWEEPS, once)[..., 0]
     assert np.abs(result / mean - 1).mean() < 0.2 * np.abs(light[..., 0] / mean - 1).mean()
     np.testing.assert_allclose(result[:, 31].mean(), 0.2, rtol=0.15)
     np.testing.assert_allclose(result[:, 32].mean(), 2.0, rtol=0.10)
@@ -163,7 +163,7 @@ def test_the_filter_never_crosses_from_one_surface_to_another():
     place, normal, out, far = guides(*mean.shape)
     place[:, 32:, 1] = 2
     count = np.full(mean.shape, 16, np.float32)
-    result = filtered(light, squares, count, (place, normal, out, far), SWEEPS, once)[..., 0]
+    result = denoise_light(light, squares, count, (place, normal, out, far), SWEEPS, once)[..., 0]
     assert abs(result[:, 31].mean() - 1.0) < 0.03 and abs(result[:, 32].mean() - 1.1) < 0.03
 
 
@@ -176,7 +176,7 @@ def test_bands_of_rows_give_what_the_whole_gives():
         for row in range(0, rows, 5):
             band((row, min(row + 5, rows)))
 
-    one = filtered(light, squares, count, guides(24, 32), SWEEPS, once)
-    other = filtered(light, squares, count, guides(24, 32), SWEEPS, bands)
+    one = denoise_light(light, squares, count, guides(24, 32), SWEEPS, once)
+    other = denoise_light(light, squares, count, guides(24, 32), SWEEPS, bands)
     assert np.array_equal(one, other)
     assert np.array_equal(one[4, 5], light[4, 5])

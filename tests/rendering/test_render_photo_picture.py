@@ -7,7 +7,7 @@ from scenes import random_pose, random_volume
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import LookLight, prepare_scene, render_volume
-from world2minecraft.rendering.path_tracing import Photo, lamps_of, render_photo
+from world2minecraft.rendering.path_tracing import Photo, emitters_of, render_photo
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 
@@ -66,7 +66,7 @@ def test_a_given_exposure_counts(world):
 
 def test_lamps_may_be_listed_once(world):
     scene, pose = world
-    own = render_photo(scene, SMALL, pose, samples=1, lamps=lamps_of(scene))
+    own = render_photo(scene, SMALL, pose, samples=1, lamps=emitters_of(scene))
     assert np.array_equal(own.colour, render_photo(scene, SMALL, pose, samples=1).colour)
 
 

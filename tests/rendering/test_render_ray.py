@@ -12,8 +12,8 @@ from scenes import CAMERA, random_pose, random_volume, volume_of
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene, render_volume
-from world2minecraft.rendering.empty_space_boxes import empty_boxes
-from world2minecraft.rendering.ray_caster.packet_tracing import ALONE, NOTHING, PLANE, follow
+from world2minecraft.rendering.empty_space_boxes import find_empty_boxes
+from world2minecraft.rendering.ray_caster.packet_tracing import DIVERGED, MISS, PLANE, trace_packet
 from world2minecraft.rendering.scene_tables import BOXES, FULL, NO_FACE
 
 
@@ -23,7 +23,7 @@ def test_empty_boxes_are_air_and_hold_the_cells_that_name_them(seed, share):
     rng = np.random.default_rng(seed)
     shape = tuple(rng.integers(1, 12, 3))
     kinds = np.where(rng.random(shape) < share, rng.choice([FULL, BOXES], shape), 0).astype(np.int8)
-    space, bounds = empty_boxes(kinds)
+    space, bounds = find_empty_boxes(kinds)
     assert np.array_equal(space < 0, kinds != 0)
     assert np.array_equal(space[kinds != 0], kinds[kinds != 0])
     for cell in np.argwhere(kinds == 0):
@@ -37,7 +37,7 @@ def test_empty_boxes_are_air_and_hold_the_cells_that_name_them(seed, share):
 def test_an_open_hall_is_one_box():
     kinds = np.zeros((20, 10, 15), np.int8)
     kinds[0], kinds[-1] = FULL, FULL
-    _, bounds = empty_boxes(kinds)
+    _, bounds = find_empty_boxes(kinds)
     assert bounds.tolist() == [[1, 0, 0, 19, 10, 15]]
 
 
@@ -53,20 +53,26 @@ def test_a_bundle_agrees_with_each_of_its_rays():
             offsets = [(u, v), (u + 7, v), (u, v + 7), (u + 7, v + 7)]
             rays = [pose[:3, :3] @ [(a - 20) / 30, (b - 20) / 30, 1] for a, b in offsets]
             corners = np.array([[*pose[:3, 3], *ray] for ray in rays])
-            mode, face, layer = follow(scene.tables.space, scene.tables.bounds, corners, cells)
+            mode, face, layer = trace_packet(
+                scene.tables.space, scene.tables.bounds, corners, cells
+            )
             modes.append(mode)
             if mode == PLANE:
                 low, high = cells[0], cells[1] + 1
                 met = scene.tables.space[low[0] : high[0], low[1] : high[1], low[2] : high[2]]
                 assert (met == FULL).all()
                 assert low[face // 2] == layer
-    assert {ALONE, PLANE, NOTHING} <= set(modes)
+    assert {DIVERGED, PLANE, MISS} <= set(modes)
 
 
 def test_a_bundle_that_begins_in_a_block_goes_alone():
-    space, bounds = empty_boxes(np.full((3, 3, 3), FULL, np.int8))
+    space, bounds = find_empty_boxes(np.full((3, 3, 3), FULL, np.int8))
     corners = np.tile([1.5, 1.5, 1.5, 1.0, 0.1, 0.1], (4, 1))
-    assert follow(space, bounds, corners, np.zeros((4, 3), np.int64)) == (ALONE, NO_FACE, 0)
+    assert trace_packet(space, bounds, corners, np.zeros((4, 3), np.int64)) == (
+        DIVERGED,
+        NO_FACE,
+        0,
+    )
 
 
 def row_of(*states: int, scale: float = 1.0):

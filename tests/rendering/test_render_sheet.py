@@ -9,8 +9,8 @@ from world2minecraft.rendering.contact_sheet import (
     TILE_PX,
     Card,
     contact_sheet,
+    object_picture,
     sheet_png,
-    thing_picture,
 )
 
 
@@ -26,7 +26,7 @@ def drawn(picture):
 
 def test_a_thing_stands_in_the_middle_whole():
     for low, high in (((0, 0, 0), (6, 6, 6)), ((4, 0, 1), (5, 3, 2)), ((0, 5, 0), (6, 6, 1))):
-        seen = np.argwhere(drawn(thing_picture(cube(low, high))))
+        seen = np.argwhere(drawn(object_picture(cube(low, high))))
         assert seen.min() > 0 and seen.max() < TILE_PX - 1
         middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
         assert np.abs(middle - TILE_PX / 2).max() < 3
@@ -36,7 +36,7 @@ def test_the_front_is_seen():
     """What stands out to the front, which is room +x, lies low in the picture and to the left."""
     states = np.zeros((2, 1, 1), np.int64)
     states[:, 0, 0] = 2, 6
-    picture = thing_picture(volume_of(states)).astype(int)
+    picture = object_picture(volume_of(states)).astype(int)
     red = drawn(picture) & (picture[..., 0] > picture[..., 1] + 50)
     other = drawn(picture) & ~red
     assert np.argwhere(red)[:, 0].mean() > np.argwhere(other)[:, 0].mean()

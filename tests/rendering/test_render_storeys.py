@@ -5,8 +5,8 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.rendering.cutaway import (
-    side_by_side,
-    storeys_of,
+    arrange_side_by_side,
+    split_storeys,
     without_ceiling,
     without_partitions,
 )
@@ -45,23 +45,23 @@ def house() -> BlockVolume:
 
 def test_storeys_add_up_to_the_house():
     whole = house()
-    storeys = storeys_of(whole)
+    storeys = split_storeys(whole)
     assert [one.states.shape[1] for one in storeys] == [11, 11]
     assert sum(int((one.semantic > 0).sum()) for one in storeys) == (whole.semantic > 0).sum()
     assert [one.corner[1] for one in storeys] == [63, 74]
-    assert len(storeys_of(storeys[0])) == 1
+    assert len(split_storeys(storeys[0])) == 1
 
 
 def test_side_by_side_nothing_is_lost_and_nothing_overlaps():
-    storeys = [without_ceiling(one) for one in storeys_of(house())]
-    row = side_by_side(storeys)
+    storeys = [without_ceiling(one) for one in split_storeys(house())]
+    row = arrange_side_by_side(storeys)
     assert row.states.shape == (24, 11, 2 * 18 + 6), "along the shorter side, 1.5 m apart"
     assert (row.semantic > 0).sum() == sum(int((one.semantic > 0).sum()) for one in storeys)
-    assert side_by_side(storeys[:1]) is storeys[0]
+    assert arrange_side_by_side(storeys[:1]) is storeys[0]
 
 
 def test_inner_walls_end_at_breast_height_and_outer_ones_do_not():
-    lower = without_ceiling(storeys_of(house())[0])
+    lower = without_ceiling(split_storeys(house())[0])
     cut = without_partitions(lower)
     assert not (cut.semantic[12, 6:, 1:-1] == WALL).any()
     assert (cut.semantic[12, 1:4, 9:-1] == WALL).all()
@@ -71,7 +71,7 @@ def test_inner_walls_end_at_breast_height_and_outer_ones_do_not():
 
 
 def test_a_room_of_its_own_keeps_all_its_walls():
-    upper = storeys_of(house())[1]
+    upper = split_storeys(house())[1]
     assert np.array_equal(without_partitions(upper).semantic, upper.semantic)
 
 

@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.rendering import render_volume
-from world2minecraft.rendering.grid_traversal import fill_distances, safe_start, trace
+from world2minecraft.rendering.grid_traversal import fill_distances, safe_start, trace_ray
 from world2minecraft.rendering.scene_tables import NO_FACE
 
 
@@ -69,7 +69,7 @@ def test_no_ray_of_a_bundle_meets_anything_before_its_start():
         start = safe_start(cells, *origin, *middle, 0.0, 0.05)
         moved += start > 0
         ray = middle + rng.uniform(-0.05, 0.05, 3)
-        t, *_, face = trace(cells, *origin, *ray, 0.0)
+        t, *_, face = trace_ray(cells, *origin, *ray, 0.0)
         assert face == NO_FACE or t >= start
     assert moved > 150
 
@@ -82,7 +82,7 @@ def test_rays_along_an_axis_hit_squarely(axis, sign):
     fill_distances(cells)
     direction = np.zeros(3)
     direction[axis] = sign
-    t, *cell, face = trace(cells, 3.5, 3.5, 3.5, *direction, 0.0)
+    t, *cell, face = trace_ray(cells, 3.5, 3.5, 3.5, *direction, 0.0)
     assert t == pytest.approx(2.5)
     assert cell[axis] == (6 if sign > 0 else 0)
     assert face == 2 * axis + (0 if sign > 0 else 1)  # The face that looks back at the ray.

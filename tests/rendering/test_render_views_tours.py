@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import apply, block_to_room, invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.rendering import prepare_scene
-from world2minecraft.rendering.presentation.shot_frames import frames
+from world2minecraft.rendering.presentation.shot_frames import draw_frames
 from world2minecraft.rendering.views import (
     GamePose,
     Shot,
@@ -25,7 +25,7 @@ from world2minecraft.rendering.views import (
     write_lines,
 )
 from world2minecraft.rendering.views.orbit import corner_points_m
-from world2minecraft.rendering.views.visibility import hiding_of
+from world2minecraft.rendering.views.visibility import view_blockers_of
 from world2minecraft.rendering.views.walk_through import TURN_COST, _best_sequence
 
 CAMERA = camera_of(48, 36, vertical_fov_deg=70)
@@ -86,11 +86,11 @@ def test_an_orbit_goes_around_once_at_one_height():
 
 
 def test_walls_hide_and_doors_do_not_and_what_is_under_a_ceiling_is_roofed():
-    hiding = hiding_of(house())
+    hiding = view_blockers_of(house())
     assert hiding.hides[0].all() and not hiding.hides[1:5, 1:4, 1:5].any()
     assert not hiding.hides[5, 1:3, 2].any()
     assert hiding.roofed[1:5, 1:4, 1:5].all()
-    assert not hiding_of(built(np.zeros((2, 2, 2), np.uint16))).roofed.any()
+    assert not view_blockers_of(built(np.zeros((2, 2, 2), np.uint16))).roofed.any()
 
 
 # Tours.
@@ -135,7 +135,7 @@ def test_a_tour_looks_into_the_room_and_not_at_the_wall_before_it():
     volume = house(door=False)
     scene = prepare_scene(volume)
     poses = [shot.camera_to_room for shot in plan_tour(volume, CAMERA, 8).shots]
-    middle = [picture.depth_m[18, 24] for picture in frames(scene, CAMERA, poses)]
+    middle = [picture.depth_m[18, 24] for picture in draw_frames(scene, CAMERA, poses)]
     assert np.median(middle) > 2.0
     assert min(middle) > 1.0
 

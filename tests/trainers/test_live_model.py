@@ -22,10 +22,10 @@ from world2minecraft.external_models.reply_cache import ReplyStore
 from world2minecraft.navigation.agents import ModelAgent
 from world2minecraft.navigation.agents.question_answering import VlmAnswerer
 from world2minecraft.navigation.records import read_items
-from world2minecraft.navigation.running.episode_ground import SceneGround
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.running.item_evaluation import evaluate
-from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
+from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
+from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.running.trace import TraceWriter, read_trace
 from world2minecraft.navigation.scene import camera_of, open_scene
 
@@ -82,10 +82,10 @@ def chat_at(server, folder):
 
 def test_a_walk_by_a_live_model(server, tmp_path):
     scene = open_scene(write_flat(tmp_path / "flat"))
-    ground = SceneGround(scene, camera=camera_of(224, 224, 79.0))
+    ground = SceneSimulator(scene, camera=camera_of(224, 224, 79.0))
     chat = chat_at(server, tmp_path)
     agent = ModelAgent(chat, history=1)
-    episode = episode_of(scene, Wish("Go to the piano", max_steps=4))
+    episode = episode_of_sentence(scene, GoalRequest("Go to the piano", max_steps=4))
     begin = time.monotonic()
     walk = walk_episode(ground, episode, agent, observers=[TraceWriter(tmp_path)])
     took_s = time.monotonic() - begin

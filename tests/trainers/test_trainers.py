@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from tests.navigation.vln_sets import small_set
 
-from world2minecraft.navigation.exporters import HandoffRule, export_set
+from world2minecraft.navigation.exporters import ExportOptions, export_set
 
 pytestmark = pytest.mark.trainers
 
@@ -85,7 +85,7 @@ def exported(folder, room, trainer, format):
     model = room / f"tiny_{trainer}"
     if not model.is_dir():
         run(trainer, room, HERE / "tiny_qwen.py", model)
-    rule = HandoffRule(model=str(model))
+    rule = ExportOptions(model=str(model))
     return export_set(folder, format, room / format, rule).out
 
 
@@ -135,7 +135,7 @@ def test_easyr1s_own_loader_takes_every_row(folder, room, style):
     model = room / "tiny_easyr1"
     if not model.is_dir():
         run("easyr1", room, HERE / "tiny_qwen.py", model)
-    rule = HandoffRule(model=str(model), image_style=style)
+    rule = ExportOptions(model=str(model), image_style=style)
     root = export_set(folder, "easyr1", room / f"easyr1_{style}", rule).out
     told = run("easyr1", root, HERE / "read_easyr1.py", "next_view_combined_grpo.yaml", model)
     assert told.split()[-2:] == ["10", "rows"]

@@ -593,7 +593,8 @@ def main():
     volume = read_source(Path("OUT")).volume
     scene = prepare_scene(volume)
     camera = Camera(96, 64, 60.0, 60.0, 48.0, 32.0)
-    poses = np.stack([look_at(np.array([1 + n / 4, 1, 1.5]), np.array([2, 3, 0.8])) for n in range(4)])
+    target = np.array([2.0, 3.0, 0.8])
+    poses = np.stack([look_at(np.array([1 + n / 4, 1, 1.5]), target) for n in range(4)])
     outputs = ("colour", "depth", "range", "block", "face", "semantic", "instance")
     light = LookLight(exposure=1.2)
     batch = render_batch(scene, camera, poses, outputs=outputs, light=light)

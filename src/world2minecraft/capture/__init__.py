@@ -5,10 +5,10 @@ views that are read from disk one at a time. ``describe_capture`` tells in a mom
 holds. ``write_plain`` writes our own layout.
 """
 
-from world2minecraft.capture.alignment.room_frame import realigned
+from world2minecraft.capture.alignment.room_frame import realign
 from world2minecraft.capture.open_scan import open_scan
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.summary import CaptureSummary, describe_capture
 from world2minecraft.capture.view_stream import settled
 
-__all__ = ["CaptureSummary", "describe_capture", "open_scan", "realigned", "settled", "write_plain"]
+__all__ = ["CaptureSummary", "describe_capture", "open_scan", "realign", "settled", "write_plain"]

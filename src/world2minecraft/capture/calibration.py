@@ -24,14 +24,14 @@ POINTS_PER_MAP = 700
 SCALES = np.arange(0.80, 1.2001, 0.02)
 SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
 REFINEMENTS = ((0.01, 1.5), (0.005, 0.75), (0.0025, 0.375))
-CLEAR_GAIN = 1.25  # The kitchen: over 2.6; where depth and colour share a camera: at most 1.05.
-LEAST_SCORE = 0.04  # Edges must lie on more colour change than the image's mean, by this of 1.
-LEAST_POINTS = 400
-LEAST_INSIDE = 0.6
+MIN_GAIN = 1.25  # The kitchen: over 2.6; where depth and colour share a camera: at most 1.05.
+MIN_SCORE = 0.04  # Edges must lie on more colour change than the image's mean, by this of 1.
+MIN_POINTS = 400
+MIN_INSIDE_SHARE = 0.6
 
 
 @dataclass(frozen=True)
-class ColourEstimate:
+class ColourCameraEstimate:
     """The colour camera relative to the stated matrix; shifts in pixels of the colour image.
 
     ``gain`` is how much better the frames that were kept apart fit, as a ratio; ``clear`` says
@@ -56,7 +56,7 @@ class ColourEstimate:
 
 
 @dataclass(frozen=True)
-class _FrameEdges:
+class _DepthEdges:
     """One frame's depth edges as rays, float64 [N, 2], and maps of colour change, float32 [h, w].
 
     Edges across the image's rows come first, then those along them; each has its own map.
@@ -66,41 +66,42 @@ class _FrameEdges:
     change: tuple[np.ndarray, np.ndarray]
 
 
-def estimate_colour_camera(views: Iterable[View]) -> ColourEstimate | None:
+def estimate_colour_camera(views: Iterable[View]) -> ColourCameraEstimate | None:
     """Estimate the colour camera from some views, read once and one at a time.
 
     Returns:
         The estimate, clear or not, or None where there are too few edges to say anything.
     """
-    edges: list[_FrameEdges] = []
+    edges: list[_DepthEdges] = []
     stated = None
     for view in views:
         if view.depth_m is not None and view.colour_camera is not None:
             stated = view.colour_camera
-            edges.append(_frame_edges(view))
+            edges.append(_extract_edges(view))
     sought, apart = edges[0::2], edges[1::2]
-    if stated is None or min(_count(sought), _count(apart)) < LEAST_POINTS:
+    if stated is None or min(_edge_count(sought), _edge_count(apart)) < MIN_POINTS:
         return None
     enlarged = stated.width_px / WORK_WIDTH_PX
     matrix = np.array([stated.fx_px, stated.fy_px, stated.cx_px, stated.cy_px]) / enlarged
-    scale, shift_x, shift_y = _search(sought, matrix)
+    scale, shift_x, shift_y = _search_camera(sought, matrix)
     before, after = (
-        _score(apart, matrix, *values) for values in ((1.0, 0.0, 0.0), (scale, shift_x, shift_y))
+        _alignment_score(apart, matrix, *values)
+        for values in ((1.0, 0.0, 0.0), (scale, shift_x, shift_y))
     )
     gain = after / max(before, 1e-3)
-    clear = gain > CLEAR_GAIN and after > LEAST_SCORE
-    return ColourEstimate(scale, shift_x * enlarged, shift_y * enlarged, gain, clear)
+    clear = gain > MIN_GAIN and after > MIN_SCORE
+    return ColourCameraEstimate(scale, shift_x * enlarged, shift_y * enlarged, gain, clear)
 
 
-def _count(frames: Sequence[_FrameEdges]) -> int:
+def _edge_count(frames: Sequence[_DepthEdges]) -> int:
     return sum(len(rays) for frame in frames for rays in frame.rays)
 
 
-def _frame_edges(view: View) -> _FrameEdges:
+def _extract_edges(view: View) -> _DepthEdges:
     depth, camera, colour = view.depth_m, view.depth_camera, view.colour
     if depth is None or camera is None or colour is None:
         raise ValueError(f"view {view.name} has not both depth and colour")
-    down, across = _jumps(depth.T), _jumps(depth)
+    down, across = _depth_edges(depth.T), _depth_edges(depth)
     focal = np.array([camera.fx_px, camera.fy_px])
     center = np.array([camera.cx_px, camera.cy_px])
     rays = ((across - center) / focal, (down[:, ::-1] - center) / focal)
@@ -109,10 +110,10 @@ def _frame_edges(view: View) -> _FrameEdges:
         Image.Resampling.BOX,
     )
     pixels = np.asarray(small, np.float32)
-    return _FrameEdges(rays, (_change(pixels, 1), _change(pixels, 0)))
+    return _DepthEdges(rays, (_colour_gradient(pixels, 1), _colour_gradient(pixels, 0)))
 
 
-def _jumps(depth_m: np.ndarray) -> np.ndarray:
+def _depth_edges(depth_m: np.ndarray) -> np.ndarray:
     """Return where depth jumps along rows, float64 [N, 2]: the borders' x and y in pixels.
 
     Sensors see nothing right at a border, so a jump may have a hole in it; the border is where
@@ -130,7 +131,7 @@ def _jumps(depth_m: np.ndarray) -> np.ndarray:
     return np.column_stack([border[::every], rows[::every] + 0.5]).astype(np.float64)
 
 
-def _change(pixels: np.ndarray, axis: int) -> np.ndarray:
+def _colour_gradient(pixels: np.ndarray, axis: int) -> np.ndarray:
     """Return how much colour changes along an axis, 0 to 1 with its mean taken off."""
     steep = np.zeros(pixels.shape[:2], np.float32)
     for channel in range(3):
@@ -142,10 +143,10 @@ def _change(pixels: np.ndarray, axis: int) -> np.ndarray:
     return np.ascontiguousarray(change - change.mean(), np.float32)
 
 
-def _search(frames: Sequence[_FrameEdges], matrix: np.ndarray) -> tuple[float, float, float]:
+def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[float, float, float]:
     """Return the best scale and shifts: all coarse ones, then the best one's neighbours."""
     tried = {
-        (scale, x, y): _score(frames, matrix, scale, x, y)
+        (scale, x, y): _alignment_score(frames, matrix, scale, x, y)
         for scale in SCALES.tolist()
         for x in SHIFTS_PX.tolist()
         for y in SHIFTS_PX.tolist()
@@ -163,14 +164,14 @@ def _search(frames: Sequence[_FrameEdges], matrix: np.ndarray) -> tuple[float, f
                     best[1] + b * shift_step,
                     best[2] + c * shift_step,
                 )
-                found = _score(frames, matrix, *other)
+                found = _alignment_score(frames, matrix, *other)
                 if found > score + 1e-9:
                     best, score, moved = other, found, True
     return best
 
 
-def _score(
-    frames: Sequence[_FrameEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
+def _alignment_score(
+    frames: Sequence[_DepthEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
 ) -> float:
     """Return the mean colour change under the depth edges that fall into the image.
 
@@ -179,13 +180,13 @@ def _score(
     total, inside = 0.0, 0
     for frame in frames:
         for rays, change in zip(frame.rays, frame.change, strict=True):
-            added, met = _sum_under(rays, change, matrix, scale, shift_x, shift_y)
+            added, met = _sum_at_pixels(rays, change, matrix, scale, shift_x, shift_y)
             total, inside = total + added, inside + met
-    return total / inside if inside > LEAST_INSIDE * _count(frames) else -1.0
+    return total / inside if inside > MIN_INSIDE_SHARE * _edge_count(frames) else -1.0
 
 
 @njit
-def _sum_under(rays, change, matrix, scale, shift_x, shift_y):
+def _sum_at_pixels(rays, change, matrix, scale, shift_x, shift_y):
     height, width = change.shape
     total, inside = 0.0, 0
     for index in range(len(rays)):

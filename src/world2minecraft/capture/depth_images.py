@@ -38,7 +38,7 @@ DEPTH_UNITS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "m": lambda raw: raw.astype(np.float64),
     "nyu_raw": _nyu_raw,
 }
-_SAID = {
+_DESCRIPTIONS = {
     "mm": "millimetres",
     "5000": "units of 1/5000 m",
     "rotated": "millimetres, bits rotated by three",
@@ -61,7 +61,7 @@ class DepthEncoding:
     @property
     def said(self) -> str:
         """The unit in words."""
-        return _SAID.get(self.unit, f"units of {self.unit} m")
+        return _DESCRIPTIONS.get(self.unit, f"units of {self.unit} m")
 
     def to_metres(self, raw: np.ndarray) -> np.ndarray:
         """Return float32 metres of stored values; whatever is no depth becomes 0."""
@@ -110,13 +110,13 @@ def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncod
         CaptureError: none of the images has any depth, or no unit makes a room of them.
         UnknownNameError: no unit has the stated name.
     """
-    values = np.concatenate([_sample(path) for path in paths])
+    values = np.concatenate([_sample_values(path) for path in paths])
     if not len(values):
         raise CaptureError(
             paths[0],
             f"is all holes, as are all {len(paths)} depth images looked at: record it again",
         )
-    encoding = DepthEncoding(stated) if stated else DepthEncoding(_guess(values), guessed=True)
+    encoding = DepthEncoding(stated) if stated else DepthEncoding(_guess_unit(values), guessed=True)
     _check_range(paths[0], encoding, values)
     return encoding
 
@@ -127,7 +127,7 @@ def read_depth(path: ImagePlace, encoding: DepthEncoding) -> np.ndarray:
     return encoding.to_metres(read_raw(path))
 
 
-def _sample(path: ImagePlace) -> np.ndarray:
+def _sample_values(path: ImagePlace) -> np.ndarray:
     """Return the valid stored values of every third pixel of one image."""
     raw = read_raw(path)[::3, ::3].reshape(-1)
     valid = np.isfinite(raw) & (raw > 0)
@@ -136,7 +136,7 @@ def _sample(path: ImagePlace) -> np.ndarray:
     return raw[valid]
 
 
-def _guess(values: np.ndarray) -> str:
+def _guess_unit(values: np.ndarray) -> str:
     """Tell the unit from the values' range and steps."""
     typical, far = np.percentile(values, [50, 98])
     if values.dtype.kind == "f" and far < 100:

@@ -111,7 +111,7 @@ class Source(Protocol):
 
 
 @runtime_checkable
-class TellableSource(Source, Protocol):
+class ConfigurableSource(Source, Protocol):
     """A source that options of the user can help, such as the unit of a mesh."""
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:

@@ -141,9 +141,9 @@ def read_header(path: ImagePlace) -> ImageHeader:
         _check_pixels(path, *found.size)
         return found
     if path.suffix == ".npy":
-        array = _map_npy(path)
+        array = _open_npy(path)
         return ImageHeader(array.shape[1], array.shape[0], array.dtype.name)
-    with _opened(path) as image:
+    with _open_checked(path) as image:
         return ImageHeader(*image.size, image.mode)
 
 
@@ -156,22 +156,22 @@ def check_whole(path: ImagePlace) -> None:
     if not isinstance(path, _FILES):
         return path.check_whole()
     if path.suffix == ".npy":
-        _map_npy(path)
+        _open_npy(path)
         return
-    with _opened(path) as image:
+    with _open_checked(path) as image:
         kind = image.format
         if kind == "PNG":
             image.verify()
     if kind == "HEIF":
         _check_boxes(path)
-    if kind in ("JPEG", "MPO") and b"\xff\xd9" not in _tail(path, 4096):
+    if kind in ("JPEG", "MPO") and b"\xff\xd9" not in _read_end(path, 4096):
         _check_by_decoding(path)
 
 
 def _check_by_decoding(path: AnyPath) -> None:
     """Decode a JPEG whose end is not at the file's: phones append a video or facts of their own."""
     try:
-        with _opened(path) as image:
+        with _open_checked(path) as image:
             image.load()
     except DamagedFileError as error:
         reason = "is cut short (a JPEG without its end); copy it again"
@@ -182,7 +182,7 @@ def read_colour(path: ImagePlace) -> np.ndarray:
     """Decode a colour image to uint8 [H, W, 3] sRGB. Raises what ``read_header`` raises."""
     if not isinstance(path, _FILES):
         return path.colour()
-    with _opened(path) as image:
+    with _open_checked(path) as image:
         return np.array(image.convert("RGB"), np.uint8)
 
 
@@ -194,13 +194,13 @@ def read_small(path: ImagePlace, longest_px: int) -> np.ndarray:
     """
     if not isinstance(path, _FILES):
         image = Image.fromarray(path.colour())
-        return _at_most(image, longest_px)
-    with _opened(path) as image:
+        return _shrink_to(image, longest_px)
+    with _open_checked(path) as image:
         image.draft("RGB", (longest_px, longest_px))
-        return _at_most(image.convert("RGB"), longest_px)
+        return _shrink_to(image.convert("RGB"), longest_px)
 
 
-def _at_most(image: Image.Image, longest_px: int) -> np.ndarray:
+def _shrink_to(image: Image.Image, longest_px: int) -> np.ndarray:
     share = min(1.0, longest_px / max(image.size))
     size = (max(1, round(image.width * share)), max(1, round(image.height * share)))
     if size != image.size:
@@ -213,8 +213,8 @@ def read_raw(path: ImagePlace) -> np.ndarray:
     if not isinstance(path, _FILES):
         return path.raw()
     if path.suffix == ".npy":
-        return np.array(_map_npy(path))
-    with _opened(path) as image:
+        return np.array(_open_npy(path))
+    with _open_checked(path) as image:
         return np.array(image)
 
 
@@ -230,17 +230,17 @@ class Openable(Protocol):
         ...
 
 
-def opened_image(source: AnyPath | Openable) -> AbstractContextManager[Image.Image]:
+def open_image(source: AnyPath | Openable) -> AbstractContextManager[Image.Image]:
     """Open an image that lies within another file, with its size checked.
 
     Raises:
         DamagedFileError: it is no image. LimitError: it is over ``MAX_PIXELS``.
     """
-    return _opened(source)
+    return _open_checked(source)
 
 
 @contextmanager
-def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
+def _open_checked(path: AnyPath | Openable) -> Iterator[Image.Image]:
     """Open an image with its size checked; any way to fail becomes one of our errors."""
     try:
         with warnings.catch_warnings():
@@ -308,7 +308,7 @@ def _check_pixels(path: object, width_px: int, height_px: int) -> None:
         )
 
 
-def _map_npy(path: AnyPath) -> Any:
+def _open_npy(path: AnyPath) -> Any:
     """Map a ``.npy`` of [H, W] numbers; its length is checked against its header."""
     try:
         if isinstance(path, Path):
@@ -330,7 +330,7 @@ def _map_npy(path: AnyPath) -> Any:
     return array
 
 
-def _tail(path: AnyPath, size: int) -> bytes:
+def _read_end(path: AnyPath, size: int) -> bytes:
     with path.open("rb") as stream:
         stream.seek(max(0, path.stat().st_size - size))
         return stream.read()

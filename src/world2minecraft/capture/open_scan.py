@@ -14,11 +14,11 @@ from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
 
-ALIGNED_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
-ESTIMATING_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
+ALIGNMENT_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
+CALIBRATION_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
 MAX_CELLS = 40_000_000  # A grid of 400 x 400 x 250; its evidence takes about 2.5 GB.
 STAGE = "scan"
-STEPS = 100
+PROGRESS_STEPS = 100
 
 
 def open_scan(
@@ -47,7 +47,7 @@ def open_scan(
     if not voxel_m > 0:
         raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
     judged = judge_capture(
-        path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, STEPS)
+        path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, PROGRESS_STEPS)
     )
     if not judged.complete and judged.capture.room is None:
         lacks = "depth images" if judged.posed else "poses"
@@ -58,13 +58,13 @@ def open_scan(
     stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
     notes = list(judged.notes)
     if judged.capture.one_matrix and chosen.colour_camera == "auto":
-        progress(STAGE, 40, STEPS, "finding the colour camera")
-        stream, found = _with_colour_camera(stream)
+        progress(STAGE, 40, PROGRESS_STEPS, "finding the colour camera")
+        stream, found = _estimate_colour_camera(stream)
         notes.append(found)
-    progress(STAGE, 60, STEPS, "finding gravity and walls")
-    alignment = _aligned(judged, stream)
-    check_cells(alignment, voxel_m)
-    progress(STAGE, STEPS, STEPS)
+    progress(STAGE, 60, PROGRESS_STEPS, "finding gravity and walls")
+    alignment = _align(judged, stream)
+    check_cell_count(alignment, voxel_m)
+    progress(STAGE, PROGRESS_STEPS, PROGRESS_STEPS)
     return Scan(
         views=stream,
         scan_to_room=alignment.scan_to_room,
@@ -80,10 +80,10 @@ def open_scan(
     )
 
 
-def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
+def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     """Return the stream with the estimated colour camera where it is clear, and what to tell."""
     both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
-    estimate = estimate_colour_camera(stream.read(spread_over(both, ESTIMATING_FRAMES)))
+    estimate = estimate_colour_camera(stream.read(spread_over(both, CALIBRATION_FRAMES)))
     if estimate is None:
         return stream, "too few depth edges to check the colour camera; it is taken as stated"
     if not estimate.clear:
@@ -103,18 +103,18 @@ def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     return CaptureViews(frames, stream.encoding, stream.full_trust), note
 
 
-def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
+def _align(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
     if judged.capture.room is not None:
         return Alignment(*judged.capture.room, ())
     with_depth = without_colour(stream.frames)
     try:
-        views = stream.read(spread_over(with_depth, ALIGNED_FRAMES))
+        views = stream.read(spread_over(with_depth, ALIGNMENT_FRAMES))
         return align(views, judged.capture.world_up)
     except ImplausibleRoomError as error:
         raise CaptureError(judged.capture.folder, str(error)) from error
 
 
-def check_cells(alignment: Alignment, voxel_m: float) -> None:
+def check_cell_count(alignment: Alignment, voxel_m: float) -> None:
     """Raise UsageError where a room has too many cells; the message names a voxel that will do."""
     volume_m3 = float(alignment.room_size_m.prod())
     if volume_m3 / voxel_m**3 > MAX_CELLS:

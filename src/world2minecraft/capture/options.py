@@ -11,8 +11,8 @@ OPTION_NAMES = (
     "depth_unit", "every", "colour_camera", "unit", "up", "inside", "frames", "fov_deg",
     "eye_height_m", "pitch_deg",
 )  # fmt: skip
-SOLID_UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
-LEAST_FRAMES = 3  # Two photos cannot check each other.
+MESH_UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
+MIN_FRAMES = 3  # Two photos cannot check each other.
 UP_AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 
@@ -64,8 +64,8 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
         unit,
         int(every),
         colour_camera,
-        _one_of("unit", options.get("unit"), tuple(SOLID_UNITS_M)),
-        _one_of("up", options.get("up"), UP_AXES),
+        _choice("unit", options.get("unit"), tuple(MESH_UNITS_M)),
+        _choice("up", options.get("up"), UP_AXES),
         _point("inside", options.get("inside")),
         _frames(options.get("frames")),
         _number("fov_deg", options.get("fov_deg"), 5, 170),
@@ -89,12 +89,12 @@ def _number(name: str, value: str | None, least: float, most: float) -> float | 
 def _frames(value: str | None) -> int | None:
     if value is None:
         return None
-    if not value.isascii() or not value.isdigit() or not LEAST_FRAMES <= int(value) < 10**5:
-        raise UsageError(f"frames must be a whole number of {LEAST_FRAMES} or more, not {value!r}")
+    if not value.isascii() or not value.isdigit() or not MIN_FRAMES <= int(value) < 10**5:
+        raise UsageError(f"frames must be a whole number of {MIN_FRAMES} or more, not {value!r}")
     return int(value)
 
 
-def _one_of(name: str, value: str | None, known: tuple[str, ...]) -> str | None:
+def _choice(name: str, value: str | None, known: tuple[str, ...]) -> str | None:
     if value is not None and value not in known:
         raise UsageError(f"{name} must be one of {', '.join(known)}, not {value!r}")
     return value

@@ -17,7 +17,7 @@ from world2minecraft.capture.validation import JudgedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Photo
 
-LONGEST_PX = (
+MAX_SIDE_PX = (
     1024  # Features of a 12-megapixel photo are found as well at this size, 16 times faster.
 )
 
@@ -33,7 +33,7 @@ class CapturePhotos:
 
     frames: tuple[FrameFiles, ...]
     lens: str = "stated"
-    longest_px: int = LONGEST_PX
+    longest_px: int = MAX_SIDE_PX
     damaged: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -51,13 +51,13 @@ class CapturePhotos:
             yield photo
 
 
-def judged_photos(judged: JudgedCapture, longest_px: int = LONGEST_PX) -> CapturePhotos:
+def photos_of_capture(judged: JudgedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
     """Return the photos of a judged capture: its usable frames that have a colour image."""
     frames = tuple(frame for frame in judged.frames if frame.colour_path is not None)
     return CapturePhotos(frames, judged.capture.lens, longest_px)
 
 
-def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = LONGEST_PX) -> Photo:
+def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SIDE_PX) -> Photo:
     """Decode the colour image of a frame, and make it and its camera smaller where it is large.
 
     Args:
@@ -71,7 +71,7 @@ def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = LONGES
     place: ImagePlace | None = frame.colour_path
     if place is None:
         raise DamagedFileError(frame.name, "has no colour image")
-    colour = shrunk(read_colour(place), longest_px)
+    colour = downscale(read_colour(place), longest_px)
     camera = frame.colour_camera
     try:
         if camera is not None:
@@ -87,7 +87,7 @@ def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = LONGES
         raise DamagedFileError(place, str(error)) from error
 
 
-def shrunk(colour: np.ndarray, longest_px: int) -> np.ndarray:
+def downscale(colour: np.ndarray, longest_px: int) -> np.ndarray:
     """Return a picture of at most ``longest_px`` on its longer side.
 
     Args:

@@ -11,7 +11,7 @@ from world2minecraft.core.files import read_bytes
 
 ORTHONORMAL_TOLERANCE = 1e-3  # The shared kitchen is off by 4e-4; a scale of 1.001 is no slip.
 ROUNDING = 1e-12  # What is orthonormal already stays as stated, to the last bit.
-MAX_AWAY_M = 25.0  # From the middle of the cameras; further ones did not see one room.
+MAX_DISTANCE_M = 25.0  # From the middle of the cameras; further ones did not see one room.
 MAX_POSE_BYTES = 10_000
 
 
@@ -41,7 +41,7 @@ def is_lost(pose: np.ndarray) -> bool:
     return not np.isfinite(pose).all()
 
 
-def mend_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
+def repair_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
     """Return a rigid pose, exactly orthonormal.
 
     Args:
@@ -78,7 +78,7 @@ def mend_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
     return mended
 
 
-def check_spread(
+def check_camera_spread(
     frames: Sequence[FrameFiles], where: AnyPath, typical_depth_m: float
 ) -> tuple[tuple[FrameFiles, ...], tuple[tuple[str, str], ...]]:
     """Refuse poses whose places cannot be those of a camera in one room; leave out strays.
@@ -97,15 +97,15 @@ def check_spread(
     places = np.array([np.asarray(frame.camera_to_world)[:3, 3] for frame in frames])
     away_m = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     most_m = float(np.quantile(away_m, 0.9))
-    if most_m > MAX_AWAY_M:
+    if most_m > MAX_DISTANCE_M:
         advice = "they look like millimetres: divide the translations by 1000"
         raise CaptureError(
             where,
             f"the cameras stand up to {most_m:,.0f} m from their middle"
             + (f" and see {typical_depth_m:.1f} m far; " if typical_depth_m else "; ")
-            + (advice if most_m / 1000 < MAX_AWAY_M else "the poses must be in metres"),
+            + (advice if most_m / 1000 < MAX_DISTANCE_M else "the poses must be in metres"),
         )
-    stays = away_m <= MAX_AWAY_M
+    stays = away_m <= MAX_DISTANCE_M
     strays = tuple(
         (frame.name, f"tracking jumped: its camera is {away:,.0f} m from the others")
         for frame, away, stay in zip(frames, away_m, stays, strict=True)

@@ -4,19 +4,19 @@ from PIL import Image
 
 from world2minecraft.core.archives import AnyPath
 
-MARK = "w2m scan"  # What the PNG says of the software that wrote it.
-NAME_END = "-scan.png"
+SOFTWARE_TAG = "w2m scan"  # What the PNG says of the software that wrote it.
+POSTER_SUFFIX = "-scan.png"
 
 
 def is_poster(path: AnyPath) -> bool:
     """Return whether a file is such a page, so that it may be written anew."""
     try:
         with path.open("rb") as stream, Image.open(stream, formats=("PNG",)) as image:
-            return getattr(image, "text", {}).get("Software") == MARK
+            return getattr(image, "text", {}).get("Software") == SOFTWARE_TAG
     except (OSError, SyntaxError, ValueError):
         return False
 
 
-def lies_about(path: AnyPath) -> bool:
+def is_saved_poster(path: AnyPath) -> bool:
     """Return whether a file of a capture's folder is such a page, drawn by one who stood in it."""
-    return path.name.endswith(NAME_END) and is_poster(path)
+    return path.name.endswith(POSTER_SUFFIX) and is_poster(path)

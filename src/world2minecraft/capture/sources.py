@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from world2minecraft.capture.frames import Capture, Source, TellableSource
+from world2minecraft.capture.frames import Capture, ConfigurableSource, Source
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError
@@ -54,7 +54,7 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
 
     Args:
         path: a folder, one of its ``INDEX_FILES``, a zip of either, or a file that a source knows.
-        options: what the user says of it; told to sources that are ``TellableSource``.
+        options: what the user says of it; told to sources that are ``ConfigurableSource``.
 
     Raises:
         CaptureError: it is missing, empty, of another kind or contradicts itself.
@@ -90,7 +90,7 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
 
 
 def _read(source: Source, place: AnyPath, options: ScanOptions | None) -> Capture:
-    if isinstance(source, TellableSource):
+    if isinstance(source, ConfigurableSource):
         return source.read_with(place, options or ScanOptions())
     return source.read(place)
 

@@ -14,8 +14,8 @@ import numpy as np
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.quality import Survey, survey_capture
-from world2minecraft.capture.quality.diagnostics import Doubt, doubts_of
-from world2minecraft.capture.quality.processing_route import Route, route_of
+from world2minecraft.capture.quality.diagnostics import Diagnostic, diagnose_capture
+from world2minecraft.capture.quality.processing_route import Route, choose_route
 from world2minecraft.capture.validation import JudgedCapture, judge_capture
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.types import Camera
@@ -163,7 +163,7 @@ class CaptureSummary:
     labelled: int
     skipped: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[Diagnostic, ...]
     next_command: str
     survey: Survey = field(repr=False, compare=False)
 
@@ -187,7 +187,7 @@ def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) ->
     """Describe a capture that is judged; ``options`` are named again in the next command."""
     frames = judged.frames
     survey = survey_capture(judged)
-    route = route_of(judged)
+    route = choose_route(judged)
     colour = next((frame.colour_camera for frame in frames if frame.colour_camera), None)
     depth = next((frame.depth_camera for frame in frames if frame.depth_camera), None)
     room = None if survey.plan is None else survey.plan.room_size_m
@@ -212,7 +212,7 @@ def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) ->
         labelled=sum(frame.labels_path is not None for frame in frames),
         skipped=judged.skipped,
         notes=judged.notes,
-        doubts=doubts_of(survey, route),
+        doubts=diagnose_capture(survey, route),
         next_command=reconstructing(judged.capture.folder, options or {}),
         survey=survey,
     )

@@ -11,7 +11,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from world2minecraft.capture.alignment.image_rotation import SAID, quarter_turns_of, turned_frame
+from world2minecraft.capture.alignment.image_rotation import (
+    TURN_DESCRIPTIONS,
+    find_quarter_turns,
+    rotate_frame,
+)
 from world2minecraft.capture.depth_images import (
     DepthEncoding,
     check_depth_kind,
@@ -28,7 +32,7 @@ from world2minecraft.capture.images import (
 )
 from world2minecraft.capture.label_images import attach_labels, check_labels
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.poses import check_spread, is_lost, mend_pose
+from world2minecraft.capture.poses import check_camera_spread, is_lost, repair_pose
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import (
     CaptureError,
@@ -199,7 +203,7 @@ def _mended(capture: Capture, frames: list[FrameFiles]) -> tuple[tuple[FrameFile
             continue
         pose = np.asarray(frame.camera_to_world, np.float64)
         try:
-            rigid = mend_pose(pose, capture.folder, frame.name)
+            rigid = repair_pose(pose, capture.folder, frame.name)
         except CaptureError as error:
             wrong.append(error)
             skipped.append((frame.name, error.reason))
@@ -275,7 +279,7 @@ def judge(
     typical_m = _typical_depth(paths, encoding)
     strayed: Skipped = ()
     if is_posed(frames) and capture.scale != "unknown":
-        frames, strayed = check_spread(frames, capture.folder, typical_m)
+        frames, strayed = check_camera_spread(frames, capture.folder, typical_m)
     notes = [*capture.notes, *turned]
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
@@ -288,11 +292,11 @@ def _upright(
     frames: tuple[FrameFiles, ...], capture: Capture
 ) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
     """Return the frames with upright images where the capture knows up, and what to tell."""
-    turns = 0 if capture.world_up is None else quarter_turns_of(frames, capture.world_up)
+    turns = 0 if capture.world_up is None else find_quarter_turns(frames, capture.world_up)
     if turns == 0:
         return frames, ()
-    note = f"the images lie on their side or head; they are read with {SAID[turns]}"
-    return tuple(turned_frame(frame, turns) for frame in frames), (note,)
+    note = f"the images lie on their side or head; they are read with {TURN_DESCRIPTIONS[turns]}"
+    return tuple(rotate_frame(frame, turns) for frame in frames), (note,)
 
 
 def _decodable(paths: list[ImagePlace]) -> list[ImagePlace]:

@@ -74,14 +74,14 @@ def run(
     """
     check_target(source, target, force)
     from world2minecraft.cli.render.options import box_of
-    from world2minecraft.formats.volume_formats import templates_of_run
+    from world2minecraft.formats.volume_formats import read_run_templates
     from world2minecraft.minecraft.file_format import WriteOptions
 
     options = WriteOptions(
         mc_version=mc_version,
         schem_version=schem_version,
         name=name or target.stem,
-        other={"templates": templates_of_run(source)},
+        other={"templates": read_run_templates(source)},
     )
     convert(source, target, options, blocks_per_metre, labels, force, box_of(box))
 
@@ -96,7 +96,7 @@ def convert(
     box: "Box | None" = None,
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
-    from world2minecraft.formats.volume_formats import write_form
+    from world2minecraft.formats.volume_formats import write_volume
     from world2minecraft.minecraft.block_names import mod_blocks
     from world2minecraft.minecraft.commands.datapack import namespace_of
     from world2minecraft.minecraft.file_format import Losses
@@ -107,7 +107,7 @@ def convert(
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".w2m-") as folder:
         # The new one is whole before the old one goes; both lie on one disk.
         written = Path(folder) / target.name
-        write_form(volume, written, options, unwritten)
+        write_volume(volume, written, options, unwritten)
         put_all_in_place(written, target, force)
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
@@ -129,10 +129,10 @@ def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume
         InputError: it cannot be read, or nothing but air is in the box.
         UsageError: the box lies beside the build.
     """
-    from world2minecraft.formats.build_source import read_source
-    from world2minecraft.formats.volume_formats import read_form
+    from world2minecraft.formats.build_source import read_build
+    from world2minecraft.formats.volume_formats import read_volume
 
-    return read_form(source, losses) if box is None else read_source(source, box).volume
+    return read_volume(source, losses) if box is None else read_build(source, box).volume
 
 
 def scaled(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
@@ -187,9 +187,9 @@ def check_target(source: Path, target: Path, force: bool) -> None:
     """
     if not source.exists():
         raise InputError(source, "is not there")
-    from world2minecraft.formats.volume_formats import form_to_write
+    from world2minecraft.formats.volume_formats import format_for_path
 
-    form = form_to_write(target)
+    form = format_for_path(target)
     if not os.path.lexists(target):
         return
     if target.exists() and source.samefile(target):

@@ -1,8 +1,12 @@
-"""Vanilla designs of furniture in their places and in the real colours.
+"""Vanilla furniture designs on the canvas, in the real colours of their objects.
 
-The materials of a design say which roles take the object's colour (``tinting``). A template of
-another package that says nothing of materials is recoloured by the names of its blocks: the room
-chooses the wood and the dye, and a full block whose colour is far off becomes a plain one.
+The materials of a design state which roles take the object's colour. Roles of one material take one
+colour, the median of their cells, so that a chair's legs and seat are of one wood; each becomes the
+nearest block of its kind that has all the shapes it needs. Where a wood or stone is plainly wrong
+(red cupboards), the nearest of all blocks that have these shapes is used. Plain blocks are painted
+one by one. A template of another package without materials is recoloured by the names of its
+blocks: the room chooses the wood and the dye, and a full block of a distant colour becomes a plain
+one.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,7 +36,18 @@ from world2minecraft.minecraft.block_colours import (
 )
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 
-# The part of a design that lies on the canvas, and what stands there.
+OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
+OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
+OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
+CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
+PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
+_KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
+LIFTED_UNDER, HIGH_M = (
+    1.5,
+    1.2,
+)  # Blocks per metre; what hangs so high over the floor has air below.
+TIE = 1e-6
+OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
 
 
 class Window(NamedTuple):
@@ -70,20 +85,6 @@ def window_on(
     free = ~stands[1:-1, 1:-1, 1:-1] & within[inside]
     wall = canvas.semantic[inside] == SemanticClass.WALL
     return Window(box, start, free, wall, dilate_faces(stands)[1:-1, 1:-1, 1:-1])
-
-
-# The materials of a vanilla design in an object's real colours.
-#
-# Roles of one material take one colour, the median of their cells, so that a chair's legs and seat
-# are of one wood; each becomes the nearest of its kind that has all the shapes it needs. Where a
-# wood or stone is plainly wrong (red cupboards), what is nearest among all that has these shapes
-# stands for it. Plain blocks are painted one by one, like what is built from an object's own cells.
-
-OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
-OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
-OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
-CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
-PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
 
 
 class Hue(NamedTuple):
@@ -222,15 +223,6 @@ def _nearest(
     samples = [one.sample for one in offered]
     costs = costs_of(colour[None], samples, parameters.lightness_weight, handicaps, FADED)
     return offered[int(costs[0].argmin())]
-
-
-_KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
-LIFTED_UNDER, HIGH_M = (
-    1.5,
-    1.2,
-)  # Blocks per metre; what hangs so high over the floor has air below.
-TIE = 1e-6
-OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
 
 
 class Thing(NamedTuple):

@@ -1,4 +1,8 @@
-"""Objects from their own cells: filled where they are closed, fitted, and equal where equal."""
+"""Objects built from their own cells: as solids for the fit, or resampled to full blocks.
+
+Closed objects are filled and equal ones share one solid. Where no finer shape exists in the colours
+of an object it becomes full blocks, resampled so that thin parts survive.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -33,11 +37,24 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.furniture.solids import OWN_CELLS
 
-# An object of full blocks from its own cells: resampled so that thin things survive.
-#
-# That is what becomes of an object in whose colours no finer shape exists.
-
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
+# What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
+CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
+NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
+SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
+COPY_IOU = 0.5  # and meet in so much of what either fills.
+SLIM = 0.5  # What is a cell thick is thinner: a cell is on where an eighth of it is filled.
+SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
+FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
+LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
+FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
+MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
+# What of these does not stand on a floor may hang on a wall.
+HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
+BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
+# Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
+# count whole; here what is one cell thick counts half.
+LEAST_IOU, LEAST_THIN = 0.25, 0.5
 
 
 class Shape(NamedTuple):
@@ -122,19 +139,6 @@ def _blur(profile: np.ndarray, edges: np.ndarray) -> float:
     filled = share @ profile
     # The sum of squares is greatest when the mass stands in few blocks.
     return -round(float((filled**2).sum()), 6)
-
-
-# What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
-CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
-NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
-SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
-COPY_IOU = 0.5  # and meet in so much of what either fills.
-SLIM = 0.5  # What is a cell thick is thinner: a cell is on where an eighth of it is filled.
-SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
-FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
-LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
-FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
-MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
 
 
 class Solid(NamedTuple):
@@ -376,16 +380,6 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
     thin = thin_cells(mask, voxel_m)
     wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
     return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)
-
-
-# Which objects are shown well by their own cells, and what their cells are fitted to.
-
-# What of these does not stand on a floor may hang on a wall.
-HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
-BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
-# Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
-# count whole; here what is one cell thick counts half.
-LEAST_IOU, LEAST_THIN = 0.25, 0.5
 
 
 def solids_of(

@@ -1,8 +1,11 @@
-"""Keeping to the blocks that a palette names: what else was set becomes the nearest of them.
+"""Final passes over a canvas: connections and supports as in the game, then allowed blocks only.
 
-A shape of another material becomes the same shape of a named one; what fills most of its block
-becomes a named full block; what is small, such as a button, goes. Light and barriers stay: nobody
-sees them.
+A world file gets no block updates, so a pane that does not state its connections stands alone, and
+a torch without its wall hangs there until somebody builds next to it.
+
+Where a palette lists its blocks, every other block becomes the nearest listed one: a shape of
+another material the same shape of a listed one, what fills most of its block a full block. What is
+small, such as a button, is removed. Light and barriers stay: they are invisible.
 """
 
 from collections.abc import Mapping
@@ -25,13 +28,14 @@ from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unmet_cells
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
-# Connections, shapes and supports of a finished canvas, as the game would have them.
-#
-# A world file gets no block updates, so a pane that does not state its connections stands alone, and
-# a torch without its wall hangs there until somebody builds beside it.
-
 ROUNDS = 8  # A lantern at a chain at a fence: what falls seldom carries more than a few others.
 _LEAVES = ("falls", "pops off", "breaks", "flows")
+UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
+# Endings of names that are one shape in many materials.
+SHAPES = ("_stairs", "_slab", "_trapdoor", "_fence_gate", "_fence", "_wall", "_carpet", "_bed",
+          "_door", "_button", "_pressure_plate", "_wall_sign", "_sign", "_wall_banner", "_banner",
+          "_pane", "_candle", "_log", "_wood")  # fmt: skip
+MOST = 0.5  # Of a block: what fills more of it becomes a full block, what fills less goes.
 
 
 def connect(canvas: Canvas) -> None:
@@ -64,14 +68,6 @@ def settle(canvas: Canvas) -> int:
         canvas.put(~block_axes_to_grid(stays), 0, 0)
         taken += int((~stays).sum())
     return taken
-
-
-UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
-# Endings of names that are one shape in many materials.
-SHAPES = ("_stairs", "_slab", "_trapdoor", "_fence_gate", "_fence", "_wall", "_carpet", "_bed",
-          "_door", "_button", "_pressure_plate", "_wall_sign", "_sign", "_wall_banner", "_banner",
-          "_pane", "_candle", "_log", "_wood")  # fmt: skip
-MOST = 0.5  # Of a block: what fills more of it becomes a full block, what fills less goes.
 
 
 def restrict(canvas: Canvas, palette: Palette) -> None:

@@ -1,4 +1,9 @@
-"""Objects as shapes on the block lattice: fitted in their own frame, turned, and put in place."""
+"""Objects as shapes on the block lattice: fitted in their own frame, turned, and put in place.
+
+Half blocks are an array ``halves`` uint8 [X, Y, Z] with bit 1 for the lower half of a block and bit
+2 for the upper. They are used where no finer shape exists in an object's colours; each becomes a
+full block.
+"""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -13,22 +18,14 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Part
 
-# Shapes in half blocks: each block is empty, full, or its lower or upper half.
-#
-# A design is an array ``halves`` uint8 [X, Y, Z]: bit 1 for the lower half of the block, bit 2 for
-# the upper. They are what is left where no finer shape exists in an object's colours: each becomes a
-# full block.
-
 LOWER, UPPER, FULL = 1, 2, 3
+TIE = 1e-6
+LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.
 
 
 def of_half_layers(layers: np.ndarray) -> np.ndarray:
     """Return halves, uint8 [X, Y, Z], of a bool array [X, Y, 2 Z] with two layers a block."""
     return (layers[:, :, 0::2] * LOWER + layers[:, :, 1::2] * UPPER).astype(np.uint8)
-
-
-TIE = 1e-6
-LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.
 
 
 class Design(NamedTuple):

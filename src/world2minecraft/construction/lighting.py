@@ -1,7 +1,8 @@
-"""Light for a room: invisible light blocks in free air, so that no floor and no corner is dark.
+"""Light for a room: hanging lamps, and invisible light blocks where it would still be dark.
 
-A lattice of lights comes first; where it leaves a place one stands at, or any air of the room, too
-dark, more are set. Lamps and glowing furniture that stand already count.
+A lamp hangs from the ceiling by chains where there is room to walk under it, and else lies flush in
+the ceiling. Where no ceiling was built nothing can hang. Light blocks start as a lattice; more are
+added where a floor or any air of the room stays too dark. Lamps and glowing furniture count.
 """
 
 from typing import NamedTuple
@@ -20,11 +21,6 @@ from world2minecraft.minecraft.rules.light import (
     spread_light,
 )
 
-# Lamps that a builder would hang: over tables, and over the middle of what stays dark.
-#
-# A lamp hangs from the ceiling by chains where there is room to walk under it, and else lies flush
-# in the ceiling. Where no ceiling was built nothing can hang, and the hidden lights do all.
-
 LAMP_M = 0.3  # A shade's width.
 CORD_M = 0.35
 WALK_M, WALK_BLOCKS = 2.0, 2  # What stays free under a lamp: a person, and a player.
@@ -36,6 +32,12 @@ CHAIN = "minecraft:chain[axis=y,waterlogged=false]"
 LANTERN = "minecraft:lantern[hanging=true,waterlogged=false]"
 SHADE = "minecraft:sea_lantern"
 DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
+LEVEL = BRIGHTEST
+LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
+LEAST_CORNER = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
+ABOVE_FLOOR = 2  # Over the head of a player that stands.
+SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
+APART = 6  # Blocks between lights that are added in one round.
 
 
 class _Room(NamedTuple):
@@ -154,14 +156,6 @@ def _fits(canvas: Canvas, room: _Room, x: int, y: int, wide: int, depth: int) ->
         low_x : low_x + wide, low_y : low_y + wide, room.level - depth : room.level
     ]
     return box.shape[:2] == (wide, wide) and bool(box.all())
-
-
-LEVEL = BRIGHTEST
-LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
-LEAST_CORNER = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
-ABOVE_FLOOR = 2  # Over the head of a player that stands.
-SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
-APART = 6  # Blocks between lights that are added in one round.
 
 
 def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:

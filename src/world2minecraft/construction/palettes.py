@@ -1,8 +1,11 @@
-"""Reading palette files, JSON or YAML, and telling what is wrong with one.
+"""Palettes: which blocks a room may be built of, by name or from a JSON or YAML file.
 
-A file may begin from another palette (``extends``), so that one of a user needs two lines: a name
-and the blocks. Every block is looked up in the game's table, except those of other namespaces,
-which are of mods.
+A palette lists the full blocks that a surface of each class may be made of. A palette of a mod also
+lists which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
+(``meanings``). One that lists ``blocks`` is restricted to them (``finishing``). A file may extend
+another palette (``extends``), so that a user's file needs two lines: a name and the blocks. Every
+block is looked up in the game's table, except those of other namespaces, which are of mods.
+docs/palettes.md describes the format.
 """
 
 import json
@@ -25,13 +28,30 @@ from world2minecraft.minecraft.collision_shapes import is_full_cube
 if TYPE_CHECKING:
     from world2minecraft.construction.block_meanings import Meanings
 
-# The furniture of a mod that a palette offers: blocks that stand for some templates.
-
 FILLS = ("one", "row", "floor", "box")
 # Where a block's facing looks, of a piece that looks east.
 FACINGS = {"front": "east", "back": "west", "left": "north", "right": "south"}
 LARGEST = 8  # Blocks a side of a piece made of several.
 JOINS = ("sides", "flags", "shape")
+PALETTE_FILES = {
+    "vanilla": "palette_vanilla.json",
+    "tmeo": "palette_tmeo.json",
+    "refurbished_furniture": "palette_refurbished_furniture.json",
+}
+FILE_SUFFIXES = (".yaml", ".yml", ".json")
+MAX_BYTES = 1 << 20
+MAX_NAMES = 4096
+KEYS = (
+    "name", "about", "extends", "blocks", "groups", "classes", "prefers", "defaults", "slabs",
+    "fences", "glass", "pane", "furniture", "reads",
+)  # fmt: skip
+PAINTED = (*STRUCTURE_CLASSES, *OBJECT_CLASSES)
+# What does not stand by itself for good, by parts of names: it falls, melts, grows, weathers.
+_PASSING = ("concrete_powder", "sand", "gravel", "ice", "coral", "leaves", "grass_block",
+            "mycelium", "podzol", "nylium", "farmland", "dragon_egg", "anvil", "tnt", "sponge",
+            "spawner", "command_block", "structure_block", "jigsaw", "_ore")  # fmt: skip
+_LASTING = ("sandstone", "packed_ice", "blue_ice")
+_WEATHERING = ("copper",)
 
 
 class Cell(NamedTuple):
@@ -100,21 +120,6 @@ def _cell(raw: Any) -> Cell:
     return Cell((at[0], at[1], at[2]), raw["id"], tuple(sorted(texts.items())))
 
 
-# Which blocks a room may be built of: palettes by name, or a file of one's own.
-#
-# A palette says which full blocks a surface of each class may be made of. A mod's says beside it
-# which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
-# (``meanings``). One that lists ``blocks`` is restricted to them (``restricting``). Files are read
-# and checked by ``palette_files``; docs/palettes.md says how they are written.
-
-PALETTE_FILES = {
-    "vanilla": "palette_vanilla.json",
-    "tmeo": "palette_tmeo.json",
-    "refurbished_furniture": "palette_refurbished_furniture.json",
-}
-FILE_SUFFIXES = (".yaml", ".yml", ".json")
-
-
 @dataclass(frozen=True)
 class Palette:
     """Blocks by class. States are complete; ``slabs`` and ``fences`` go by full block.
@@ -148,7 +153,6 @@ def load_palette(name: str) -> Palette:
         UnknownNameError: no palette and no file has this name.
         InputError: the file is no palette; the message says what it lacks.
     """
-
     if name in PALETTE_FILES:
         return source_of(name)
     if name.endswith(FILE_SUFFIXES):
@@ -162,21 +166,6 @@ def shipped(name: str) -> str:
     """Return the text of a palette file of the program."""
     source = files("world2minecraft.construction") / "data" / PALETTE_FILES[name]
     return source.read_text("utf-8")
-
-
-MAX_BYTES = 1 << 20
-MAX_NAMES = 4096
-KEYS = (
-    "name", "about", "extends", "blocks", "groups", "classes", "prefers", "defaults", "slabs",
-    "fences", "glass", "pane", "furniture", "reads",
-)  # fmt: skip
-PAINTED = (*STRUCTURE_CLASSES, *OBJECT_CLASSES)
-# What does not stand by itself for good, by parts of names: it falls, melts, grows, weathers.
-_PASSING = ("concrete_powder", "sand", "gravel", "ice", "coral", "leaves", "grass_block",
-            "mycelium", "podzol", "nylium", "farmland", "dragon_egg", "anvil", "tnt", "sponge",
-            "spawner", "command_block", "structure_block", "jigsaw", "_ore")  # fmt: skip
-_LASTING = ("sandstone", "packed_ice", "blue_ice")
-_WEATHERING = ("copper",)
 
 
 def read_palette(path: Path) -> Palette:

@@ -1,4 +1,10 @@
-"""Setting the shell on the canvas: painted floor, walls, ceiling, glass and the unseen edge."""
+"""The shell on the canvas: painted floor, walls and ceiling, glass, rugs, pictures, unseen edge.
+
+Rugs and pictures are parts of a flat surface with another paint, distinguished from shade and
+noise. Shade multiplies light, which in Oklab multiplies all three coordinates alike, so hue and
+chroma are compared at one lightness. Lightness itself is compared with a smooth surface fitted over
+the patch, so that the fall of light towards a corner does not count.
+"""
 
 from typing import NamedTuple
 
@@ -14,16 +20,12 @@ from world2minecraft.construction.surface_painting import block_colours, painted
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate
 
-# Rugs and pictures: parts of a flat surface whose paint is another, told from shade and noise.
-#
-# Shade multiplies light, which in Oklab multiplies all three coordinates alike; so hue and chroma are
-# compared at one lightness. Lightness by itself is compared with a smooth surface fitted over the
-# patch, so that the fall of light towards a corner counts for nothing.
-
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
 LEAST_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
 MOST_SHARE = 0.6  # What covers more of a surface is the surface.
+SURE_SHARE = 0.3  # Of a part that stands out. A guess: a picture's rim is half wall.
+LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
 
 
 class Steps(NamedTuple):
@@ -41,7 +43,6 @@ RUG = Steps(0.04, np.inf, 0.03, np.inf, 0.5)
 # A picture is a mix of colours at 4 blocks a metre, darker than its wall by 0.25 to 0.3; a curtain
 # darkens the wall beside it by up to 0.19.
 PICTURE = Steps(0.04, 0.22, 0.015, 0.045, 0.3)
-SURE_SHARE = 0.3  # Of a part that stands out. A guess: a picture's rim is half wall.
 
 
 def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: Steps) -> np.ndarray:
@@ -98,7 +99,6 @@ def _smooth(at: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 STAND_OUT = {WALL: PICTURE, FLOOR: RUG}
-LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
 
 
 def put_shell(

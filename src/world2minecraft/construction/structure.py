@@ -1,7 +1,8 @@
 """The shell of a room as blocks: floor, walls with windows, ceiling, by rules and never by fit.
 
-In: the labelled grid and the lattice. Out: masks of blocks for each part of the shell, each part
-a surface of its own with the cells that colour it.
+Input: the labelled grid and the lattice. Output: masks of blocks for each part of the shell, each
+part a surface of its own with the cells that colour it. Ceilings are flat, at the heights at which
+they were seen, and closed over their rooms.
 """
 
 from dataclasses import dataclass
@@ -30,12 +31,20 @@ from world2minecraft.geometry.morphology import (
     nearest_set_cells,
 )
 
-# Ceilings: flat, at the heights at which they were seen, and closed over their rooms.
-
 CEILING, FLOOR, WALL, WINDOW = (
     int(SemanticClass[name]) for name in ("CEILING", "FLOOR", "WALL", "WINDOW")
 )
 CEILING_SHARE = 0.4  # Of a storey's plan; of less, most of the ceiling would be made up.
+# A block with more seen free space than this is an opening, not a hole in what was seen. A guess:
+# a wall's own face takes up to half of its block's free space away.
+OPEN_SHARE = 0.35
+STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
+FOOTPRINT_SHARE = 0.25
+OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
+ROOM_M2 = 0.5  # Smaller pieces of floor lie in a window's niche or behind it.
+LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
+FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
+STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
 
 
 def find_ceiling(
@@ -112,18 +121,6 @@ def cover_with_glass(
     plan = dilate(footprint, (1, 1))
     if level < min(top, walls.shape[2]) and not (ceiling[:, :, ground:top] & plan[..., None]).any():
         ceiling[:, :, level] |= plan
-
-
-# A block with more seen free space than this is an opening, not a hole in what was seen. A guess:
-# a wall's own face takes up to half of its block's free space away.
-OPEN_SHARE = 0.35
-STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
-FOOTPRINT_SHARE = 0.25
-OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
-ROOM_M2 = 0.5  # Smaller pieces of floor lie in a window's niche or behind it.
-LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
-FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
-STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
 
 
 @dataclass(frozen=True, eq=False)

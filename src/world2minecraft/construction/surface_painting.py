@@ -1,4 +1,14 @@
-"""Painting what was shaped: each surface of the shell and each object gets its blocks."""
+"""Painting: each surface of the shell and each object gets its blocks.
+
+A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
+first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
+block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
+between a red front and a dark counter stays.
+
+A chair is small and half in the shade of a table, so the median of its cells is that of shadow. Its
+lighter half shows its material, and of a frame with cushions the part that has a hue. Chairs of
+similar colours are a set and share one paint.
+"""
 
 from collections.abc import Sequence
 
@@ -13,13 +23,6 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
-# From the colours of a surface to the few blocks that show it calmly.
-#
-# A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
-# first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
-# block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
-# between a red front and a dark counter stays.
-
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0
 ROUNDS = 4
@@ -32,6 +35,14 @@ DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour i
 FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
+SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
+LIGHTER_SHARE = 0.5
+MIN_HUE_CHROMA, MIN_HUE_SHARE = (
+    0.03,
+    0.3,
+)  # Over sensor noise; grey cushions leave so much of a frame.
+NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
+TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
 
 def costs_of(
@@ -196,20 +207,6 @@ def _joined(
     return result[parts]
 
 
-# The paint of chairs: one for a chair, and the same for chairs of one set.
-#
-# A chair is small and half in the shade of a table, so the median of its cells is that of shadow;
-# its lighter half says what it is made of, and of a frame with cushions the part that has a hue.
-# Chairs whose colours lie near are a set.
-
-SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
-LIGHTER_SHARE = 0.5
-MIN_HUE_CHROMA, MIN_HUE_SHARE = (
-    0.03,
-    0.3,
-)  # Over sensor noise; grey cushions leave so much of a frame.
-
-
 def chair_paints(
     grid: OccupancyGrid, colours: np.ndarray, usable: np.ndarray, lightness_weight: float
 ) -> dict[int, np.ndarray]:
@@ -256,10 +253,6 @@ def lit_colour(colours: np.ndarray) -> np.ndarray:
 
 def _apart(one: np.ndarray, other: np.ndarray, weight: np.ndarray) -> float:
     return float(np.linalg.norm((one - other) * weight))
-
-
-NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
-TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
 
 def block_colours(

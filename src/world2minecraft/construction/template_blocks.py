@@ -1,4 +1,4 @@
-"""A furniture template as blocks: its metric parts snapped onto the block lattice.
+"""Templates as blocks: half blocks from metric parts, and block states for fitted designs.
 
 The placement's box is snapped to whole blocks first and the parts are stretched with it, in the
 template's own frame: so a symmetric chair stays symmetric, equal chairs come out equal, and the
@@ -26,9 +26,13 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.minecraft.block_colours import colours_of
 
-# Where things may stand, and in which order they are set.
-
 LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
+PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
+GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
+MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
+TIE = 1e-6
+POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
 def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
@@ -46,13 +50,6 @@ def in_order(placement: Placement) -> tuple:
     rank = LAST.get(placement.class_id, 0)
     own = placement.template == OWN_CELLS
     return rank, own, placement.object_id, placement.center_m.tolist(), placement.template
-
-
-# Shapes get their blocks: which kinds an object may use, and the states of a design.
-
-PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
-GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
-MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
 
 
 class Dresser:
@@ -110,11 +107,6 @@ class Dresser:
         light = np.sqrt(self.parameters.lightness_weight)
         apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
         return bool(apart[0] - apart[1] <= GIVEN_UP)
-
-
-THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
-TIE = 1e-6
-POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
 class HalfBlockDesign(NamedTuple):

@@ -1,8 +1,9 @@
-"""Glossy worktops: long tops that gave no depth, made whole as one dark plate over their fronts.
+"""Glossy worktops and glass tops that gave no depth, completed as one plate over their fronts.
 
 Polished stone mirrors the light away from a depth sensor. What is left of a worktop is a step from
-seen free space to unseen cells, a rim of a few dark cells over the front and whatever lies on it.
-Out of these comes one plate, at one height and of one colour.
+seen free space to unseen cells, a rim of a few dark cells over the front and whatever lies on it: a
+ray that crosses the space above a counter leaves free cells above unseen ones. Such a step, level
+with the rim of an object and joined to it, is its top. The plate has one height and one colour.
 """
 
 from typing import NamedTuple
@@ -26,14 +27,18 @@ from world2minecraft.minecraft.block_colours import colours_of
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 
-# Tops of objects that gave no depth: glossy counters and glass tables, closed where space shows.
-#
-# A ray that crosses the space above a counter and meets nothing measurable in it leaves free cells
-# above unseen ones. Such a step, level with the rim of an object and joined to it, is its top.
-
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
 REACH_M = 0.7  # How far from the rim: the depth of a worktop.
 LEAST_RIM_M = 0.3  # Lower things are no furniture with a top.
+LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
+LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.
+FRONT_APART = 0.12  # Oklab distance to the front from which a cell at the rim is no part of it.
+DARK_SHARE = 0.25  # Of the cells at the rim that are no front. Things that lie on it are lighter.
+LEAST_RIM = 8  # Cells; fewer say nothing of the colour.
+COVERED = 0.2  # Share of a block's face: a rim of one cell counts.
+GAP_CELLS = 2  # Things that lie on a top hide it.
+PILLAR_CELLS = 3  # Own cells that go on so far above and below are no top.
+PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 
 
 def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -99,16 +104,6 @@ def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
     flat = np.zeros((3, 3, 3), bool)
     flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
     return dilate_within(rim, steps | rim, flat, reach) & steps & ~rim
-
-
-LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
-LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.
-FRONT_APART = 0.12  # Oklab distance to the front from which a cell at the rim is no part of it.
-DARK_SHARE = 0.25  # Of the cells at the rim that are no front. Things that lie on it are lighter.
-LEAST_RIM = 8  # Cells; fewer say nothing of the colour.
-COVERED = 0.2  # Share of a block's face: a rim of one cell counts.
-GAP_CELLS = 2  # Things that lie on a top hide it.
-PILLAR_CELLS = 3  # Own cells that go on so far above and below are no top.
 
 
 class Worktop(NamedTuple):
@@ -217,11 +212,6 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
     plan = np.asarray(own[:, :, level : level + 3].any(2) & ~pillar)
     plan[steps[:, 0], steps[:, 1]] = True
     return binary_closing(plan, (GAP_CELLS, GAP_CELLS))
-
-
-# Glossy worktops on the canvas, before what carries them is set.
-
-PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 
 
 class Plates:

@@ -1,7 +1,8 @@
-"""The journal of the edits of blocks: a file of records, each doing an edit or taking it back.
+"""The journal of block edits: a file of records, each of which does an edit or undoes it.
 
-The verbs are ``+`` done, ``-`` undone, ``*`` done again; the number is the edit's, and with ``+``
-comes the edit itself. ``records.py`` tells how they lie in the file.
+The verbs are ``+`` done, ``-`` undone and ``*`` done again. The number is that of the edit; a ``+``
+record also holds the edit itself, as an NBT tree, so that block data keep their tags.
+``record_log`` describes the file format.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,9 +17,11 @@ from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, Entity
 from world2minecraft.editing.record_log import RecordFile, packed_record
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
 
-# An edit as bytes and back: an NBT tree, so that block data keep their tags.
-
 EDIT_LIMITS = NbtLimits(depth=64, values=2_000_000, bytes=256 << 20)
+EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
+MARK = b"w2m edits 1\n"
+DO, UNDO, REDO = b"+", b"-", b"*"
+MAX_JOURNAL_BYTES = 256 << 20
 
 
 def pack_edit(edit: BlockEdit) -> bytes:
@@ -120,12 +123,6 @@ def _three(values: Any, kind: Any) -> tuple[Any, Any, Any]:
 
 def _number(value: int) -> int | None:
     return None if value < 0 else int(value)
-
-
-EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
-MARK = b"w2m edits 1\n"
-DO, UNDO, REDO = b"+", b"-", b"*"
-MAX_JOURNAL_BYTES = 256 << 20
 
 
 class Journal:

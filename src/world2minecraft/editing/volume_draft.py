@@ -1,4 +1,4 @@
-"""A volume and the edits made to it: do, undo, redo, any of them by its number."""
+"""A volume while it is edited: a draft that records its edits, and its history of undo and redo."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,8 +10,6 @@ from world2minecraft.core.errors import ConflictError, LimitError, UsageError
 from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 from world2minecraft.editing.journal import Journal
 from world2minecraft.minecraft.nbt import write_nbt
-
-# A volume while it is edited: every change is an edit that can be taken back.
 
 MAX_STATES = 1 << 16
 Position = tuple[int, int, int]

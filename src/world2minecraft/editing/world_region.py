@@ -1,6 +1,7 @@
-"""A box of a world that exists: its blocks, read so that some of them can be set.
+"""The blocks and entities of a box of an existing world, read so that some can be replaced.
 
-Nothing is written here: ``changed_files`` returns what the files become.
+Nothing is written here: ``changed_files`` returns the new contents of the files. Entities of
+earlier builds are replaced; all others stay.
 """
 
 from collections import defaultdict
@@ -34,6 +35,7 @@ MAX_CELLS = 64 << 20
 MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.
 Place = tuple[int, int]
 Corner = tuple[int, int, int]
+BUILT = "w2m_built"  # The tag of the entities that were built into a world.
 
 
 @dataclass
@@ -236,11 +238,6 @@ def _overlap(
         here.append(slice(begin - start, end - start))
         there.append(slice(begin - first, end - first))
     return tuple(here), tuple(there)
-
-
-# Entities of a world that exists: those of earlier builds go, new ones come, others stay.
-
-BUILT = "w2m_built"  # The tag of the entities that were built into a world.
 
 
 class WorldEntities:

@@ -82,8 +82,8 @@ class Turn:
 class Question:
     """A request to a model.
 
-    ``form`` is the ``response_format`` of the protocol, None for free text. ``sample`` distinguishes
-    questions that are asked again on purpose, to see how much replies differ.
+    ``form`` is the ``response_format`` of the protocol, None for free text. ``sample``
+    distinguishes questions that are asked again on purpose, to see how much replies differ.
     """
 
     model: str

@@ -162,7 +162,8 @@ def strip_reasoning(text: str) -> str:
     template has said the beginning.
 
     Example:
-        >>> [strip_reasoning(text) for text in ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")]
+        >>> texts = ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")
+        >>> [strip_reasoning(text) for text in texts]
         [' A', 'A', '<b>C</b>']
     """
     return _THOUGHT_END.split(_THOUGHT.sub("", text))[-1]

@@ -67,13 +67,14 @@ def preprocess(colour: np.ndarray, settings: dict[str, Any]) -> np.ndarray:
 def preprocessed_size(size_px: tuple[int, int], settings: dict[str, Any]) -> tuple[int, int]:
     """Return the width and height to which a picture is resized for a network.
 
-    >>> preprocessed_size((640, 480), {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14})
+    >>> settings = {"size": 518, "keep_aspect_ratio": True, "ensure_multiple_of": 14}
+    >>> preprocessed_size((640, 480), settings)
     (686, 518)
     """
     step = settings.get("ensure_multiple_of") or settings.get("size_divisor") or 1
     size = settings.get("size") or {"width": size_px[0], "height": size_px[1]}
     if not isinstance(size, dict):
-        square = "max_size" not in ready  # Older files of segmenters mean the shorter side.
+        square = "max_size" not in settings  # Older files of segmenters mean the shorter side.
         size = {"width": size, "height": size} if square else {"shortest_edge": size}
     longest = size.get("longest_edge") or settings.get("max_size") or MAX_SIDE_PX
     if "shortest_edge" in size:

@@ -71,7 +71,7 @@ class Faces(NamedTuple):
         return result
 
 
-def faces_of_boxes(
+def visible_faces(
     boxes: np.ndarray, owner: np.ndarray, material: np.ndarray, is_clear: np.ndarray
 ) -> Faces:
     """Return the surface of each owner's boxes.
@@ -218,7 +218,7 @@ class Look:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class BlockMesh:
     """One closed mesh of rectangles, in metres, y up.
 
     ``corners`` are counter-clockwise seen from outside. ``instance`` is 0 for structure and for
@@ -243,7 +243,7 @@ class Body:
         return self.corners.min(axis=(0, 1)), self.corners.max(axis=(0, 1))
 
 
-def bodies_of(volume: BlockVolume) -> tuple[list[Body], list[Look]]:
+def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
     """Return the bodies of a volume, structure first, then objects by number; and their looks."""
     looks = _Looks()
     owners = _owners(volume)
@@ -262,7 +262,7 @@ def bodies_of(volume: BlockVolume) -> tuple[list[Body], list[Look]]:
         rows = owner == number
         instance = number if number < _CLASSES else 0
         class_id = class_of.get(number, 0) if instance else number - _CLASSES
-        bodies.append(Body(class_id, instance, corners[rows], normals[rows], kinds[rows]))
+        bodies.append(BlockMesh(class_id, instance, corners[rows], normals[rows], kinds[rows]))
     return bodies, looks.held
 
 
@@ -319,7 +319,7 @@ def _block_faces(volume: BlockVolume, owners: np.ndarray, looks: _Looks) -> tupl
             found.append(_part_boxes(volume.states == number, owners, boxes, looks.of(state)))
     found.append(_cube_boxes(volume, owners, full, looks))
     rows = np.concatenate(found).astype(np.int32)
-    faces = faces_of_boxes(rows[:, :6], rows[:, 6], rows[:, 7], looks.clear())
+    faces = visible_faces(rows[:, :6], rows[:, 6], rows[:, 7], looks.clear())
     corners = faces.corners() / STEPS + np.array(volume.corner, np.float64)
     return faces.owner, corners, faces.normals().astype(np.float64), faces.material
 
@@ -361,7 +361,7 @@ def _display_faces(volume: BlockVolume, looks: _Looks) -> Iterable[tuple[np.ndar
         rows = np.rint(boxes * STEPS).astype(np.int32)
         owner = cube.instance or _CLASSES + cube.class_id
         whose, kinds = np.full(len(rows), owner, np.int32), np.full(len(rows), look, np.int32)
-        faces = faces_of_boxes(rows, whose, kinds, looks.clear())
+        faces = visible_faces(rows, whose, kinds, looks.clear())
         corners = apply(cube.cube_to_world, faces.corners() / STEPS)
         # Normals go by the inverse's transpose; what a mirror turns inside out is turned back.
         turn = cube.cube_to_world[:3, :3]

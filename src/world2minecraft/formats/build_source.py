@@ -10,16 +10,20 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.volume_crop import Box, cropped, trimmed
-from world2minecraft.formats.volume_formats import labelled, place_of_blocks, read_form
+from world2minecraft.formats.volume_crop import Box, crop_volume, trim_air
+from world2minecraft.formats.volume_formats import find_blocks, read_volume, with_scene_labels
 from world2minecraft.minecraft.worlds.world_writer import read_level, read_world
 
-AROUND = (64, 32, 64)  # Blocks to each side of the spawn, of a world that comes without a scene,
-ABOVE = 96  # and so many over it.
-EDGE = 2  # Blocks around a scene: display entities may stand out of it.
+SPAWN_REACH = (
+    64,
+    32,
+    64,
+)  # Blocks to each side of the spawn, of a world that comes without a scene,
+SPAWN_REACH_UP = 96  # and so many over it.
+SCENE_MARGIN = 2  # Blocks around a scene: display entities may stand out of it.
 
 
-class Start(NamedTuple):
+class PlayerStart(NamedTuple):
     """Where the player of a world of this program starts, in world block coordinates."""
 
     x: float
@@ -29,7 +33,7 @@ class Start(NamedTuple):
 
 
 @dataclass(eq=False)
-class Source:
+class BuildSource:
     """A volume that was read; ``notes`` say what was chosen for the user.
 
     ``folder`` holds the ``scene.json`` that the volume has its labels or scale from, or is None.
@@ -38,27 +42,27 @@ class Source:
     volume: BlockVolume
     name: str
     path: Path
-    start: Start | None = None
+    start: PlayerStart | None = None
     folder: Path | None = None
     notes: list[str] = field(default_factory=list)
 
 
-def around_spawn(world: Path) -> tuple[Box, str]:
+def box_around_spawn(world: Path) -> tuple[Box, str]:
     """Return the blocks around a world's spawn as a box, and a note for the user."""
-    x, y, z = spawn_of(read_level(world))
-    wide, low, deep = AROUND
+    x, y, z = level_spawn(read_level(world))
+    wide, low, deep = SPAWN_REACH
     told = " ".join(str(value) for value in (x, y, z))
     note = f"this world has no scene.json: drawing the blocks around its spawn ({told}); "
-    box = (x - wide, y - low, z - deep, x + wide, y + ABOVE, z + deep)
+    box = (x - wide, y - low, z - deep, x + wide, y + SPAWN_REACH_UP, z + deep)
     return box, note + "--box x0,y0,z0,x1,y1,z1 chooses others"
 
 
-def read_source(
+def read_build(
     path: Path,
     box: Box | None = None,
     *,
-    choose: Callable[[Path], tuple[Box, str]] = around_spawn,
-) -> Source:
+    choose: Callable[[Path], tuple[Box, str]] = box_around_spawn,
+) -> BuildSource:
     """Read a file, a world, a run's folder or its build.
 
     Args:
@@ -72,19 +76,19 @@ def read_source(
     """
     if not path.exists():
         raise InputError(path, "is not there")
-    blocks = place_of_blocks(path)
+    blocks = find_blocks(path)
     if (blocks / "level.dat").is_file():
         source = _read_world(blocks, path, box, choose)
     else:
         source = _read_file(path, box)
-    source.volume = trimmed(source.volume)
+    source.volume = trim_air(source.volume)
     if not source.volume.states.any():
         where = "in the box" if box else "there"
         raise InputError(path, f"nothing but air is {where}; choose another --box")
     return source
 
 
-def spawn_of(level: dict[str, Any]) -> tuple[int, int, int]:
+def level_spawn(level: dict[str, Any]) -> tuple[int, int, int]:
     """Return the spawn of a level, of old and new games; the world's middle where it has none."""
     try:
         if "spawn" in level:  # Since 1.21.9.
@@ -96,25 +100,25 @@ def spawn_of(level: dict[str, Any]) -> tuple[int, int, int]:
     return x, y, z
 
 
-def _read_file(path: Path, box: Box | None) -> Source:
-    volume = read_form(path)
+def _read_file(path: Path, box: Box | None) -> BuildSource:
+    volume = read_volume(path)
     _, folder = _scene_beside(path)
-    return Source(cropped(volume, box) if box else volume, path.stem, path, folder=folder)
+    return BuildSource(crop_volume(volume, box) if box else volume, path.stem, path, folder=folder)
 
 
 def _read_world(
     world: Path, asked: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
-) -> Source:
+) -> BuildSource:
     """Read the box of a world that is asked for, that of its scene, or the one chosen."""
     scene, folder = _scene_beside(asked)
     if scene is None or folder is None:
         chosen, note = (box, "") if box else choose(world)
-        source = Source(read_world(world, box=chosen), world.name, asked)
+        source = BuildSource(read_world(world, box=chosen), world.name, asked)
         source.notes += [note] if note else []
         return source
     own = _box_of(scene, folder / "scene.json")
     volume = _with_labels(read_world(world, box=box or own), scene, folder)
-    source = Source(volume, asked.resolve().stem, asked, _start_of(scene), folder)
+    source = BuildSource(volume, asked.resolve().stem, asked, _start_of(scene), folder)
     if not (folder / "scene.npz").is_file():
         source.notes.append("scene.npz is not there: classes and objects are empty")
     return source
@@ -136,22 +140,29 @@ def _box_of(scene: dict[str, Any], path: Path) -> Box:
         east, up, south = (int(value) for value in scene["size"])
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(path, f"is no scene ({error})") from error
-    return (x - EDGE, y - EDGE, z - EDGE, x + east + EDGE, y + up + EDGE, z + south + EDGE)
+    return (
+        x - SCENE_MARGIN,
+        y - SCENE_MARGIN,
+        z - SCENE_MARGIN,
+        x + east + SCENE_MARGIN,
+        y + up + SCENE_MARGIN,
+        z + south + SCENE_MARGIN,
+    )
 
 
 def _with_labels(volume: BlockVolume, scene: dict[str, Any], folder: Path) -> BlockVolume:
     """Return the volume with the scene's labels, or with its scale alone where they are gone."""
     if (folder / "scene.npz").is_file():
-        return labelled(volume, folder)
+        return with_scene_labels(volume, folder)
     try:
         return replace(volume, block_to_room=np.array(scene["block_to_room"], np.float64))
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(folder / "scene.json", f"is no scene ({error})") from error
 
 
-def _start_of(scene: dict[str, Any]) -> Start | None:
+def _start_of(scene: dict[str, Any]) -> PlayerStart | None:
     try:
         x, y, z = (float(value) for value in scene["spawn"]["position"])
-        return Start(x, y, z, float(scene["spawn"]["yaw_deg"]))
+        return PlayerStart(x, y, z, float(scene["spawn"]["yaw_deg"]))
     except (KeyError, TypeError, ValueError):
         return None

@@ -24,7 +24,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
-from world2minecraft.formats.block_meshes import Body, Look, bodies_of
+from world2minecraft.formats.block_meshes import BlockMesh, Look, volume_meshes
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
 
 # The container of binary glTF 2.0: one JSON chunk and one chunk of numbers.
@@ -274,7 +274,7 @@ def gltf_bytes(
     keep_blocks: bool = True,
 ) -> bytes:
     """Return the bytes of ``write_gltf``. Raises what it raises."""
-    bodies, looks = bodies_of(volume)
+    bodies, looks = volume_meshes(volume)
     if not bodies:
         raise UsageError("the volume holds no block that can be seen; glTF needs a mesh")
     writer = GlbWriter(f"World2Minecraft {__version__}")
@@ -284,7 +284,7 @@ def gltf_bytes(
         writer.add("nodes", _node(writer, body, looks, side, (templates or {}).get(body.instance)))
         for body in bodies
     ]
-    finish(writer, nodes)
+    add_default_scene(writer, nodes)
     extras: dict[str, Any] = {"metres_per_block": 1 / volume.blocks_per_metre}
     if keep_blocks:
         extras["blocks"] = writer.view(pack_volume(volume))
@@ -308,7 +308,7 @@ def read_gltf(path: str | Path) -> BlockVolume:
     return unpack_volume(view_bytes(tree, numbers, ours["blocks"], path), path)
 
 
-def body_extras(body: Body, template: str | None = None) -> dict[str, Any]:
+def body_extras(body: BlockMesh, template: str | None = None) -> dict[str, Any]:
     """Return what a body is: ``class``, ``class_name``, ``instance``, ``size_m``."""
     low, high = body.bounds
     extras: dict[str, Any] = {
@@ -320,21 +320,21 @@ def body_extras(body: Body, template: str | None = None) -> dict[str, Any]:
     return extras | ({"template": template} if template else {})
 
 
-def foot_of(body: Body) -> np.ndarray:
+def base_center(body: BlockMesh) -> np.ndarray:
     """Return the middle of a body's underside, float64 [3], where its node stands."""
     low, high = body.bounds
     return np.round([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2], 6)
 
 
-def finish(writer: GlbWriter, nodes: Sequence[int]) -> None:
+def add_default_scene(writer: GlbWriter, nodes: Sequence[int]) -> None:
     """Put nodes into the one scene, which is the file's default."""
     writer.add("scenes", {"name": "room", "nodes": list(nodes)})
     writer.tree["scene"] = 0
 
 
-def vertices_of(writer: GlbWriter, body: Body, rows: np.ndarray) -> dict[str, int]:
+def add_vertices(writer: GlbWriter, body: BlockMesh, rows: np.ndarray) -> dict[str, int]:
     """Add positions and normals of some faces of a body, from its foot; return the attributes."""
-    positions = (body.corners[rows].reshape(-1, 3) - foot_of(body)).astype(np.float32)
+    positions = (body.corners[rows].reshape(-1, 3) - base_center(body)).astype(np.float32)
     normals = np.repeat(body.normals[rows], 4, axis=0).astype(np.float32)
     return {
         "POSITION": writer.accessor(positions, "vertices"),
@@ -342,7 +342,7 @@ def vertices_of(writer: GlbWriter, body: Body, rows: np.ndarray) -> dict[str, in
     }
 
 
-def triangles_of(writer: GlbWriter, count: int) -> int:
+def add_triangles(writer: GlbWriter, count: int) -> int:
     """Add the triangles of ``count`` rectangles; return their accessor."""
     corners = np.arange(count)[:, None] * 4 + TRIANGLES
     dtype = np.uint16 if count * 4 < 0xFFFF else np.uint32
@@ -360,7 +360,7 @@ def texture_side(count: int) -> int:
 
 
 def _node(
-    writer: GlbWriter, body: Body, looks: Sequence[Look], side: int, template: str | None
+    writer: GlbWriter, body: BlockMesh, looks: Sequence[Look], side: int, template: str | None
 ) -> dict[str, Any]:
     is_clear = np.array([look.is_clear for look in looks])[body.looks]
     primitives = [
@@ -371,21 +371,21 @@ def _node(
     return {
         "name": body.name,
         "mesh": writer.add("meshes", {"name": body.name, "primitives": primitives}),
-        "translation": foot_of(body).tolist(),
+        "translation": base_center(body).tolist(),
         "extras": body_extras(body, template),
     }
 
 
 def _primitive(
-    writer: GlbWriter, body: Body, rows: np.ndarray, side: int, material: int
+    writer: GlbWriter, body: BlockMesh, rows: np.ndarray, side: int, material: int
 ) -> dict[str, Any]:
     row, column = np.divmod(np.repeat(body.looks[rows], 4), side)
     texels = ((np.column_stack([column, row]) + 0.5) / side).astype(np.float32)
-    attributes = vertices_of(writer, body, rows)
+    attributes = add_vertices(writer, body, rows)
     attributes["TEXCOORD_0"] = writer.accessor(texels, "vertices")
     return {
         "attributes": attributes,
-        "indices": triangles_of(writer, len(rows)),
+        "indices": add_triangles(writer, len(rows)),
         "material": material,
     }
 

@@ -28,15 +28,15 @@ from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.block_meshes import Body, bodies_of
+from world2minecraft.formats.block_meshes import BlockMesh, volume_meshes
 from world2minecraft.formats.gltf import (
     GlbWriter,
+    add_default_scene,
+    add_triangles,
+    add_vertices,
+    base_center,
     body_extras,
-    finish,
-    foot_of,
     gltf_bytes,
-    triangles_of,
-    vertices_of,
 )
 from world2minecraft.geometry.colour import srgb_to_linear
 
@@ -62,7 +62,7 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
             f"scene name {name!r} must be letters, digits, _ and -; name it as room.habitat"
         )
     target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
-    bodies, _ = bodies_of(volume)
+    bodies, _ = volume_meshes(volume)
     ids = semantic_ids(bodies)
     stages = target / "stages"
     write_bytes(stages / f"{name}.glb", render)
@@ -79,7 +79,7 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
     write_json(target / f"{name}.scene_dataset_config.json", dataset)
 
 
-def semantic_ids(bodies: Sequence[Body]) -> list[int]:
+def semantic_ids(bodies: Sequence[BlockMesh]) -> list[int]:
     """Return the id of each body: its instance, or for structure the next free number.
 
     Raises:
@@ -110,7 +110,7 @@ def semantic_colour(number: int) -> tuple[int, int, int]:
     return red & ~15 | low[0], green & ~31 | low[1], blue & ~31 | low[2]
 
 
-def semantic_text(bodies: Sequence[Body], ids: Sequence[int]) -> str:
+def semantic_text(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> str:
     """Return HM3D's list: a header, then id, colour, class and region of each object."""
     rows = [
         f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(body)}",0'
@@ -119,7 +119,7 @@ def semantic_text(bodies: Sequence[Body], ids: Sequence[int]) -> str:
     return "\n".join([HEADER, *rows]) + "\n"
 
 
-def semantic_json(bodies: Sequence[Body], ids: Sequence[int]) -> dict[str, Any]:
+def semantic_json(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, Any]:
     """Return Replica's ``info_semantic.json``: classes, objects with boxes, the class of each id.
 
     ``id_to_label`` holds the class of each id from 0, -1 where no object has it.
@@ -137,7 +137,7 @@ def semantic_json(bodies: Sequence[Body], ids: Sequence[int]) -> dict[str, Any]:
     }
 
 
-def _object(number: int, body: Body) -> dict[str, Any]:
+def _object(number: int, body: BlockMesh) -> dict[str, Any]:
     to_room = ROOM_AXES_TO_BLOCK.T
     low, high = body.bounds
     center, sizes = to_room @ ((low + high) / 2), np.abs(to_room @ (high - low))
@@ -153,7 +153,7 @@ def _object(number: int, body: Body) -> dict[str, Any]:
     }
 
 
-def _kind(body: Body) -> str:
+def _kind(body: BlockMesh) -> str:
     return CLASS_NAMES[body.class_id] if body.class_id else "unknown"
 
 
@@ -174,20 +174,20 @@ def _stage(name: str) -> dict[str, Any]:
     }
 
 
-def _semantic_glb(bodies: Sequence[Body], ids: Sequence[int]) -> bytes:
+def _semantic_glb(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> bytes:
     """Return the bodies in plain colours of vertices, which glTF keeps linear."""
     writer = GlbWriter(f"World2Minecraft {__version__}")
     nodes = []
     for number, body in zip(ids, bodies, strict=True):
         rows = np.arange(len(body.looks))
         colour = srgb_to_linear(np.array(semantic_colour(number), np.uint8))
-        attributes = vertices_of(writer, body, rows)
+        attributes = add_vertices(writer, body, rows)
         painted = np.tile(colour.astype(np.float32), (4 * len(rows), 1))
         attributes["COLOR_0"] = writer.accessor(painted, "vertices")
-        primitive = {"attributes": attributes, "indices": triangles_of(writer, len(rows))}
+        primitive = {"attributes": attributes, "indices": add_triangles(writer, len(rows))}
         mesh = writer.add("meshes", {"name": body.name, "primitives": [primitive]})
         extras = body_extras(body) | {"id": number}
-        place = {"translation": foot_of(body).tolist(), "extras": extras}
+        place = {"translation": base_center(body).tolist(), "extras": extras}
         nodes.append(writer.add("nodes", {"name": body.name, "mesh": mesh, **place}))
-    finish(writer, nodes)
+    add_default_scene(writer, nodes)
     return writer.to_bytes()

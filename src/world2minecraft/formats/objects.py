@@ -46,8 +46,8 @@ def _object_row(instance: ObjectInstance) -> dict[str, Any]:
     return {
         "id": instance.id,
         "class": CLASS_NAMES[instance.class_id],
-        "center_m": rounded(instance.center_m),
-        "size_m": rounded(instance.size_m),
+        "center_m": round_metres(instance.center_m),
+        "size_m": round_metres(instance.size_m),
         "yaw_deg": round(float(instance.yaw_deg), 3),
         "confidence": round(float(instance.confidence), 4),
     }
@@ -71,8 +71,8 @@ def _placement_row(placement: Placement) -> dict[str, Any]:
         "class": CLASS_NAMES[placement.class_id],
         "template": placement.template,
         "parameters": {name: round(float(v), 4) for name, v in placement.parameters.items()},
-        "center_m": rounded(placement.center_m),
-        "size_m": rounded(placement.size_m),
+        "center_m": round_metres(placement.center_m),
+        "size_m": round_metres(placement.size_m),
         "quarter_turns": placement.quarter_turns,
         "iou": round(float(placement.iou), 4),
         "alternatives": [
@@ -110,6 +110,6 @@ def _rows(path: str | Path, reader):
             raise DamagedFileError(path, f"row {number} is not valid ({error})") from error
 
 
-def rounded(values: np.ndarray) -> list[float]:
+def round_metres(values: np.ndarray) -> list[float]:
     """Return metres as files state them: to a tenth of a millimetre."""
     return [round(float(value), 4) for value in values]

@@ -20,12 +20,12 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import checks
 
-MOST_BYTES = 64 << 20  # A house of RoomPlan has under 2 MB.
-MOST_PARTS = 10_000
-MOST_FILES = 2_000  # Looked at for one that is a plan.
-FARTHEST_M = 1_000.0
-LARGEST_M = 100.0
-UPRIGHT = 0.9  # Cosine of how far a wall may lean.
+MAX_BYTES = 64 << 20  # A house of RoomPlan has under 2 MB.
+MAX_PARTS = 10_000
+MAX_FILES = 2_000  # Looked at for one that is a plan.
+MAX_DISTANCE_M = 1_000.0
+MAX_SIZE_M = 100.0
+MIN_UPRIGHT_COSINE = 0.9  # Cosine of how far a wall may lean.
 CONFIDENCE = {"high": 1.0, "medium": 0.6, "low": 0.3}
 Y_UP_TO_Z_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], np.float64)
 Kind = Literal["window", "door", "doorway"]
@@ -122,7 +122,7 @@ def find_roomplan(path: Path) -> AnyPath | None:
 def is_roomplan(path: AnyPath) -> bool:
     """Whether a JSON file is a RoomPlan capture, whole or damaged; unreadable ones are none."""
     try:
-        return _document(read_json(path, MOST_BYTES)) is not None
+        return _document(read_json(path, MAX_BYTES)) is not None
     except InputError:
         return False
 
@@ -134,7 +134,7 @@ def read_roomplan(path: AnyPath) -> CapturedPlan:
         InputError: the file is missing. DamagedFileError: it is no such capture, or a part of it
             is not what Apple's structures say. LimitError: it is too large.
     """
-    document = _document(read_json(path, MOST_BYTES))
+    document = _document(read_json(path, MAX_BYTES))
     if document is None:
         raise DamagedFileError(
             path, "is no RoomPlan capture: a JSON with walls, doors, windows and objects is needed"
@@ -154,7 +154,7 @@ def _first_plan(folder: AnyPath) -> AnyPath | None:
         folder.rglob("*.json"),
         key=lambda place: ("room" not in place.name.lower(), str(place).count("/"), str(place)),
     )
-    return next((place for place in files[:MOST_FILES] if is_roomplan(place)), None)
+    return next((place for place in files[:MAX_FILES] if is_roomplan(place)), None)
 
 
 def _document(value: Any) -> dict[str, Any] | None:
@@ -199,8 +199,8 @@ def _items(path: AnyPath, room: dict[str, Any], name: str) -> Iterator[tuple[dic
     found = room.get(name) or []
     if not isinstance(found, list):
         raise DamagedFileError(path, f"{name} must be a list, not {type(found).__name__}")
-    if len(found) > MOST_PARTS:
-        raise LimitError(path, f"has {len(found):,} {name}; {MOST_PARTS:,} at most are read")
+    if len(found) > MAX_PARTS:
+        raise LimitError(path, f"has {len(found):,} {name}; {MAX_PARTS:,} at most are read")
     for number, item in enumerate(found):
         if not isinstance(item, dict):
             raise DamagedFileError(path, f"{name}[{number}] must be an object")
@@ -212,7 +212,7 @@ def _surface(
 ) -> PlanSurface | None:
     width, height, _ = _dimensions(path, item, where)
     pose = _transform(path, item, where)
-    if abs(pose[2, 1]) < UPRIGHT:
+    if abs(pose[2, 1]) < MIN_UPRIGHT_COSINE:
         notes.append("a surface that does not stand upright was left out")
         return None
     if item.get("curve"):
@@ -255,7 +255,7 @@ def _floor(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
     """Return the outline of a floor, float64 [N, 3]."""
     pose = _transform(path, item, where)
     corners = item.get("polygonCorners") or []
-    if not isinstance(corners, list) or len(corners) > MOST_PARTS:
+    if not isinstance(corners, list) or len(corners) > MAX_PARTS:
         raise DamagedFileError(path, f"{where}.polygonCorners is no list of corners")
     if len(corners) < 3:
         width, height, _ = _dimensions(path, item, where)
@@ -268,7 +268,7 @@ def _floor(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
 
 def _dimensions(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
     sides = np.abs(_numbers(path, item.get("dimensions"), 3, f"{where}.dimensions"))
-    if (sides > LARGEST_M).any():
+    if (sides > MAX_SIZE_M).any():
         raise DamagedFileError(path, f"{where} is {sides.max():.4g} m large; metres are needed")
     return sides
 
@@ -287,8 +287,10 @@ def _transform(path: AnyPath, item: dict[str, Any], where: str) -> np.ndarray:
         raise DamagedFileError(
             path, f"{where}.transform is no turn and shift in column-major order"
         )
-    if np.abs(pose[:3, 3]).max() > FARTHEST_M:
-        raise DamagedFileError(path, f"{where} lies over {FARTHEST_M:g} m away; metres are needed")
+    if np.abs(pose[:3, 3]).max() > MAX_DISTANCE_M:
+        raise DamagedFileError(
+            path, f"{where} lies over {MAX_DISTANCE_M:g} m away; metres are needed"
+        )
     return Y_UP_TO_Z_UP @ pose
 
 
@@ -318,7 +320,7 @@ def _words(value: Any, depth: int = 0) -> Iterator[str]:
         for inner in value.values():
             yield from _words(inner, depth + 1)
     elif isinstance(value, list):
-        for inner in value[:MOST_FILES]:
+        for inner in value[:MAX_FILES]:
             yield from _words(inner, depth + 1)
 
 

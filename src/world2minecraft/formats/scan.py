@@ -46,7 +46,7 @@ def read_poses(path: str | Path) -> Corrections:
         raise DamagedFileError(path, f"holds no corrections ({error})") from error
 
 
-MOST_NAME = 60
+MAX_NAME_LENGTH = 60
 
 
 def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | None = None) -> None:
@@ -91,7 +91,7 @@ def read_scene_name(path: str | Path) -> str:
     if not isinstance(found, dict):
         raise DamagedFileError(path, "is no scan.json")
     name = found.get("name", "")
-    return name[:MOST_NAME] if isinstance(name, str) and name.isprintable() else ""
+    return name[:MAX_NAME_LENGTH] if isinstance(name, str) and name.isprintable() else ""
 
 
 def read_depth_kind(path: str | Path) -> str:
@@ -108,7 +108,7 @@ def read_depth_kind(path: str | Path) -> str:
     return str(found.get("depth_kind", "sensor"))
 
 
-def placed_as_written(scan: Scan, path: str | Path) -> Scan:
+def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
     """Return a scan with the place of the room, and the notes, that a ``scan.json`` holds.
 
     Raises:

@@ -10,7 +10,7 @@ from world2minecraft.core.types import BlockVolume
 Box = tuple[int, int, int, int, int, int]
 
 
-def cropped(volume: BlockVolume, box: Box) -> BlockVolume:
+def crop_volume(volume: BlockVolume, box: Box) -> BlockVolume:
     """Return the blocks and entities of a volume that lie in a box of world coordinates.
 
     Args:
@@ -49,7 +49,7 @@ def cropped(volume: BlockVolume, box: Box) -> BlockVolume:
     )
 
 
-def trimmed(volume: BlockVolume) -> BlockVolume:
+def trim_air(volume: BlockVolume) -> BlockVolume:
     """Return the volume without the layers of air around its blocks; its entities all stay."""
     filled = volume.states != 0
     if not filled.any():

@@ -1,7 +1,7 @@
 """Every form that a volume comes in: the game's formats, and those of other programs beside them.
 
 In: a path. Out: a volume, or a file. A form is one class, as in ``minecraft.formats``, and one line
-of ``FORMS``. Beside the blocks, a run's folder and its ``build`` know what the blocks are.
+of ``SCENE_FORMATS``. Beside the blocks, a run's folder and its ``build`` know what the blocks are.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ from world2minecraft.minecraft.formats import (
 SCENE_FILE = "scene.json"
 
 
-def place_of_blocks(path: Path) -> Path:
+def find_blocks(path: Path) -> Path:
     """Return where the blocks of a place lie: of a run or a build, its world or its schematic.
 
     A player may have changed the world, so it comes first. Other places are their own.
@@ -48,7 +48,7 @@ def place_of_blocks(path: Path) -> Path:
     raise InputError(build, "holds a scene.json and neither world nor room.schem")
 
 
-def labelled(volume: BlockVolume, path: Path) -> BlockVolume:
+def with_scene_labels(volume: BlockVolume, path: Path) -> BlockVolume:
     """Return the volume with the labels and the scale of the scene that it belongs to.
 
     Args:
@@ -64,12 +64,12 @@ def labelled(volume: BlockVolume, path: Path) -> BlockVolume:
     if folder is None:
         return volume
     scene = read_scene(folder)
-    return with_scene(volume, scene) if _overlaps(volume, scene) else volume
+    return apply_scene(volume, scene) if _overlaps(volume, scene) else volume
 
 
-def with_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
+def apply_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
     """Return the volume with a scene's labels on all blocks that are there, and its scale."""
-    ours, theirs = common_cells(volume, scene)
+    ours, theirs = overlapping_cells(volume, scene)
     semantic, instance = np.zeros_like(volume.semantic), np.zeros_like(volume.instance)
     is_block = volume.states[ours] > 0
     semantic[ours] = np.where(is_block, scene.semantic[theirs], 0)
@@ -79,13 +79,13 @@ def with_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
 
 def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
     """Whether most of what the scene labels is still a block: else it is another's scene."""
-    ours, theirs = common_cells(volume, scene)
+    ours, theirs = overlapping_cells(volume, scene)
     wanted = int((scene.semantic > 0).sum())
     met = int(((scene.semantic[theirs] > 0) & (volume.states[ours] > 0)).sum())
     return wanted > 0 and met >= wanted / 2
 
 
-def common_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+def overlapping_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     """Return the cells that both hold, as slices of each."""
     low = np.maximum(volume.corner, scene.corner)
     high = np.minimum(
@@ -100,7 +100,7 @@ def common_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], 
     return window(volume.corner), window(scene.corner)
 
 
-FORMS = Registry(
+SCENE_FORMATS = Registry(
     "scene_format",
     {
         "glb": "world2minecraft.formats.volume_formats:GltfFormat",
@@ -156,7 +156,7 @@ class HabitatFormat:
         losses.add("entities that are no block displays", undrawn)
 
 
-def read_form(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     """Read a volume from any form: a file, a world, a run's folder or its ``build``.
 
     What lies beside the blocks in ``scene.json`` says what they are and how large they are.
@@ -171,20 +171,20 @@ def read_form(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     source, told = Path(path), Losses() if losses is None else losses
     if not source.exists():
         raise InputError(source, "is not there")
-    for form in other_forms():
+    for form in scene_formats():
         if form.is_at(source):
             return form.read(source, told)
     try:
-        volume = read_blocks(place_of_blocks(source), told)
+        volume = read_blocks(find_blocks(source), told)
     except InputError as error:
         if not error.reason.startswith("is no block file"):
             raise
-        known = known_forms("read")
+        known = list_suffixes("read")
         raise InputError(source, f"is no block file that is read; known: {known}") from None
-    return labelled(volume, source)
+    return with_scene_labels(volume, source)
 
 
-def write_form(
+def write_volume(
     volume: BlockVolume,
     path: str | Path,
     options: WriteOptions | None = None,
@@ -196,30 +196,30 @@ def write_form(
         UsageError: no form has this suffix. OutputError: the path cannot be written.
     """
     target, told = Path(path), Losses() if losses is None else losses
-    form = form_to_write(target)
+    form = format_for_path(target)
     form.write(volume, target, options or WriteOptions(), told)
     if not form.keeps_labels:
         told.add(LABELS, int((volume.semantic > 0).sum()))
 
 
-def form_to_write(path: str | Path) -> BlockFormat:
+def format_for_path(path: str | Path) -> BlockFormat:
     """Return the form that a path's suffix names.
 
     Raises:
         UsageError: no form that is written has it.
     """
     suffix = Path(path).suffix.lower()
-    for form in [*block_formats(), *other_forms()]:
+    for form in [*block_formats(), *scene_formats()]:
         if suffix == form.suffix:
             if form.can_write:
                 return form
             raise UsageError(f"{path}: {suffix} is read and not written; write a .schem instead")
-    known = known_forms("write")
+    known = list_suffixes("write")
     dots = "; the name of a world folder has no dot" if not suffix[1:].isalpha() else ""
     raise UsageError(f"{path}: no block format ends in {suffix}; known: {known}{dots}")
 
 
-def write_forms(
+def write_volume_formats(
     folder: str | Path,
     volume: BlockVolume,
     names: Sequence[str],
@@ -243,52 +243,52 @@ def write_forms(
         UnknownNameError: no form has the name. UsageError: one is a world folder or only read.
         OutputError: a file cannot be written.
     """
-    forms = {name: form_named(name) for name in names}  # All are known before one is written.
+    forms = {name: format_by_name(name) for name in names}  # All are known before one is written.
     result: dict[str, Losses] = {}
     for name, form in forms.items():
         result[name] = Losses()
-        write_form(volume, Path(folder) / f"{stem}{form.suffix}", options, result[name])
+        write_volume(volume, Path(folder) / f"{stem}{form.suffix}", options, result[name])
     return result
 
 
-def form_named(name: str) -> BlockFormat:
+def format_by_name(name: str) -> BlockFormat:
     """Return the form of a name or a suffix that can be written as a file of its own.
 
     Raises:
         UnknownNameError: there is none. UsageError: it is a world folder, or only read.
     """
     wanted = name.lower().removeprefix(".")
-    for registry in (FORMATS, FORMS):
+    for registry in (FORMATS, SCENE_FORMATS):
         for known in registry.names():
             form = registry.load(known)()
             if wanted in (known, form.suffix.removeprefix(".")) and form.suffix:
                 if not form.can_write:
                     raise UsageError(f"the form {name!r} is read and not written")
                 return form
-    raise UnknownNameError("form", name, form_names())
+    raise UnknownNameError("form", name, writable_format_names())
 
 
-def form_names() -> list[str]:
+def writable_format_names() -> list[str]:
     """Return the names of the forms that are written as files of their own."""
     pairs = [
-        (name, registry.load(name)()) for registry in (FORMATS, FORMS) for name in registry.names()
+        (name, registry.load(name)()) for registry in (FORMATS, SCENE_FORMATS) for name in registry.names()
     ]
     return [name for name, form in pairs if form.can_write and form.suffix]
 
 
-def other_forms() -> list[BlockFormat]:
+def scene_formats() -> list[BlockFormat]:
     """Return the forms that are not the game's."""
-    return [FORMS.load(name)() for name in FORMS.names()]
+    return [SCENE_FORMATS.load(name)() for name in SCENE_FORMATS.names()]
 
 
-def known_forms(verb: Literal["read", "write"]) -> str:
+def list_suffixes(verb: Literal["read", "write"]) -> str:
     """Return the suffixes that are read or written, as an error's end."""
-    every = [*block_formats(), *other_forms()]
+    every = [*block_formats(), *scene_formats()]
     able = [form for form in every if (form.can_read if verb == "read" else form.can_write)]
     return ", ".join(form.suffix or "a world folder" for form in able)
 
 
-def templates_of_run(folder: str | Path) -> Mapping[int, str]:
+def read_run_templates(folder: str | Path) -> Mapping[int, str]:
     """Return the template of each object of a run's folder; of any other place, none.
 
     Raises:

@@ -10,7 +10,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_frames
 from world2minecraft.rendering.scene import BlockScene
 
 GAP_PX, LINE_PX = 6, 16
@@ -77,7 +77,7 @@ def drawn_views(
     """
     cameras = [pinhole_camera(camera, width_px) for camera, _ in views]
     options = DrawOptions(outputs=("colour",), light=light, samples=2)
-    for picture in frames(scene, cameras, [pose for _, pose in views], options):
+    for picture in draw_frames(scene, cameras, [pose for _, pose in views], options):
         yield np.asarray(picture.colour)
 
 

@@ -16,10 +16,15 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.build_source import Source, around_spawn, read_source, spawn_of
+from world2minecraft.formats.build_source import (
+    BuildSource,
+    box_around_spawn,
+    level_spawn,
+    read_build,
+)
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import Box
-from world2minecraft.formats.volume_formats import common_cells, templates_of_run
+from world2minecraft.formats.volume_formats import overlapping_cells, read_run_templates
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
@@ -57,10 +62,10 @@ def built_box(world: Path) -> tuple[Box, str]:
     Raises:
         InputError: it is no world. DamagedFileError: a file of it is broken.
     """
-    spawn = spawn_of(read_level(world))
+    spawn = level_spawn(read_level(world))
     sections, was_cut = _built_sections(world, (spawn[0] >> 4, spawn[2] >> 4))
     if max(sections.values(), default=0) < LEAST:
-        box, _ = around_spawn(world)
+        box, _ = box_around_spawn(world)
         return box, (
             "nothing in this world looks built, so the blocks around its spawn are taken; "
             "--box x0 y0 z0 x1 y1 z1 chooses others"
@@ -177,10 +182,10 @@ def designs_beside(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray
         return none, ("",)
     scene = read_scene(folder)
     if scene.design is not None:
-        ours, theirs = common_cells(volume, scene)
+        ours, theirs = overlapping_cells(volume, scene)
         none[ours] = np.where(volume.states[ours] > 0, scene.design[theirs], 0)
         return none, scene.designs
-    return _of_run(volume, templates_of_run(folder.parent))
+    return _of_run(volume, read_run_templates(folder.parent))
 
 
 def _of_run(
@@ -257,9 +262,9 @@ class SceneSource:
         """Return what was chosen for the user, in sentences."""
         return self._read().notes
 
-    def _read(self) -> Source:
+    def _read(self) -> BuildSource:
         if "source" not in self._cache:
-            source = read_source(self.path, self.box, choose=built_box)
+            source = read_build(self.path, self.box, choose=built_box)
             if source.folder is None or self.blocks_per_metre is not None:
                 source.volume = _scaled(source.volume, self.blocks_per_metre or FOREIGN_SCALE)
             self._cache["source"] = source
@@ -311,7 +316,7 @@ def open_scene_source(
     )
 
 
-def source_of_blocks(source: Source, scene_id: str) -> SceneSource:
+def source_of_blocks(source: BuildSource, scene_id: str) -> SceneSource:
     """Return the scene of blocks that are there already, such as those of a running server."""
     return SceneSource(source.path, scene_id, _cache={"source": source})
 

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume, Camera, Layout
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.volume_formats import place_of_blocks
+from world2minecraft.formats.volume_formats import (find_blocks)
 from world2minecraft.furniture.library import TEMPLATES
 from world2minecraft.minecraft.physics.any_angle_paths import (
     Lattice,
@@ -404,7 +404,7 @@ def _titles(names: Sequence[str]) -> dict[str, str]:
 def layouts_beside(path: Path) -> tuple[Layout, ...]:
     """Return the floor plans beside a house, or of a run whose folder or build is named."""
     folder = path if path.is_dir() else path.parent
-    blocks = place_of_blocks(path) if path.is_dir() else path
+    blocks = find_blocks(path) if path.is_dir() else path
     for place in (folder, blocks.parent, blocks.parent.parent):
         if (place / "layout.json").is_file() and (place / "scene.json").is_file():
             return read_layouts(place / "layout.json")

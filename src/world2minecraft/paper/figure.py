@@ -26,7 +26,7 @@ from world2minecraft.evaluation.report.placed_frames import (
 from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
-from world2minecraft.navigation.running.episode_ground import SceneGround
+from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.running.trace import (
     TRACE_FILE,
     VIEWS_FOLDER,
@@ -35,14 +35,23 @@ from world2minecraft.navigation.running.trace import (
     traces_in,
 )
 from world2minecraft.navigation.scene import open_scene
-from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.light_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.picture import render_volume
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
 from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import orbit_shots
+
+VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
+CELL_PX = (480, 360)
+HEAD_PX, GAP_PX = 34, 8
+SCOUT_PX = (64, 48)
+FOV_DEG = 30.0
+HEADS = ("Reality", "Minecraft", "Prediction", "Construction")
+MATTER = "minecraft:white_concrete"  # Takes the light; its colour comes from the class.
+
 
 # What an agent saw on its walk: the views that it kept, or the same ones drawn again.
 
@@ -70,7 +79,7 @@ def views_of_walk(run: Path, walk: Path, most: int) -> list[np.ndarray]:
     if traces[0].parent != walk:
         raise InputError(walk, f"holds {len(traces)} walks; name one, such as {traces[0].parent}")
     stances = stances_of(read_trace(walk / TRACE_FILE), walk / TRACE_FILE)
-    ground = SceneGround(open_scene(run))
+    ground = SceneSimulator(open_scene(run))
     return [ground.view(stances[n]) for n in spread(len(stances), most)]
 
 
@@ -86,14 +95,6 @@ def spread(count: int, most: int) -> Sequence[int]:
     taken = min(count, most)
     return [n * (count - 1) // max(taken - 1, 1) for n in range(taken)]
 
-
-VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
-CELL_PX = (480, 360)
-HEAD_PX, GAP_PX = 34, 8
-SCOUT_PX = (64, 48)
-FOV_DEG = 30.0
-HEADS = ("Reality", "Minecraft", "Prediction", "Construction")
-MATTER = "minecraft:white_concrete"  # Takes the light; its colour comes from the class.
 
 Pixels = np.ndarray  # uint8 [H, W, 3]
 
@@ -179,10 +180,10 @@ def _outside(volume: BlockVolume, start_deg: float) -> Iterator[tuple[Pixels, np
     shots = orbit_shots(
         build.whole, camera, VIEWS, elevation_deg=OPEN_ELEVATION_DEG, start_deg=start_deg
     )
-    how = DrawOptions(outputs=("colour", "semantic"), light=NEUTRAL, background=PAPER)
+    how = DrawOptions(outputs=("colour", "semantic"), light=NEUTRAL, background=BACKDROP)
     for shot in shots:
         scene = prepare_scene(build.seen_by(shot.camera_to_room))
-        picture = next(iter(frames_of(scene, [shot], how)))
+        picture = next(iter(draw_shots(scene, [shot], how)))
         yield _present(picture.colour), _present(picture.semantic)
 
 

@@ -13,12 +13,11 @@ from world2minecraft.minecraftocc.plan import PRESETS
 from world2minecraft.navigation.data.item_building import PAPER_HELD, PAPER_SIZE
 from world2minecraft.navigation.exporters import easyr1, llamafactory
 from world2minecraft.navigation.exporters import training_costs as steps
-from world2minecraft.navigation.exporters.options import HandoffRule
-from world2minecraft.navigation.exporters.recipes import rendered
+from world2minecraft.navigation.exporters.options import ExportOptions
+from world2minecraft.navigation.exporters.recipes import render_recipe
 from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable, Results, measured
 
 # Figures that the program itself knows, so that no page has to say them again.
-
 ROWS = 1151  # Of the paper's Combined, Next-View; a recipe is written for some number of rows.
 SHOWN = 3  # Blocks and words that a cell names.
 Rows = dict[str, Ours]
@@ -36,8 +35,8 @@ def known_to_the_program(table: PaperTable) -> Rows:
 
 def rft_recipe() -> dict[str, Any]:
     """Return the recipe that ``w2m vln export --to easyr1`` writes, as EasyR1 reads it."""
-    rule, plan = HandoffRule(), steps.grpo_plan(ROWS, easyr1.GPUS)
-    text = rendered(
+    rule, plan = ExportOptions(), steps.grpo_plan(ROWS, easyr1.GPUS)
+    text = render_recipe(
         "easyr1_grpo.yaml",
         file="recipe", name="recipe", rows=ROWS, plan=plan, gpus=easyr1.GPUS, train="train",
         val="val", has_val=True, val_batch=1, image_dir=".", prompt_tokens=easyr1.PROMPT_TOKENS,
@@ -49,9 +48,9 @@ def rft_recipe() -> dict[str, Any]:
 
 def sft_recipe() -> dict[str, Any]:
     """Return the recipe that ``w2m vln export --to llamafactory`` writes, as its trainer reads."""
-    rule = HandoffRule()
+    rule = ExportOptions()
     taken = steps.sft_steps(ROWS, rule.max_samples, 1)
-    text = rendered(
+    text = render_recipe(
         "llamafactory_sft.yaml",
         file="recipe", rows=ROWS, used=min(ROWS, rule.max_samples), steps=taken,
         warmup=math.ceil(0.1 * taken), gpus=1, model=rule.model, max_pixels=rule.max_pixels,

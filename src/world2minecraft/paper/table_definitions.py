@@ -12,6 +12,11 @@ import yaml
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import read_bytes
 
+MAX_BYTES = 1 << 20
+MAX_CELL, MAX_TEXT = 80, 400  # Letters.
+_FIELDS = ("cells", "data", "command", "page", "line", "label")
+
+
 # A table of the paper as printed, and what stands beside it.
 
 
@@ -114,9 +119,6 @@ class PaperTable:
 
 TABLES = Path(__file__).with_name("tables")
 MEASURED = Path(__file__).with_name("measured.yaml")
-MAX_BYTES = 1 << 20
-MAX_CELL, MAX_TEXT = 80, 400  # Letters.
-_FIELDS = ("cells", "data", "command", "page", "line", "label")
 
 Results = dict[str, dict[str, Ours]]  # By table, then by row.
 

@@ -7,8 +7,13 @@ from string import ascii_lowercase, ascii_uppercase
 from typing import Any
 
 from world2minecraft.minecraftocc.statistics.tables import escape
-from world2minecraft.navigation.running.tables import markdown_of
+from world2minecraft.navigation.running.tables import format_markdown
 from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable
+
+CELL_WIDTH = 36  # Longer cells are broken into lines.
+PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.
+GAP = "  "  # Between columns.
+
 
 # A table and ours as one grid of text, with marks in cells and a line for each mark below it.
 #
@@ -129,11 +134,6 @@ def _marks(table: PaperTable, row: PaperRow, lacks: Marks) -> str:
     return "".join(f" {mark}" for mark in sorted(found - {""}))
 
 
-CELL_WIDTH = 36  # Longer cells are broken into lines.
-PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.
-GAP = "  "  # Between columns.
-
-
 def as_text(table: PaperTable, ours: Mapping[str, Ours]) -> str:
     """Return a table for the terminal, with its title above and its notes below."""
     grid = grid_of(table, ours)
@@ -150,7 +150,7 @@ def as_markdown(table: PaperTable, ours: Mapping[str, Ours]) -> str:
     """Return a table as Markdown, its notes as a list below."""
     grid = grid_of(table, ours)
     notes = [f"- {note}" for note in grid.notes]
-    return "\n".join([f"**{_title(table)}**", "", markdown_of(grid.rows), "", *notes])
+    return "\n".join([f"**{_title(table)}**", "", format_markdown(grid.rows), "", *notes])
 
 
 def as_latex(table: PaperTable, ours: Mapping[str, Ours]) -> str:

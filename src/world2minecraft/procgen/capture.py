@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, LayoutObject, Opening, View
-from world2minecraft.formats.objects import rounded
+from world2minecraft.formats.objects import round_metres
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.phone import phone_shots, write_photos, write_video
 from world2minecraft.procgen.sensors.shots import (
@@ -149,7 +149,7 @@ def write_truth(
     truth = {
         "kind": room.kind,
         "seed": room.seed,
-        "size_m": rounded(room.size_m),
+        "size_m": round_metres(room.size_m),
         "objects": [stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
         "layouts": [_stated_layout(layout) for layout in room.layouts],
     }
@@ -162,8 +162,8 @@ def stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
         "id": number,
         "class": CLASS_NAMES[item.class_id],
         "name": item.name,
-        "center_m": rounded(item.center_m),
-        "size_m": rounded(item.size_m),
+        "center_m": round_metres(item.center_m),
+        "size_m": round_metres(item.size_m),
         "yaw_deg": item.yaw_deg,
     }
 
@@ -173,7 +173,7 @@ def _stated_layout(layout: Layout) -> dict[str, Any]:
         "name": layout.name,
         "floor_z_m": round(layout.floor_z_m, 4),
         "wall_height_m": round(layout.wall_height_m, 4),
-        "floor_polygon_m": [rounded(corner) for corner in layout.floor_polygon_m],
+        "floor_polygon_m": [round_metres(corner) for corner in layout.floor_polygon_m],
         "openings": [_stated_opening(opening) for opening in layout.openings],
     }
 
@@ -181,8 +181,8 @@ def _stated_layout(layout: Layout) -> dict[str, Any]:
 def _stated_opening(opening: Opening) -> dict[str, Any]:
     return {
         "kind": opening.kind,
-        "start_m": rounded(opening.start_m),
-        "end_m": rounded(opening.end_m),
+        "start_m": round_metres(opening.start_m),
+        "end_m": round_metres(opening.end_m),
         "sill_m": round(opening.sill_m, 4),
         "head_m": round(opening.head_m, 4),
     }

@@ -16,7 +16,7 @@ from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import Layout, LayoutObject, Opening
-from world2minecraft.formats.objects import rounded
+from world2minecraft.formats.objects import round_metres
 from world2minecraft.procgen.rooms.room import Room
 
 LAYOUT, TRUTH = "layout.json", "truth.npz"
@@ -41,7 +41,7 @@ def write_generated(room: Room, folder: str | Path) -> None:
         {
             "kind": room.kind,
             "seed": room.seed,
-            "size_m": rounded(room.size_m),
+            "size_m": round_metres(room.size_m),
             "layouts": [_stated(layout) for layout in room.layouts],
         },
     )
@@ -83,12 +83,12 @@ def _stated(layout: Layout) -> dict[str, Any]:
         "name": layout.name,
         "floor_z_m": round(layout.floor_z_m, 4),
         "wall_height_m": round(layout.wall_height_m, 4),
-        "floor_polygon_m": [rounded(corner) for corner in layout.floor_polygon_m],
+        "floor_polygon_m": [round_metres(corner) for corner in layout.floor_polygon_m],
         "openings": [
             {
                 "kind": opening.kind,
-                "start_m": rounded(opening.start_m),
-                "end_m": rounded(opening.end_m),
+                "start_m": round_metres(opening.start_m),
+                "end_m": round_metres(opening.end_m),
                 "sill_m": round(opening.sill_m, 4),
                 "head_m": round(opening.head_m, 4),
             }
@@ -98,8 +98,8 @@ def _stated(layout: Layout) -> dict[str, Any]:
             {
                 "class": CLASS_NAMES[item.class_id],
                 "name": item.name,
-                "center_m": rounded(item.center_m),
-                "size_m": rounded(item.size_m),
+                "center_m": round_metres(item.center_m),
+                "size_m": round_metres(item.size_m),
                 "yaw_deg": round(item.yaw_deg, 4),
             }
             for item in layout.objects

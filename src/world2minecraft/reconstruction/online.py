@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture import open_scan, realigned, write_plain
+from world2minecraft.capture import (realign, write_plain)
+from world2minecraft.capture import open_scan
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.sources import find_capture
@@ -27,13 +28,11 @@ from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.reconstruction.fusion import EvidenceMap, remove_floaters
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import EvidenceMap, read_out, remove_floaters
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.reconstruction.registration import corrected
-from world2minecraft.reconstruction.registration import register
+from world2minecraft.reconstruction.registration import corrected, register
 from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.reconstruction.stages import labelled
 from world2minecraft.rendering.preview import preview
@@ -182,7 +181,7 @@ def placed_scan(
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     scan = open_scan(capture, progress=progress, **options)
     found = register(scan, chosen.register, progress)
-    return realigned(corrected(scan, found.corrections), found.surface)
+    return realign(corrected(scan, found.corrections), found.surface)
 
 
 def show(live: LiveMap, out: Path) -> None:

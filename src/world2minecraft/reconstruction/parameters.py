@@ -12,7 +12,7 @@ from world2minecraft.capture.sfm import PosingParameters
 from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.formats.volume_formats import form_named
+from world2minecraft.formats.volume_formats import (format_by_name)
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
 from world2minecraft.reconstruction.instances import FindParameters
@@ -72,7 +72,7 @@ class Parameters:
         check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
         game_version(self.mc_version)
         for name in self.format_names:
-            form_named(name)
+            format_by_name(name)
         if self.fuse.voxel_m != self.voxel_m:
             object.__setattr__(self, "fuse", replace(self.fuse, voxel_m=self.voxel_m))
 

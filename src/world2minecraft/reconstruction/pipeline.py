@@ -18,14 +18,14 @@ from importlib.metadata import version
 from pathlib import Path
 
 from world2minecraft import __version__
-from world2minecraft.capture import realigned, settled
+from world2minecraft.capture import realign, settled
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.run_arrays import write_evidence
 from world2minecraft.formats.scan import (
-    placed_as_written,
     read_poses,
     read_registration,
+    with_recorded_alignment,
     write_poses,
     write_scan,
 )
@@ -35,8 +35,7 @@ from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import notes_of, predictor
 from world2minecraft.reconstruction.opening import open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.registration import corrected
-from world2minecraft.reconstruction.registration import register, told
+from world2minecraft.reconstruction.registration import corrected, register, told
 from world2minecraft.reconstruction.resume import kept_before, with_kept_files
 from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture
 from world2minecraft.reconstruction.stages import LATER_STEPS
@@ -83,7 +82,7 @@ def reconstruct(
     if run.needs("register"):
         with run.stage("register"):
             found = register(scan, chosen.register.suited(scan.depth_kind), progress)
-            scan = realigned(corrected(scan, found.corrections), found.surface)
+            scan = realign(corrected(scan, found.corrections), found.surface)
             scan = told(scan, found.corrections.facts)
             write_poses(run.path("poses.npz"), found.corrections)
             write_scan(run.path("scan.json"), scan, found.corrections.facts)
@@ -125,7 +124,7 @@ def registered_before(scan: Scan, out: Path) -> Scan:
     Raises:
         InputError: no run got so far there. DamagedFileError: its files cannot be read.
     """
-    placed = placed_as_written(scan, out / "scan.json")
+    placed = with_recorded_alignment(scan, out / "scan.json")
     return corrected(placed, read_poses(out / "poses.npz"))
 
 

@@ -26,7 +26,7 @@ from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_evidence, read_room, write_centers, write_room
 from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
-from world2minecraft.formats.volume_formats import form_named, templates_of_run, write_forms
+from world2minecraft.formats.volume_formats import (format_by_name, read_run_templates, write_volume_formats)
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.reconstruction.fusion import (
     calibrate,
@@ -125,11 +125,11 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
     if not chosen.format_names:
         return
     options = WriteOptions(
-        mc_version=chosen.mc_version, other={"templates": templates_of_run(folder)}
+        mc_version=chosen.mc_version, other={"templates": read_run_templates(folder)}
     )
-    lost = write_forms(folder / "build", volume, chosen.format_names, options)
+    lost = write_volume_formats(folder / "build", volume, chosen.format_names, options)
     rows = {
-        name: {"file": f"room{form_named(name).suffix}", "lost": dict(losses)}
+        name: {"file": f"room{format_by_name(name).suffix}", "lost": dict(losses)}
         for name, losses in lost.items()
     }
     write_json(folder / "build" / "forms.json", rows)
@@ -154,7 +154,7 @@ def _forget_forms(build: Path, kept: tuple[str, ...]) -> None:
 def _suffix_of(name: str) -> str:
     """Return the suffix of a form; nothing where there is no such form in this version."""
     try:
-        return form_named(name).suffix
+        return format_by_name(name).suffix
     except UsageError:
         return ""
 

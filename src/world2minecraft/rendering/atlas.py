@@ -16,7 +16,7 @@ from world2minecraft.rendering.texture import Texture
 
 SIZES_PX = (16, 32, 64, 128)
 MATERIAL = ("normal x", "normal y", "roughness", "metal", "emission")
-MOST_KEPT_PX = 32  # 12 kB a texture with all its levels.
+MAX_CACHED_PX = 32  # 12 kB a texture with all its levels.
 _ROWS: WeakKeyDictionary[Texture, dict[int, tuple[np.ndarray, np.ndarray]]] = WeakKeyDictionary()
 _FLAT = np.array([128, 128, 200, 0, 0], np.uint8)  # Facing outward, rather rough, no metal, dark.
 
@@ -46,7 +46,7 @@ def to_srgb(linear: np.ndarray) -> np.ndarray:
     return (linear_to_srgb(linear) * 255 + 0.5).astype(np.uint8)
 
 
-def atlas_of(textures: Sequence[Texture], side_px: int) -> Atlas:
+def build_atlas(textures: Sequence[Texture], side_px: int) -> Atlas:
     """Bring textures to one size and add their mip levels.
 
     Args:
@@ -61,25 +61,28 @@ def atlas_of(textures: Sequence[Texture], side_px: int) -> Atlas:
     texels = np.empty((len(textures), texel_count(side_px), 4), np.uint8)
     material = np.empty((len(textures), texel_count(side_px), 5), np.uint8)
     for row, texture in enumerate(textures):
-        texels[row], material[row] = _rows_of(texture, side_px)
+        texels[row], material[row] = _texel_rows(texture, side_px)
     translucent = np.array([texture.translucent for texture in textures], bool)
     return Atlas(side_px, texels, material, translucent)
 
 
-def _rows_of(texture: Texture, side_px: int) -> tuple[np.ndarray, np.ndarray]:
+def _texel_rows(texture: Texture, side_px: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the texels and the material of a texture with all its levels.
 
     Those of small ones are kept as long as their texture: scene after scene is made of the same.
     """
-    kept = _ROWS.setdefault(texture, {}) if side_px <= MOST_KEPT_PX else {}
+    kept = _ROWS.setdefault(texture, {}) if side_px <= MAX_CACHED_PX else {}
     if side_px not in kept:
-        colour = _fitted(texture.colour, side_px)
-        extra = _fitted(_material(texture), side_px)
-        kept[side_px] = (np.concatenate(_colour_levels(colour)), np.concatenate(_levels(extra)))
+        colour = _resize(texture.colour, side_px)
+        extra = _resize(_material_channels(texture), side_px)
+        kept[side_px] = (
+            np.concatenate(_colour_mip_levels(colour)),
+            np.concatenate(_mip_levels(extra)),
+        )
     return kept[side_px]
 
 
-def _material(texture: Texture) -> np.ndarray:
+def _material_channels(texture: Texture) -> np.ndarray:
     """Return uint8 [N, N, 5] of what a texture says beside its colour."""
     size = texture.colour.shape[0]
     result = np.broadcast_to(_FLAT, (size, size, 5)).copy()
@@ -92,7 +95,7 @@ def _material(texture: Texture) -> np.ndarray:
     return result
 
 
-def _fitted(values: np.ndarray, side_px: int) -> np.ndarray:
+def _resize(values: np.ndarray, side_px: int) -> np.ndarray:
     """Return [side, side, C] of [N, N, C]: means of squares where it shrinks, else repeated."""
     size = values.shape[0]
     if size > side_px and size % side_px == 0:
@@ -103,7 +106,7 @@ def _fitted(values: np.ndarray, side_px: int) -> np.ndarray:
     return values[at.astype(int)][:, at.astype(int)]
 
 
-def _colour_levels(colour: np.ndarray) -> list[np.ndarray]:
+def _colour_mip_levels(colour: np.ndarray) -> list[np.ndarray]:
     alpha = colour[..., 3:].astype(np.float64) / 255
     light = to_linear(colour[..., :3]) * alpha
     levels = []
@@ -114,18 +117,18 @@ def _colour_levels(colour: np.ndarray) -> list[np.ndarray]:
         if len(alpha) == 1:
             return levels
         colour = whole[::2, ::2]
-        light, alpha = _halved(light), _halved(alpha)
+        light, alpha = _halve(light), _halve(alpha)
 
 
-def _levels(values: np.ndarray) -> list[np.ndarray]:
+def _mip_levels(values: np.ndarray) -> list[np.ndarray]:
     exact, levels = values.astype(np.float64), []
     while True:
         levels.append((exact + 0.5).astype(np.uint8).reshape(-1, values.shape[-1]))
         if len(exact) == 1:
             return levels
-        exact = _halved(exact)
+        exact = _halve(exact)
 
 
-def _halved(values: np.ndarray) -> np.ndarray:
+def _halve(values: np.ndarray) -> np.ndarray:
     half = values.shape[0] // 2
     return values.reshape(half, 2, half, 2, -1).mean(axis=(1, 3))

@@ -30,7 +30,7 @@ FACE_AXES = (
 
 
 @dataclass(frozen=True, eq=False)
-class FaceLook:
+class ElementFace:
     """The look of one face: a texture's name, where it lies, and what its colour is times.
 
     ``uv`` float64 [2, 4] is explained above; ``tint`` is sRGB, 0 to 255.
@@ -52,7 +52,7 @@ class Element:
 
     low: tuple[float, float, float]
     high: tuple[float, float, float]
-    faces: tuple[FaceLook | None, ...]
+    faces: tuple[ElementFace | None, ...]
     turn: np.ndarray | None = None
     shade: bool = True
     emission: int = 0
@@ -67,7 +67,7 @@ class BlockModel:
     stand_in: bool = False
 
 
-class LookSource(Protocol):
+class ModelSource(Protocol):
     """Where looks come from: our own set, a resource pack, or several stacked."""
 
     def model(self, state: str) -> BlockModel | None:
@@ -106,14 +106,14 @@ def face_uv(
         size = high[at] - low[at] or 1.0
         row[at] = axis[at] / size
         row[3] = (-low[at] if axis[at] > 0 else high[at]) / size
-    u0, v0, u1, v1 = (np.array(rect) / 16) if rect is not None else _place_in_block(side, low, high)
+    u0, v0, u1, v1 = (np.array(rect) / 16) if rect is not None else _rect_in_block(side, low, high)
     one = np.array([0.0, 0.0, 0.0, 1.0])
     for _ in range(rotation_deg // 90 % 4):  # Clockwise: what was left is now up.
         rows = np.stack([rows[1], one - rows[0]])
     return np.stack([u0 * one + (u1 - u0) * rows[0], v0 * one + (v1 - v0) * rows[1]])
 
 
-def _place_in_block(side: int, low, high) -> tuple[float, float, float, float]:
+def _rect_in_block(side: int, low, high) -> tuple[float, float, float, float]:
     """Return u0 v0 u1 v1 of a face by its place in the block."""
     spans = []
     for axis in FACE_AXES[side]:
@@ -125,10 +125,10 @@ def _place_in_block(side: int, low, high) -> tuple[float, float, float, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class LookStack:
+class ModelSourceStack:
     """Several sources of looks; the first that has one counts."""
 
-    sources: tuple[LookSource, ...] = field(default=())
+    sources: tuple[ModelSource, ...] = field(default=())
 
     def model(self, state: str) -> BlockModel | None:
         """Return the first source's model that is there."""

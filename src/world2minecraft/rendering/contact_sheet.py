@@ -21,7 +21,7 @@ TILE_PX = 150
 COLUMNS = 4  # Cards a row.
 GAP_PX, HEAD_PX, FOOT_PX, GROUP_PX = 14, 40, 18, 54
 FILLED = 0.86  # Of a tile, by the longer side of a picture.
-MOST_PX_PER_BLOCK = 84.0  # A lone block does not fill its tile.
+MAX_PX_PER_BLOCK = 84.0  # A lone block does not fill its tile.
 ELEVATION_DEG, TURN_DEG = 27.0, 34.0
 SUPERSAMPLE = 3
 PAPER, CARD, INK, FAINT, RULE = "#ffffff", (221, 227, 232), "#22262b", "#6d747c", "#d3d8dc"
@@ -82,7 +82,7 @@ def _paste_card(page: Image.Image, card: Card, corner: tuple[int, int], width: i
     draw.text((left + 10, top + 23), card.note, FAINT, ImageFont.load_default(11))
     for index, (label, volume) in enumerate(card.volumes.items()):
         at = (left + index * TILE_PX, top + HEAD_PX)
-        page.paste(Image.fromarray(thing_picture(volume)), at)
+        page.paste(Image.fromarray(object_picture(volume)), at)
         font = ImageFont.load_default(11)
         middle = at[0] + (TILE_PX - draw.textlength(label, font)) / 2
         draw.text((middle, at[1] + TILE_PX), label, FAINT, font)
@@ -110,11 +110,11 @@ def _corners(volume: BlockVolume) -> np.ndarray:
     return apply(volume.block_to_room, corners.astype(np.float64))
 
 
-def thing_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
+def object_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
     """Return a square picture of a thing that looks to room +x, uint8 [side_px, side_px, 3]."""
     toward, axes = _axes()
     flat = _corners(volume) @ axes.T
-    most = MOST_PX_PER_BLOCK * side_px / TILE_PX * volume.blocks_per_metre
+    most = MAX_PX_PER_BLOCK * side_px / TILE_PX * volume.blocks_per_metre
     px_per_metre = min(FILLED * side_px / float(np.ptp(flat, axis=0).max()), most)
     middle = (flat.min(axis=0) + flat.max(axis=0)) / 2
     seen = axes.T @ middle + toward * (toward @ _corners(volume).mean(axis=0))

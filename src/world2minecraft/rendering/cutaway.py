@@ -20,10 +20,10 @@ from world2minecraft.minecraft.entities import display_cubes, owner_of
 
 # Entities of a volume that is cut open: what goes with the blocks, and where the rest moves.
 
-MOST_CUT = 0.5  # An object goes when more than this share of its blocks does.
+MAX_CUT_SHARE = 0.5  # An object goes when more than this share of its blocks does.
 
 
-def kept_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, ...]:
+def remaining_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, ...]:
     """Return the entities that stay when some blocks of their volume are left out.
 
     An object's entities go with its blocks; what has no blocks goes where its middle is cut.
@@ -40,7 +40,7 @@ def kept_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, ...]:
     for entity in volume.entities:
         number = owner_of(entity)[1]
         if 0 < number < len(counts) and counts[number]:
-            gone = lost[number] > MOST_CUT * counts[number]
+            gone = lost[number] > MAX_CUT_SHARE * counts[number]
         else:
             gone = drop[tuple(_cell_of(entity, volume))]
         if not gone:
@@ -61,7 +61,7 @@ def entities_within(volume: BlockVolume, low: int, high: int) -> tuple[Entity, .
     )
 
 
-def moved_entities(volume: BlockVolume, shift: np.ndarray) -> tuple[Entity, ...]:
+def translate_entities(volume: BlockVolume, shift: np.ndarray) -> tuple[Entity, ...]:
     """Return a volume's entities moved by a shift, float64 [3], in blocks."""
     return tuple(
         replace(one, position=tuple((np.array(one.position) + shift).tolist()))
@@ -79,15 +79,15 @@ def _cell_of(entity: Entity, volume: BlockVolume) -> np.ndarray:
     return np.clip(cell, 0, np.array(volume.states.shape) - 1)
 
 
-RIM_M = 0.25  # So much of a near wall stays, to show where it is.
-HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,
-HIGH_M = 1.0  # and hangs above this height; lower things stand on the floor.
-BREAST_M = 1.1  # So much of a wall between two rooms stays.
-ROOM_M2 = 1.0
-STRIP_M = 0.4  # A strip of floor so narrow is no room.
-STOREY_M = 1.9  # Floors lie at least this far over one another,
-STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
-APART_M = 1.5  # Between storeys that stand side by side.
+WALL_RIM_M = 0.25  # So much of a near wall stays, to show where it is.
+WALL_MOUNT_DEPTH_M = 0.12  # What hangs on a near wall reaches this far into the room,
+WALL_MOUNT_HEIGHT_M = 1.0  # and hangs above this height; lower things stand on the floor.
+PARTITION_HEIGHT_M = 1.1  # So much of a wall between two rooms stays.
+MIN_ROOM_M2 = 1.0
+MIN_ROOM_WIDTH_M = 0.4  # A strip of floor so narrow is no room.
+MIN_STOREY_M = 1.9  # Floors lie at least this far over one another,
+MIN_STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
+STOREY_GAP_M = 1.5  # Between storeys that stand side by side.
 _WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
@@ -99,7 +99,7 @@ def without_ceiling(volume: BlockVolume) -> BlockVolume:
     if level is not None:
         drop = drop.copy()
         drop[:, level:, :] = True
-    return _without(volume, drop)
+    return _remove_blocks(volume, drop)
 
 
 def ceiling_level(semantic: np.ndarray) -> int | None:
@@ -111,14 +111,14 @@ def ceiling_level(semantic: np.ndarray) -> int | None:
     return int(np.flatnonzero(counts >= counts.max() / 2)[0])
 
 
-def storeys_of(volume: BlockVolume) -> list[BlockVolume]:
+def split_storeys(volume: BlockVolume) -> list[BlockVolume]:
     """Return the storeys of a house, from the ground up, each from its floor to the next.
 
     A room is its own and only storey.
     """
     counts = (volume.semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
-    least = max(STOREY_SHARE * counts.max(initial=0), 1)
-    apart = STOREY_M * volume.blocks_per_metre
+    least = max(MIN_STOREY_SHARE * counts.max(initial=0), 1)
+    apart = MIN_STOREY_M * volume.blocks_per_metre
     floors: list[int] = []
     for level in np.flatnonzero(counts >= least).tolist():
         if floors and level - floors[-1] < apart:
@@ -130,7 +130,7 @@ def storeys_of(volume: BlockVolume) -> list[BlockVolume]:
     return [_layers(volume, low, high) for low, high in pairwise(edges)]
 
 
-def side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
+def arrange_side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
     """Return volumes of one plan in a row, on one level, in the order given.
 
     They stand along the shorter side of their plan, so that the row is about square.
@@ -140,17 +140,17 @@ def side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
     first = volumes[0]
     axis = 0 if first.states.shape[0] <= first.states.shape[2] else 2
     height = max(one.states.shape[1] for one in volumes)
-    gap = round(APART_M * first.blocks_per_metre)
+    gap = round(STOREY_GAP_M * first.blocks_per_metre)
     entities, moved = [], np.zeros(3)
     for one in volumes:
-        entities += moved_entities(one, moved + np.subtract(first.corner, one.corner))
+        entities += translate_entities(one, moved + np.subtract(first.corner, one.corner))
         moved[axis] += one.states.shape[axis] + gap
     return replace(
         first,
         entities=tuple(entities),
-        states=_in_a_row([one.states for one in volumes], axis, height, gap),
-        semantic=_in_a_row([one.semantic for one in volumes], axis, height, gap),
-        instance=_in_a_row([one.instance for one in volumes], axis, height, gap),
+        states=_concatenate([one.states for one in volumes], axis, height, gap),
+        semantic=_concatenate([one.semantic for one in volumes], axis, height, gap),
+        instance=_concatenate([one.instance for one in volumes], axis, height, gap),
     )
 
 
@@ -164,17 +164,19 @@ def without_partitions(volume: BlockVolume) -> BlockVolume:
     floor = room_columns(semantic, bpm)
     reach = max(2, round(0.5 * bpm))
     walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
-    between = walls & (_both_sides(floor, 0, reach) | _both_sides(floor, 1, reach))
+    between = walls & (
+        _floor_on_both_sides(floor, 0, reach) | _floor_on_both_sides(floor, 1, reach)
+    )
     if not between.any():
         return volume
-    level = floor_level(semantic) + 1 + round(BREAST_M * bpm)
+    level = floor_level(semantic) + 1 + round(PARTITION_HEIGHT_M * bpm)
     drop = np.zeros(semantic.shape, bool)
     drop[:, level:, :] = between[:, None, :]
     low = np.unique(volume.instance[:, :level, :])
-    near = _dilate(between, max(1, round(HUNG_M * bpm)))[:, None, :]
+    near = _dilate(between, max(1, round(WALL_MOUNT_DEPTH_M * bpm)))[:, None, :]
     hangs = (volume.instance > 0) & ~np.isin(volume.instance, low) & near
     drop |= np.isin(volume.instance, np.unique(volume.instance[hangs])) & (volume.instance > 0)
-    return _without(volume, drop)
+    return _remove_blocks(volume, drop)
 
 
 def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVolume:
@@ -187,20 +189,20 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     """
     semantic = volume.semantic
     floor = room_columns(semantic, volume.blocks_per_metre)
-    outside = _beyond(floor, 0, near_x) | _beyond(floor, 1, near_z)
-    level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
+    outside = _beyond_floor(floor, 0, near_x) | _beyond_floor(floor, 1, near_z)
+    level = floor_level(semantic) + 1 + round(WALL_RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
     drop[:, level:, :] = outside[:, None, :]
-    far = _beyond(floor, 0, -near_x) | _beyond(floor, 1, -near_z)
-    flush = ~far & _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
+    far = _beyond_floor(floor, 0, -near_x) | _beyond_floor(floor, 1, -near_z)
+    flush = ~far & _dilate(outside, max(1, round(WALL_MOUNT_DEPTH_M * volume.blocks_per_metre)))
     # What reaches into the room stands there: a floor lamp keeps its shade.
     inside = np.unique(volume.instance[np.broadcast_to(~flush[:, None, :], semantic.shape)])
     stands = np.isin(volume.instance, inside[inside > 0])
     hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :] & ~stands
-    high = floor_level(semantic) + 1 + round(HIGH_M * volume.blocks_per_metre)
+    high = floor_level(semantic) + 1 + round(WALL_MOUNT_HEIGHT_M * volume.blocks_per_metre)
     hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)
     hangs[:, :level, :] = False
-    return _without(volume, drop | hangs)
+    return _remove_blocks(volume, drop | hangs)
 
 
 def floor_level(semantic: np.ndarray) -> int:
@@ -228,15 +230,15 @@ def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
     floor = floor_columns(semantic)
     named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)
     things = named.any(axis=1) & ~_wall_columns(semantic)
-    side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
+    side = 2 * int(MIN_ROOM_WIDTH_M / 2 * blocks_per_metre) + 1
     wide = np.asarray(ndimage.binary_opening(floor | things, np.ones((side, side))), bool)
     parts, count = label_components(wide, corners=False)
     floors = np.bincount(parts[floor], minlength=count + 1)
-    rooms = wide & (floors[parts] >= ROOM_M2 * blocks_per_metre**2)
+    rooms = wide & (floors[parts] >= MIN_ROOM_M2 * blocks_per_metre**2)
     return rooms if rooms.any() else floor
 
 
-def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
+def _beyond_floor(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
     """Tell which columns [X, Z] lie past the last floor of their row, towards ``side``."""
     rows = np.moveaxis(floor, axis, 0)
     rows = rows[::-1] if side > 0 else rows
@@ -251,7 +253,7 @@ def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
     return np.moveaxis(beyond, 0, axis)
 
 
-def _both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
+def _floor_on_both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
     """Tell which columns [X, Z] have floor within reach on either side along an axis."""
     sides = []
     for step in (-1, 1):
@@ -279,7 +281,7 @@ def _layers(volume: BlockVolume, low: int, high: int) -> BlockVolume:
     )
 
 
-def _in_a_row(arrays: list[np.ndarray], axis: int, height: int, gap: int) -> np.ndarray:
+def _concatenate(arrays: list[np.ndarray], axis: int, height: int, gap: int) -> np.ndarray:
     pieces: list[np.ndarray] = []
     for values in arrays:
         tall = np.pad(values, ((0, 0), (0, height - values.shape[1]), (0, 0)))
@@ -302,11 +304,11 @@ def _dilate(mask: np.ndarray, steps: int) -> np.ndarray:
     return grown
 
 
-def _without(volume: BlockVolume, drop: np.ndarray) -> BlockVolume:
+def _remove_blocks(volume: BlockVolume, drop: np.ndarray) -> BlockVolume:
     return replace(
         volume,
         states=np.where(drop, np.uint16(0), volume.states),
         semantic=np.where(drop, np.uint8(0), volume.semantic),
         instance=np.where(drop, np.uint16(0), volume.instance),
-        entities=kept_entities(volume, drop),
+        entities=remaining_entities(volume, drop),
     )

@@ -12,25 +12,29 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.rendering.block_elements import LookSource
-from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.empty_space_boxes import edited_boxes
-from world2minecraft.rendering.freestanding_boxes import GuestLists, list_guests, overhanging
+from world2minecraft.rendering.block_elements import ModelSource
+from world2minecraft.rendering.block_models import BuiltinModels
+from world2minecraft.rendering.empty_space_boxes import update_empty_boxes
+from world2minecraft.rendering.freestanding_boxes import (
+    CellElements,
+    elements_by_cell,
+    split_overhanging,
+)
 from world2minecraft.rendering.light import edit_light
-from world2minecraft.rendering.scene import BlockScene, bake_model, bake_scene, with_looks
+from world2minecraft.rendering.scene import BlockScene, bake_model, bake_scene, with_elements
 from world2minecraft.rendering.scene_baking import AIR, Baker, kind_of
 from world2minecraft.rendering.scene_tables import BOXES, owner_of_cell
 
 _OWNER = 2  # Of what the baker keeps of an element.
 
 
-class LiveScene:
+class EditableScene:
     """A volume's scene and the way to change it. ``scene`` is always the present one."""
 
     def __init__(
         self,
         volume: BlockVolume,
-        looks: LookSource | None = None,
+        looks: ModelSource | None = None,
         *,
         texture_px: int = 16,
         reach: float | None = None,
@@ -40,7 +44,7 @@ class LiveScene:
 
         Args: as ``prepare_scene``.
         """
-        self._baker = Baker(looks or OwnLooks(texture_px), texture_px)
+        self._baker = Baker(looks or BuiltinModels(texture_px), texture_px)
         scene, self._guests = bake_scene(volume, self._baker, reach, hidden_lamps)
         self.scene = _with_own_labels(scene)
         self._palette = list(volume.palette)
@@ -100,7 +104,7 @@ class LiveScene:
         if state in self._palette:
             return self._palette.index(state)
         model = self._baker.looks.model(state)
-        inner = [] if model is None else overhanging([model], self._states[:0])[0]
+        inner = [] if model is None else split_overhanging([model], self._states[:0])[0]
         numbers = [n for one in inner for n in bake_model(state, one, self._baker)]
         self._own.append(tuple(numbers))
         self._kinds.append(self._kind(state))
@@ -129,15 +133,15 @@ class LiveScene:
                 self._guests[at] = self._guests.get(at, []) + numbers
         return sorted(touched)
 
-    def _overhang(self, state: str, cell: np.ndarray, index: int) -> GuestLists:
+    def _overhang(self, state: str, cell: np.ndarray, index: int) -> CellElements:
         model = self._baker.looks.model(state)
         if model is None:
             return {}
         alone = np.zeros((1, 1, 1), np.uint16)
-        guests = overhanging([model], alone)[1]
+        guests = split_overhanging([model], alone)[1]
         at = cell + self.scene.tables.window[0]
         placed = [replace(guest.moved(at), owner=owner_of_cell(index)) for guest in guests]
-        return list_guests(placed, self.scene.tables.space.shape, self._baker)
+        return elements_by_cell(placed, self.scene.tables.space.shape, self._baker)
 
     def _apply(self, touched: Sequence[tuple[int, ...]]) -> None:
         """Give touched cells their looks and kinds."""
@@ -155,11 +159,11 @@ class LiveScene:
                 self._rows[elements] = len(self._looks)
                 self._looks.append(elements)
             looks.append(self._rows[elements])
-        self.scene = with_looks(self.scene, self._baker, self._looks)
+        self.scene = with_elements(self.scene, self._baker, self._looks)
         tables = self.scene.tables
         where = np.array(touched, np.int64)
         tables.looks[tuple(where.T)] = looks
-        bounds = edited_boxes(tables.space, tables.bounds, where, np.array(kinds, np.int8))
+        bounds = update_empty_boxes(tables.space, tables.bounds, where, np.array(kinds, np.int8))
         self.scene = replace(self.scene, tables=tables._replace(bounds=bounds))
 
     def _light(self, cells: np.ndarray) -> None:

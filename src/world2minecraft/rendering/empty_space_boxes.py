@@ -11,11 +11,11 @@ from world2minecraft.rendering.grid_traversal import fill_distances
 # overlap. A ray crosses a furnished room in two or three steps, however fine the blocks are, and a
 # bundle of rays that leaves a box by one of its faces can have met nothing inside it.
 
-MOST_CELLS = 96  # A side; a box of the open sky need not be larger.
+MAX_SIDE_CELLS = 96  # A side; a box of the open sky need not be larger.
 _AIR = 0  # What ``solid`` holds for air; other values are taken over as they are.
 
 
-def empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def find_empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cover the air of a grid by boxes.
 
     Args:
@@ -30,11 +30,11 @@ def empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     fill_distances(reach)
     order = np.argsort(255 - reach.ravel(), kind="stable").astype(np.int32)
     order = order[: int(np.count_nonzero(reach))]  # Cells of air, the roomiest first.
-    return _cover(kinds, reach, order, _counts(kinds))
+    return _cover_air(kinds, reach, order, _count_solid(kinds))
 
 
 @njit
-def _counts(kinds):
+def _count_solid(kinds):
     """Return how much is no air below each corner: int32 [X + 1, Y + 1, Z + 1]."""
     nx, ny, nz = kinds.shape
     total = np.zeros((nx + 1, ny + 1, nz + 1), np.int32)
@@ -49,7 +49,7 @@ def _counts(kinds):
 
 
 @njit
-def _filled(total, x0, y0, z0, x1, y1, z1):
+def _solid_in_box(total, x0, y0, z0, x1, y1, z1):
     return (
         total[x1, y1, z1] - total[x0, y1, z1] - total[x1, y0, z1] - total[x1, y1, z0]
         + total[x0, y0, z1] + total[x0, y1, z0] + total[x1, y0, z0] - total[x0, y0, z0]
@@ -57,7 +57,7 @@ def _filled(total, x0, y0, z0, x1, y1, z1):
 
 
 @njit
-def _cover(kinds, reach, order, total):
+def _cover_air(kinds, reach, order, total):
     nx, ny, nz = kinds.shape
     space = np.empty((nx, ny, nz), np.int32)
     for i in range(nx):
@@ -72,22 +72,22 @@ def _cover(kinds, reach, order, total):
         i, j, k = flat // (ny * nz), flat // nz % ny, flat % nz
         if space[i, j, k] >= 0:
             continue
-        _around(box, i, j, k, int(reach[i, j, k]) - 1, kinds.shape)
+        _box_around(box, i, j, k, int(reach[i, j, k]) - 1, kinds.shape)
         _grow(box, total, kinds.shape)
         if count == len(bounds):
             bounds = np.concatenate((bounds, np.zeros_like(bounds)))
             volumes = np.concatenate((volumes, np.zeros_like(volumes)))
         bounds[count] = box
         volumes[count] = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
-        _claim(space, volumes, box, count)
+        _claim_cells(space, volumes, box, count)
         count += 1
     return space, bounds[: max(count, 1)].copy()
 
 
 @njit
-def _around(box, i, j, k, reach, shape):
+def _box_around(box, i, j, k, reach, shape):
     """Set a box to the cells within ``reach`` of a cell, which are air."""
-    reach = min(reach, MOST_CELLS // 2)
+    reach = min(reach, MAX_SIDE_CELLS // 2)
     for axis in range(3):
         at = i if axis == 0 else (j if axis == 1 else k)
         box[axis] = max(at - reach, 0)
@@ -104,18 +104,18 @@ def _grow(box, total, shape):
             axis = face % 3
             step = 1 if face > 2 else -1
             new = box[face] + step
-            if new < 0 or new > shape[axis] or box[axis + 3] - box[axis] >= MOST_CELLS:
+            if new < 0 or new > shape[axis] or box[axis + 3] - box[axis] >= MAX_SIDE_CELLS:
                 continue
             old = box[face]
             box[face] = new
-            if _filled(total, box[0], box[1], box[2], box[3], box[4], box[5]):
+            if _solid_in_box(total, box[0], box[1], box[2], box[3], box[4], box[5]):
                 box[face] = old
             else:
                 grew = True
 
 
 @njit
-def _claim(space, volumes, box, row):
+def _claim_cells(space, volumes, box, row):
     """Give a box the cells within it that have none, or a smaller one."""
     for i in range(box[0], box[3]):
         for j in range(box[1], box[4]):
@@ -125,10 +125,10 @@ def _claim(space, volumes, box, row):
 
 
 _ORPHAN = -9  # Air that has no box for a moment.
-_MOST_GROWTH = 4  # A table of boxes that grew so many times is made anew.
+_MAX_GROWTH = 4  # A table of boxes that grew so many times is made anew.
 
 
-def edited_boxes(
+def update_empty_boxes(
     space: np.ndarray, bounds: np.ndarray, cells: np.ndarray, kinds: np.ndarray
 ) -> np.ndarray:
     """Set what some cells are; ``space`` changes in place.
@@ -145,9 +145,9 @@ def edited_boxes(
     before = len(bounds)
     for cell, kind in zip(cells, kinds, strict=True):
         bounds = _set_cell(space, bounds, cell[0], cell[1], cell[2], int(kind))
-    if len(bounds) <= _MOST_GROWTH * max(before, 64):
+    if len(bounds) <= _MAX_GROWTH * max(before, 64):
         return bounds
-    space[:], bounds = empty_boxes(np.where(space >= 0, 0, space).astype(np.int8))
+    space[:], bounds = find_empty_boxes(np.where(space >= 0, 0, space).astype(np.int8))
     return bounds
 
 
@@ -157,7 +157,7 @@ def _set_cell(space, bounds, i, j, k, kind):
     if kind == 0:
         if not was_air:
             space[i, j, k] = _ORPHAN
-            bounds = _adopt(space, bounds, i, j, k)
+            bounds = _add_box(space, bounds, i, j, k)
         return bounds
     space[i, j, k] = kind
     if not was_air:
@@ -168,13 +168,13 @@ def _set_cell(space, bounds, i, j, k, kind):
             box[side] = bounds[row, side]
         if not (box[0] <= i < box[3] and box[1] <= j < box[4] and box[2] <= k < box[5]):
             continue
-        _cut(bounds, row, i, j, k)
-        bounds = _adopt_all(space, bounds, row, box)
+        _shrink_box(bounds, row, i, j, k)
+        bounds = _cover_orphans(space, bounds, row, box)
     return bounds
 
 
 @njit
-def _cut(bounds, row, i, j, k):
+def _shrink_box(bounds, row, i, j, k):
     """Shrink a box to the largest part of it that a plane beside a cell leaves."""
     best, face, value = -1, 0, 0
     for axis in range(3):
@@ -192,29 +192,29 @@ def _cut(bounds, row, i, j, k):
 
 
 @njit
-def _adopt_all(space, bounds, row, old):
+def _cover_orphans(space, bounds, row, old):
     """Find boxes for the cells that a box had before it was cut."""
     for i in range(old[0], old[3]):
         for j in range(old[1], old[4]):
             for k in range(old[2], old[5]):
-                if space[i, j, k] == row and not _holds(bounds, row, i, j, k):
+                if space[i, j, k] == row and not _contains(bounds, row, i, j, k):
                     space[i, j, k] = _ORPHAN
     for i in range(old[0], old[3]):
         for j in range(old[1], old[4]):
             for k in range(old[2], old[5]):
                 if space[i, j, k] == _ORPHAN:
-                    bounds = _adopt(space, bounds, i, j, k)
+                    bounds = _add_box(space, bounds, i, j, k)
     return bounds
 
 
 @njit
-def _holds(bounds, row, i, j, k):
+def _contains(bounds, row, i, j, k):
     box = bounds[row]
     return box[0] <= i < box[3] and box[1] <= j < box[4] and box[2] <= k < box[5]
 
 
 @njit
-def _adopt(space, bounds, i, j, k):
+def _add_box(space, bounds, i, j, k):
     """Grow a box of air around a cell and give it the cells that have none, or a smaller one."""
     box = np.array([i, j, k, i + 1, j + 1, k + 1])
     grew = True
@@ -222,7 +222,7 @@ def _adopt(space, bounds, i, j, k):
         grew = False
         for face in range(6):
             axis = face % 3
-            if box[axis + 3] - box[axis] < MOST_CELLS and _free(space, box, face):
+            if box[axis + 3] - box[axis] < MAX_SIDE_CELLS and _is_layer_free(space, box, face):
                 box[face] += 1 if face > 2 else -1
                 grew = True
     row = len(bounds)
@@ -237,7 +237,7 @@ def _adopt(space, bounds, i, j, k):
 
 
 @njit
-def _free(space, box, face):
+def _is_layer_free(space, box, face):
     """Tell whether the layer of cells before a face of a box is air within the grid."""
     axis = face % 3
     low, high = box[:3].copy(), box[3:].copy()

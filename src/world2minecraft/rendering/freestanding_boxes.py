@@ -12,21 +12,21 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.entities import display_cubes
-from world2minecraft.rendering.block_elements import BlockModel, Element, LookSource
+from world2minecraft.rendering.block_elements import BlockModel, Element, ModelSource
 from world2minecraft.rendering.scene_baking import Baker, element_corners, is_pane, reaches_out
 from world2minecraft.rendering.scene_tables import ABSOLUTE, PANE, owner_of_cell
 
-MOST_THINGS = 200_000  # A house in display style has some thousands.
-MOST_CELLS = 4_000_000  # That one thing is listed in.
-MOST_MARGIN = 64  # Cells by which the grid grows on a side.
+MAX_DISPLAY_ENTITIES = 200_000  # A house in display style has some thousands.
+MAX_CELLS = 4_000_000  # That one thing is listed in.
+MAX_MARGIN = 64  # Cells by which the grid grows on a side.
 _FLAT = 1e-9  # Blocks: a box thinner than this has no inside that a ray could enter.
 _TOUCH = 1e-6
 
-GuestLists = dict[tuple[int, ...], list[int]]  # cell of the grid to numbers of elements
+CellElements = dict[tuple[int, ...], list[int]]  # cell of the grid to numbers of elements
 
 
 @dataclass(frozen=True, eq=False)
-class StandingThings:
+class EntityLabels:
     """What N display entities are: their class, and the object that each belongs to."""
 
     semantic: np.ndarray  # uint8 [N]
@@ -37,7 +37,7 @@ class StandingThings:
 
 
 @dataclass(frozen=True, eq=False)
-class Guest:
+class PlacedElement:
     """An element in the grid's coordinates, and whose it is (``SceneTables.traits``)."""
 
     element: Element
@@ -56,28 +56,30 @@ class Guest:
         return replace(self, element=replace(self.element, turn=matrix))
 
 
-def standing_things(volume: BlockVolume, looks: LookSource) -> tuple[StandingThings, list[Guest]]:
+def display_entity_elements(
+    volume: BlockVolume, looks: ModelSource
+) -> tuple[EntityLabels, list[PlacedElement]]:
     """Return the display entities of a volume, and their boxes in the grid of its cells."""
     to_grid = np.eye(4)
     to_grid[:3, 3] = -np.asarray(volume.corner, np.float64)
     guests, semantic, instance = [], [], []
-    for cube in display_cubes(volume.entities)[:MOST_THINGS]:
+    for cube in display_cubes(volume.entities)[:MAX_DISPLAY_ENTITIES]:
         model = looks.model(cube.state)
         for element in model.elements if model else ():
             matrix = to_grid @ cube.cube_to_world
             if element.turn is not None:
                 matrix = matrix @ element.turn
             flags = PANE * is_pane(cube.state)
-            guests.append(Guest(replace(element, turn=matrix), len(semantic), flags))
+            guests.append(PlacedElement(replace(element, turn=matrix), len(semantic), flags))
         semantic.append(cube.class_id)
         instance.append(cube.instance)
-    things = StandingThings(np.array(semantic, np.uint8), np.array(instance, np.uint16))
-    return things, [guest for guest in guests if _has_body(guest)]
+    things = EntityLabels(np.array(semantic, np.uint8), np.array(instance, np.uint16))
+    return things, [guest for guest in guests if _has_volume(guest)]
 
 
-def overhanging(
+def split_overhanging(
     models: Sequence[BlockModel], states: np.ndarray
-) -> tuple[list[BlockModel], list[Guest]]:
+) -> tuple[list[BlockModel], list[PlacedElement]]:
     """Take the elements that reach beyond their block out of the models and place them.
 
     Args:
@@ -91,34 +93,34 @@ def overhanging(
         inner.append(replace(model, elements=kept) if outer else model)
         for cell in np.argwhere(states == row) if outer else ():
             owner = owner_of_cell(int(np.ravel_multi_index(tuple(cell), states.shape)))
-            guests += [Guest(element, owner).moved(cell) for element in outer]
+            guests += [PlacedElement(element, owner).moved(cell) for element in outer]
     return inner, guests
 
 
-def _has_body(guest: Guest) -> bool:
+def _has_volume(guest: PlacedElement) -> bool:
     matrix = guest.matrix[:3, :3]
     longest = np.linalg.norm(matrix, axis=0).max()
     return bool(abs(np.linalg.det(matrix)) > _FLAT**2 and longest < 1e6)
 
 
-def margin_of(guests: Sequence[Guest], shape: tuple[int, ...]) -> np.ndarray:
+def grid_margin(guests: Sequence[PlacedElement], shape: tuple[int, ...]) -> np.ndarray:
     """Return the cells that the grid must grow by before its first and past its last, [2, 3]."""
     margin = np.zeros((2, 3), np.int64)
     for guest in guests:
         corners = element_corners(guest.element)
         margin[0] = np.maximum(margin[0], np.ceil(-corners.min(axis=0) - _TOUCH))
         margin[1] = np.maximum(margin[1], np.ceil(corners.max(axis=0) - shape - _TOUCH))
-    return np.clip(margin, 0, MOST_MARGIN)
+    return np.clip(margin, 0, MAX_MARGIN)
 
 
-def cells_of(element: Element, shape: tuple[int, ...]) -> np.ndarray:
+def cells_reached(element: Element, shape: tuple[int, ...]) -> np.ndarray:
     """Return the cells, int64 [N, 3], that a box in grid coordinates may reach."""
     corners = element_corners(element)
     low = np.floor(corners.min(axis=0) + _TOUCH)
     high = np.maximum(np.floor(corners.max(axis=0) - _TOUCH), low) + 1  # A plate may have no depth.
     low = np.clip(low, 0, shape).astype(np.int64)
     high = np.clip(high, 0, shape).astype(np.int64)
-    if (high <= low).any() or np.prod((high - low).astype(float)) > MOST_CELLS:
+    if (high <= low).any() or np.prod((high - low).astype(float)) > MAX_CELLS:
         return np.empty((0, 3), np.int64)
     spans = [np.arange(first, last) for first, last in zip(low, high, strict=True)]
     cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -131,19 +133,21 @@ def cells_of(element: Element, shape: tuple[int, ...]) -> np.ndarray:
     return cells[inside.all(axis=1)]
 
 
-def list_guests(guests: Sequence[Guest], shape: tuple[int, ...], baker: Baker) -> GuestLists:
+def elements_by_cell(
+    guests: Sequence[PlacedElement], shape: tuple[int, ...], baker: Baker
+) -> CellElements:
     """Bake guests and return the numbers of their elements in each cell that they reach."""
-    lists: GuestLists = {}
+    lists: CellElements = {}
     for guest in guests:
-        cells = cells_of(guest.element, shape)
+        cells = cells_reached(guest.element, shape)
         number = baker.add(guest.element, ABSOLUTE | guest.flags, guest.owner) if len(cells) else -1
         for cell in map(tuple, cells.tolist()):
             lists.setdefault(cell, []).append(number)
     return lists
 
 
-def place_guests(
-    lists: GuestLists, looks: np.ndarray, start: np.ndarray, refs: np.ndarray
+def add_cell_rows(
+    lists: CellElements, looks: np.ndarray, start: np.ndarray, refs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Give cells with guests looks of their own.
 

@@ -6,7 +6,13 @@ empty space in a few jumps. Coordinates, ``t`` and faces are those of ``renderin
 """
 
 from world2minecraft.core.jit import inlined, lean, njit
-from world2minecraft.rendering.ray_caster.ray import enter_grid, onward, ray_of_pixel, steep, within
+from world2minecraft.rendering.ray_caster.ray import (
+    away_from_zero,
+    enter_grid,
+    floor_clamped,
+    not_behind,
+    ray_of_pixel,
+)
 from world2minecraft.rendering.scene_tables import NO_FACE
 
 CUBE, NEAR_AIR = 0, 1
@@ -21,16 +27,16 @@ def fill_distances(cells):
         for j in range(ny):
             for k in range(nz):
                 if cells[i, j, k] >= NEAR_AIR:
-                    cells[i, j, k] = _nearer(cells, i, j, k, -1)
+                    cells[i, j, k] = _nearest_passed(cells, i, j, k, -1)
     for i in range(nx - 1, -1, -1):
         for j in range(ny - 1, -1, -1):
             for k in range(nz - 1, -1, -1):
                 if cells[i, j, k] >= NEAR_AIR:
-                    cells[i, j, k] = min(cells[i, j, k], _nearer(cells, i, j, k, 1))
+                    cells[i, j, k] = min(cells[i, j, k], _nearest_passed(cells, i, j, k, 1))
 
 
 @njit
-def _nearer(cells, i, j, k, side):
+def _nearest_passed(cells, i, j, k, side):
     """Return one more than the least of the 13 neighbours that a sweep has passed."""
     nx, ny, nz = cells.shape
     best = 254  # One more still fits a byte.
@@ -78,14 +84,14 @@ def bundle_start(cells, pose, rays, spread, u, v):
 
 
 @inlined
-def trace(cells, ox, oy, oz, dx, dy, dz, t):
+def trace_ray(cells, ox, oy, oz, dx, dy, dz, t):
     """Return ``(t, i, j, k, face)`` of the first cube ahead; face is ``NO_FACE`` for none.
 
     A cube that holds the origin is ignored: there is no near plane. The given ``t`` is 0 or comes
     from ``safe_start``.
     """
     nx, ny, nz = cells.shape
-    dx, dy, dz = steep(dx), steep(dy), steep(dz)
+    dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
     face = NO_FACE
     if not (0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz):
@@ -93,7 +99,11 @@ def trace(cells, ox, oy, oz, dx, dy, dz, t):
         if face == NO_FACE:
             return 0.0, 0, 0, 0, NO_FACE
     # On the grid's hull rounding may point outside.
-    i, j, k = within(ox + t * dx, 0, nx), within(oy + t * dy, 0, ny), within(oz + t * dz, 0, nz)
+    i, j, k = (
+        floor_clamped(ox + t * dx, 0, nx),
+        floor_clamped(oy + t * dy, 0, ny),
+        floor_clamped(oz + t * dz, 0, nz),
+    )
     while 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
         cell = cells[i, j, k]
         if cell == CUBE and face != NO_FACE and t > 0:
@@ -112,10 +122,10 @@ def trace(cells, ox, oy, oz, dx, dy, dz, t):
             c, face = (k + 1 + reach, 4) if dz > 0 else (k - reach - 1, 5)
         if reach > 0:
             if face > 1:
-                a = onward(i, within(ox + t * dx, i - reach, i + reach + 1), dx)
+                a = not_behind(i, floor_clamped(ox + t * dx, i - reach, i + reach + 1), dx)
             if face < 2 or face > 3:
-                b = onward(j, within(oy + t * dy, j - reach, j + reach + 1), dy)
+                b = not_behind(j, floor_clamped(oy + t * dy, j - reach, j + reach + 1), dy)
             if face < 4:
-                c = onward(k, within(oz + t * dz, k - reach, k + reach + 1), dz)
+                c = not_behind(k, floor_clamped(oz + t * dz, k - reach, k + reach + 1), dz)
         i, j, k = a, b, c
     return 0.0, 0, 0, 0, NO_FACE

@@ -6,24 +6,28 @@ import numpy as np
 
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light.exposure import scene_exposure
-from world2minecraft.rendering.ray_caster.shading import Lamp, corner_lights, shades_of
+from world2minecraft.rendering.ray_caster.shading import (
+    ShadingParameters,
+    block_face_shades,
+    corner_lights,
+)
 from world2minecraft.rendering.scene import BlockScene
 
-Paper = tuple[tuple[int, int, int], tuple[int, int, int]]
+Backdrop = tuple[tuple[int, int, int], tuple[int, int, int]]
 
-LUMP_CELLS = 8  # Eyes so near to each other see by one exposure.
+EXPOSURE_CELLS = 8  # Eyes so near to each other see by one exposure.
 DAY = LookLight()
 NEUTRAL = LookLight(preset="neutral")
 # A quiet, warm light grey, a little darker towards the bottom.
-PAPER: Paper = ((238, 238, 236), (214, 214, 212))
+BACKDROP: Backdrop = ((238, 238, 236), (214, 214, 212))
 
 
-def lamp_of(
+def shading_parameters(
     light: LookLight,
     scene: BlockScene,
-    background: Paper | None = None,
+    background: Backdrop | None = None,
     eyes: np.ndarray | None = None,
-) -> Lamp:
+) -> ShadingParameters:
     """Return a light as the kernels read it.
 
     Args:
@@ -33,7 +37,7 @@ def lamp_of(
             paper where the light knows no hour.
         eyes: float64 [N, 3], where the cameras stand, in cells of the scene; None for anywhere.
     """
-    return _lamp(light, exposure_of(light, scene, eyes), background)
+    return _cached_parameters(light, exposure_of(light, scene, eyes), background)
 
 
 def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
@@ -44,7 +48,7 @@ def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = N
     if eyes is None:
         key: object = light
     else:
-        lumps = np.unique(np.floor(np.asarray(eyes) / LUMP_CELLS).astype(int), axis=0)
+        lumps = np.unique(np.floor(np.asarray(eyes) / EXPOSURE_CELLS).astype(int), axis=0)
         key = (light, lumps.tobytes())
         eyes = np.unique(np.floor(np.asarray(eyes)) + 0.5, axis=0)
     if key not in scene.exposures:
@@ -53,16 +57,18 @@ def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = N
 
 
 @lru_cache(maxsize=64)
-def _lamp(light: LookLight, exposure: float, background: Paper | None) -> Lamp:
+def _cached_parameters(
+    light: LookLight, exposure: float, background: Backdrop | None
+) -> ShadingParameters:
     parameters, tone = light.parameters(exposure), light.tone
     if background is None and light.preset == "neutral":
-        background = PAPER
-    return Lamp(
+        background = BACKDROP
+    return ShadingParameters(
         lit=parameters,
         corners=corner_lights(parameters),
-        shades=shades_of(parameters),
+        shades=block_face_shades(parameters),
         tone=tone,
         background=light.background(exposure),
-        paper=tone.decode[np.array(background or PAPER)].astype(np.float64),
+        paper=tone.decode[np.array(background or BACKDROP)].astype(np.float64),
         by_row=background is not None,
     )

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 
 OUTPUTS = ("colour", "depth", "semantic", "instance", "opaque", "normal", "free")
 DEFAULT_OUTPUTS = ("colour", "depth", "semantic", "instance")
 MAX_PIXELS = 64_000_000  # Two gigabytes of outputs.
-MOST_SAMPLES = 8
+MAX_SAMPLES = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ def render_volume(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Paper | None = None,
+    background: Backdrop | None = None,
 ) -> Picture:
     """Take a picture of a volume.
 
@@ -94,7 +94,7 @@ def render_parallel(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Paper | None = None,
+    background: Backdrop | None = None,
 ) -> Picture:
     """Take a picture by parallel rays along the camera's z, its middle at the camera's place.
 
@@ -112,7 +112,7 @@ def _draw(
     check_request(outputs, size, samples)
     scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
-    lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
+    lamp = shading_parameters(light, scene, background, pose[:, 3][None] if spread else None)
     fine = "colour" in outputs and samples > 1
     arrays = pixel_arrays(size, [name for name in outputs if not (fine and name == "colour")])
     draw_into(arrays, scene, pose, rays, spread, lamp, threads)
@@ -122,7 +122,9 @@ def _draw(
         arrays = arrays._replace(colour=_mean_of_squares(many.colour, samples))
     picture = picture_of(arrays, outputs)
     if "free" in outputs:
-        picture = replace(picture, free=crossed_air(scene.tables, pose, rays, spread, arrays.depth))
+        picture = replace(
+            picture, free=observed_free_space(scene.tables, pose, rays, spread, arrays.depth)
+        )
     return picture
 
 
@@ -131,8 +133,8 @@ def check_request(outputs: Collection[str], size: tuple[int, int], samples: int)
     unknown = sorted(set(outputs) - set(OUTPUTS))
     if unknown:
         raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
-    if not 1 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if not 1 <= samples <= MAX_SAMPLES:
+        raise ValueError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
     if size[0] * size[1] * samples**2 > MAX_PIXELS:
         raise ValueError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
 

@@ -15,11 +15,11 @@ from world2minecraft.rendering.ray_caster.picture_kernel import (
     band_memory,
     draw_rows,
 )
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
-from world2minecraft.rendering.thread_pool import bands, side_by_side
+from world2minecraft.rendering.thread_pool import bands, run_parallel
 
-WANTED = {
+OUTPUT_BITS = {
     "colour": COLOUR,
     "opaque": OPAQUE,
     "normal": NORMAL,
@@ -53,7 +53,7 @@ def pixel_arrays(size: tuple[int, int], outputs: Collection[str]) -> PixelArrays
         size: height and width.
         outputs: names of pictures' outputs.
     """
-    wanted = sum(bit for name, bit in WANTED.items() if name in outputs)
+    wanted = sum(bit for name, bit in OUTPUT_BITS.items() if name in outputs)
 
     def room(bit: int) -> tuple[int, int]:
         return size if wanted & bit else (1, 1)
@@ -81,7 +81,7 @@ def draw_into(
     pose: np.ndarray,
     rays: np.ndarray,
     spread: float,
-    lamp: Lamp,
+    lamp: ShadingParameters,
     threads: int = 1,
 ) -> None:
     """Draw a picture.
@@ -110,4 +110,4 @@ def draw_into(
 def run_bands(band: Callable[[tuple[int, int]], None], rows: int, threads: int) -> None:
     """Call ``band((first, last))`` for bands that cover ``rows``, on ``threads`` threads."""
     # Bands begin with a tile, so that bundles of rays do not depend on them.
-    side_by_side(band, bands(rows, max(threads, 1), TILE))
+    run_parallel(band, bands(rows, max(threads, 1), TILE))

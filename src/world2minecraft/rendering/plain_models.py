@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
-from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook
+from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace
 from world2minecraft.rendering.texture import Texture
 
 INVISIBLE = frozenset(
@@ -27,13 +27,13 @@ def visible_boxes(state: str) -> np.ndarray:
     return visual_boxes_of(state)
 
 
-class PlainLooks:
+class PlainModels:
     """Boxes and flat colours."""
 
     def model(self, state: str) -> BlockModel:
         """Return the boxes of a state, all faces in its colour."""
         red, green, blue = (int(value) for value in colour_of(state))
-        face = FaceLook(f"plain:#{red:02x}{green:02x}{blue:02x}", _UV)
+        face = ElementFace(f"plain:#{red:02x}{green:02x}{blue:02x}", _UV)
         emission = 15 if is_luminous(state) else 0
         return BlockModel(
             tuple(

@@ -5,15 +5,15 @@ import numpy as np
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.cutaway import (
-    side_by_side,
-    storeys_of,
+    arrange_side_by_side,
+    split_storeys,
     without_ceiling,
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.light_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_parallel, render_volume
-from world2minecraft.rendering.plain_models import PlainLooks
+from world2minecraft.rendering.plain_models import PlainModels
 from world2minecraft.rendering.scene import prepare_scene
 
 ELEVATION_DEG = 48.0  # Steep enough to see over the furniture, flat enough to see its fronts.
@@ -39,10 +39,10 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
         ValueError: the picture would be too large.
     """
     _check_size(width_px, height_px)
-    opened = [without_partitions(without_ceiling(one)) for one in storeys_of(volume)]
+    opened = [without_partitions(without_ceiling(one)) for one in split_storeys(volume)]
     sides = ((-1, 1), (1, 1), (1, -1), (-1, -1))
     best = max(range(4), key=lambda n: sum(_furniture_seen(one, *sides[n]) for one in opened))
-    cut = side_by_side([without_near_walls(one, *sides[best]) for one in opened])
+    cut = arrange_side_by_side([without_near_walls(one, *sides[best]) for one in opened])
     camera, pose = dollhouse_camera(cut, *sides[best], width_px, height_px)
     picture = render_volume(
         cut, camera, pose, outputs=("colour",), light=NEUTRAL, samples=SUPERSAMPLE
@@ -54,7 +54,7 @@ def _furniture_seen(opened: BlockVolume, near_x: int, near_z: int) -> float:
     """Return how many pixels show objects, counted by the root of each object's own number."""
     cut = without_near_walls(opened, near_x, near_z)
     camera, pose = dollhouse_camera(cut, near_x, near_z, SCOUT_PX, SCOUT_PX * 3 // 4)
-    scene = prepare_scene(cut, PlainLooks())
+    scene = prepare_scene(cut, PlainModels())
     picture = render_volume(scene, camera, pose, outputs=("semantic", "instance"))
     if picture.instance is None or picture.semantic is None:
         return 0.0
@@ -130,7 +130,7 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
     """
     if px_per_block < 1:
         raise ValueError(f"px_per_block must be 1 or more, not {px_per_block}")
-    opened = side_by_side([without_ceiling(one) for one in storeys_of(volume)])
+    opened = arrange_side_by_side([without_ceiling(one) for one in split_storeys(volume)])
     x_blocks, _, z_blocks = opened.states.shape
     size = (z_blocks * px_per_block, x_blocks * px_per_block)
     _check_size(size[1], size[0])
@@ -146,7 +146,7 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
         outputs=("colour",),
         samples=SUPERSAMPLE,
         light=NEUTRAL,
-        background=(PAPER[0], PAPER[0]),
+        background=(BACKDROP[0], BACKDROP[0]),
     )
     return _colour_of(picture)
 

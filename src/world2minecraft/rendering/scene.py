@@ -10,35 +10,35 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.rendering.block_elements import BlockModel, LookSource
-from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.empty_space_boxes import empty_boxes
+from world2minecraft.rendering.block_elements import BlockModel, ModelSource
+from world2minecraft.rendering.block_models import BuiltinModels
+from world2minecraft.rendering.empty_space_boxes import find_empty_boxes
 from world2minecraft.rendering.freestanding_boxes import (
-    GuestLists,
-    StandingThings,
-    list_guests,
-    margin_of,
-    overhanging,
-    place_guests,
-    standing_things,
+    CellElements,
+    EntityLabels,
+    add_cell_rows,
+    display_entity_elements,
+    elements_by_cell,
+    grid_margin,
+    split_overhanging,
 )
 from world2minecraft.rendering.light import LightField, light_field
 from world2minecraft.rendering.light.exposure import standing_cells
-from world2minecraft.rendering.light.propagation import MOST_REACH
+from world2minecraft.rendering.light.propagation import MAX_REACH
 from world2minecraft.rendering.scene_baking import (
     AIR,
     Baker,
     ElementTable,
     is_pane,
-    joins,
+    joins_neighbours,
     kind_of,
     models_of,
 )
 from world2minecraft.rendering.scene_tables import BOXES, JOINS, PANE, SceneTables
 
-HIDDEN_LAMPS = {"minecraft:light"}
+HIDDEN_LIGHT_BLOCKS = {"minecraft:light"}
 # A build is dark where fewer of the places where one can stand have light of so many levels.
-DIM, LIT_SHARE = 4, 0.6
+MIN_LIT_LEVEL, MIN_LIT_SHARE = 4, 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class BlockScene:
     side_px: int  # of a texture
     semantic: np.ndarray  # uint8 [X, Y, Z]
     instance: np.ndarray  # uint16 [X, Y, Z]
-    things: StandingThings
+    things: EntityLabels
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells of this grid
     cells_per_metre: float
     light: LightField
@@ -60,7 +60,7 @@ class BlockScene:
 
 def prepare_scene(
     volume: BlockVolume,
-    looks: LookSource | None = None,
+    looks: ModelSource | None = None,
     *,
     texture_px: int = 16,
     reach: float | None = None,
@@ -80,7 +80,7 @@ def prepare_scene(
     Raises:
         ValueError: the size of the textures or the reach is out of range.
     """
-    baker = Baker(looks or OwnLooks(texture_px), texture_px)
+    baker = Baker(looks or BuiltinModels(texture_px), texture_px)
     return bake_scene(volume, baker, reach, hidden_lamps)[0]
 
 
@@ -89,21 +89,21 @@ def bake_scene(
     baker: Baker,
     reach: float | None = None,
     hidden_lamps: bool | None = None,
-) -> tuple[BlockScene, GuestLists]:
+) -> tuple[BlockScene, CellElements]:
     """Return the scene of a volume, and the standing elements in each cell that has any.
 
     Args: as ``prepare_scene``; the baker, which knows the looks, is empty before.
     """
     looks = baker.looks
-    models, guests = overhanging(models_of(volume.palette, looks), volume.states)
-    things, more = standing_things(volume, looks)
+    models, guests = split_overhanging(models_of(volume.palette, looks), volume.states)
+    things, more = display_entity_elements(volume, looks)
     guests += more
-    margin = margin_of(guests, volume.states.shape)
+    margin = grid_margin(guests, volume.states.shape)
     states = np.pad(volume.states, margin.T) if margin.any() else volume.states
-    start, refs = _lists_of(volume.palette, models, baker)
+    start, refs = _bake_palette(volume.palette, models, baker)
     cell_looks = states.astype(np.int32)
-    lists = list_guests([guest.moved(margin[0]) for guest in guests], states.shape, baker)
-    start, refs = place_guests(lists, cell_looks, start, refs)
+    lists = elements_by_cell([guest.moved(margin[0]) for guest in guests], states.shape, baker)
+    start, refs = add_cell_rows(lists, cell_looks, start, refs)
     cells = np.array(list(lists), np.int64).reshape(-1, 3)
     kinds = np.array([kind_of(model, looks) for model in models], np.int8)[states]
     hosts = tuple(cells[kinds[tuple(cells.T)] == AIR].T)
@@ -111,7 +111,7 @@ def bake_scene(
     grid_to_world = np.eye(4)
     grid_to_world[:3, 3] = volume.corner - margin[0]
     table, light = baker.table(), _light_of(volume, states, reach, hidden_lamps)
-    space, bounds = empty_boxes(kinds)
+    space, bounds = find_empty_boxes(kinds)
     scene = BlockScene(
         tables=SceneTables(
             space=space,
@@ -119,7 +119,7 @@ def bake_scene(
             looks=cell_looks,
             look_start=start,
             refs=refs,
-            **_of_elements(table),
+            **_element_arrays(table),
             light=light.lattice,
             window=np.array([margin[0], volume.states.shape], np.int64),
             semantic=volume.semantic.reshape(-1),
@@ -144,20 +144,20 @@ def _light_of(
 ) -> LightField:
     """Return the light of a volume's states, which may have a margin; see ``prepare_scene``."""
     if reach is None:
-        reach = min(max(1.0, volume.blocks_per_metre / 2), MOST_REACH)
+        reach = min(max(1.0, volume.blocks_per_metre / 2), MAX_REACH)
     light = light_field(states, volume.palette, reach, hidden_lamps=bool(hidden_lamps))
-    if hidden_lamps is not None or not HIDDEN_LAMPS & {
+    if hidden_lamps is not None or not HIDDEN_LIGHT_BLOCKS & {
         state.partition("[")[0] for state in volume.palette
     }:
         return light
     where = standing_cells(light)
-    bright = np.maximum(light.sky, light.block).reshape(-1)[where] >= DIM * reach
-    if len(where) == 0 or bright.mean() >= LIT_SHARE:
+    bright = np.maximum(light.sky, light.block).reshape(-1)[where] >= MIN_LIT_LEVEL * reach
+    if len(where) == 0 or bright.mean() >= MIN_LIT_SHARE:
         return light
     return light_field(states, volume.palette, reach)
 
 
-def _lists_of(
+def _bake_palette(
     palette: Sequence[str], models: Sequence[BlockModel], baker: Baker
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bake the models of a palette; return ``look_start`` and ``refs``."""
@@ -169,7 +169,7 @@ def _lists_of(
     return start, np.array(refs, np.int32)
 
 
-def with_looks(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]) -> BlockScene:
+def with_elements(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]) -> BlockScene:
     """Return the scene with all elements of a baker, and with these rows of elements.
 
     Args:
@@ -185,18 +185,18 @@ def with_looks(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]
     if len(baker.elements) == len(tables.boxes):
         return replace(scene, tables=tables)
     table = baker.table()
-    tables = tables._replace(**_of_elements(table))
+    tables = tables._replace(**_element_arrays(table))
     return replace(scene, tables=tables, material=table.atlas.material)
 
 
 def bake_model(state: str, model: BlockModel, baker: Baker) -> list[int]:
     """Bake the elements of a state's model and return their numbers."""
-    flags = JOINS * joins(state, model) | PANE * is_pane(state)
+    flags = JOINS * joins_neighbours(state, model) | PANE * is_pane(state)
     even = not model.ambient_occlusion
     return [baker.add(element, flags, even=even) for element in model.elements]
 
 
-def _of_elements(table: ElementTable) -> dict[str, np.ndarray]:
+def _element_arrays(table: ElementTable) -> dict[str, np.ndarray]:
     """Return the fields of ``SceneTables`` that elements and their textures fill."""
     return {
         "boxes": table.boxes,

@@ -1,6 +1,6 @@
 """Looks become arrays: the elements of a palette, and of boxes that stand free of the blocks.
 
-In: models of a ``LookSource``. Out: the element tables of ``SceneTables``. An element that reaches
+In: models of a ``ModelSource``. Out: the element tables of ``SceneTables``. An element that reaches
 beyond its block, as the cloth of a banner does, is left to ``rendering.freestanding_boxes``, which lists
 it in each cell that it reaches.
 """
@@ -11,8 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.rendering.atlas import Atlas, atlas_of, to_linear
-from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, LookSource
+from world2minecraft.rendering.atlas import Atlas, build_atlas, to_linear
+from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, ModelSource
 from world2minecraft.rendering.scene_tables import BOXES, EVEN, FULL, SEE_THROUGH, UNSHADED
 from world2minecraft.rendering.texture import Texture
 
@@ -25,7 +25,7 @@ _INSIDE = 1e-4  # Blocks: a turned element may be off by rounding.
 class Baker:
     """Collects elements and their textures. ``table`` gives the arrays."""
 
-    looks: LookSource
+    looks: ModelSource
     side_px: int = 16
     names: dict[str, int] = field(default_factory=dict)
     textures: list[Texture] = field(default_factory=list)
@@ -50,7 +50,7 @@ class Baker:
         self.elements.append((element, flags, owner))
         return len(self.elements) - 1
 
-    def _layer(self, face: FaceLook) -> int:
+    def _layer(self, face: ElementFace) -> int:
         layer = self.names.get(face.texture)
         if layer is None:
             layer = self.names[face.texture] = len(self.textures)
@@ -69,7 +69,7 @@ class Baker:
             uv=np.zeros((count, 6, 2, 4), np.float32),
             tints=np.ones((count, 6, 3), np.float32),
             emission=np.zeros(count, np.float32),
-            atlas=atlas_of(self.textures or [_MISSING], self.side_px),
+            atlas=build_atlas(self.textures or [_MISSING], self.side_px),
         )
         turns = []
         for row, (element, flags, owner) in enumerate(self.elements):
@@ -116,7 +116,7 @@ def _linear_tint(tint: tuple[int, int, int]) -> np.ndarray:
     return to_linear(np.array(tint))
 
 
-def kind_of(model: BlockModel, looks: LookSource) -> int:
+def kind_of(model: BlockModel, looks: ModelSource) -> int:
     """Return ``FULL`` for one opaque cube, ``BOXES`` for other elements, ``AIR`` for none."""
     if len(model.elements) == 0:
         return AIR
@@ -135,7 +135,7 @@ def is_unit_cube(element: Element) -> bool:
     return element.turn is None and element.low == (0, 0, 0) and element.high == (1, 1, 1)
 
 
-def joins(state: str, model: BlockModel) -> bool:
+def joins_neighbours(state: str, model: BlockModel) -> bool:
     """Whether two such blocks side by side show no face between them: glass does, leaves do not.
 
     Water does though it is no full cube: a pool has no walls within.
@@ -172,6 +172,6 @@ def is_pane(state: str) -> bool:
     return "glass" in state.partition("[")[0].partition(":")[2]
 
 
-def models_of(palette: Sequence[str], looks: LookSource) -> list[BlockModel]:
+def models_of(palette: Sequence[str], looks: ModelSource) -> list[BlockModel]:
     """Return the model of each state; nothing for a state that no source knows."""
     return [looks.model(state) or BlockModel() for state in palette]

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-MOST_PX = 1024  # A side; larger ones are a mistake or a trap.
+MAX_SIDE_PX = 1024  # A side; larger ones are a mistake or a trap.
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +30,8 @@ class Texture:
         shape = self.colour.shape
         if self.colour.dtype != np.uint8 or len(shape) != 3 or shape[2] != 4:
             raise ValueError(f"colour must be uint8 [N, N, 4], not {self.colour.dtype} {shape}")
-        if shape[0] != shape[1] or not 1 <= shape[0] <= MOST_PX:
-            raise ValueError(f"a texture must be square, 1 to {MOST_PX} px, not {shape[:2]}")
+        if shape[0] != shape[1] or not 1 <= shape[0] <= MAX_SIDE_PX:
+            raise ValueError(f"a texture must be square, 1 to {MAX_SIDE_PX} px, not {shape[:2]}")
         for name, depth in (("normal", (3,)), ("roughness", ()), ("metal", ()), ("emission", ())):
             value = getattr(self, name)
             if value is None:

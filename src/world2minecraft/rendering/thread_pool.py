@@ -14,12 +14,12 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 
-MOST_THREADS = 512  # They are started one by one, as works wait for them.
+MAX_THREADS = 512  # They are started one by one, as works wait for them.
 _lock = Lock()
 _running: list[ThreadPoolExecutor] = []  # None or one.
 
 
-def side_by_side(work: Callable[[Item], object], items: Sequence[Item]) -> None:
+def run_parallel(work: Callable[[Item], object], items: Sequence[Item]) -> None:
     """Call ``work`` once for each item, all at the same time; return when all are done.
 
     The first item is worked on by the caller's own thread. An error of any is raised, that of the
@@ -52,11 +52,11 @@ def bands(rows: int, parts: int, step: int) -> list[tuple[int, int]]:
 def _executor() -> ThreadPoolExecutor:
     with _lock:
         if not _running:
-            _running.append(ThreadPoolExecutor(MOST_THREADS, "world2minecraft-render"))
+            _running.append(ThreadPoolExecutor(MAX_THREADS, "world2minecraft-render"))
         return _running[0]
 
 
-def _forget() -> None:
+def _reset_after_fork() -> None:
     """A forked process has none of its parent's threads, and perhaps a lock that one held."""
     global _lock  # noqa: PLW0603
     _lock = Lock()
@@ -64,4 +64,4 @@ def _forget() -> None:
 
 
 if hasattr(os, "register_at_fork"):  # Windows has no fork.
-    os.register_at_fork(after_in_child=_forget)
+    os.register_at_fork(after_in_child=_reset_after_fork)

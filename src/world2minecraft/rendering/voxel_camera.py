@@ -13,7 +13,7 @@ from world2minecraft.rendering.grid_traversal import (
     TILE,
     bundle_start,
     fill_distances,
-    trace,
+    trace_ray,
 )
 from world2minecraft.rendering.picture_arrays import run_bands
 from world2minecraft.rendering.ray_caster.ray import ray_of_pixel
@@ -98,6 +98,6 @@ def _cast_rows(cells, pose, rays, first, last, depth, index, face):
                 for u in range(u_tile, min(u_tile + TILE, depth.shape[1])):
                     x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
                     ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, 1.0)
-                    t, i, j, k, side = trace(cells, ox, oy, oz, dx, dy, dz, start)
+                    t, i, j, k, side = trace_ray(cells, ox, oy, oz, dx, dy, dz, start)
                     depth[v, u], face[v, u] = t, side
                     index[v, u] = (i * ny + j) * nz + k if side != NO_FACE else -1

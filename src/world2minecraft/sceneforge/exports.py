@@ -22,7 +22,7 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.formats.volume_formats import form_names
+from world2minecraft.formats.volume_formats import (writable_format_names)
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
 from world2minecraft.sceneforge.editor import Editor
 
@@ -49,7 +49,7 @@ class ExportForm:
 
 def forms() -> tuple[ExportForm, ...]:
     """Return all forms that a scene can be downloaded in."""
-    others = [name for name in form_names() if name not in (*BUILT_FIRST, *MODELS)]
+    others = [name for name in writable_format_names() if name not in (*BUILT_FIRST, *MODELS)]
     game = [ExportForm(name, "game", True) for name in (*BUILT_FIRST, *others)]
     models = [ExportForm(name, "3d", True) for name in MODELS]
     return (*game, *models, *(ExportForm(name, "data", False) for name in DATA))

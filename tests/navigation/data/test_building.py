@@ -14,7 +14,7 @@ from world2minecraft import cli
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.data import generated_scenes as made_scenes
 from world2minecraft.navigation.data.item_building import PAPER_HELD, PAPER_SIZE, cut_to_paper_size
-from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.scene_items import SceneRule
 from world2minecraft.navigation.data.set_building import (
     BuildRule,
     _WalkCounter,
@@ -113,7 +113,7 @@ def told_to(told):
 
 def small(**more):
     return BuildRule(
-        trajectories=3, work=WorkRule(size_px=(64, 36), balanced=False, seed=2), **more
+        trajectories=3, work=SceneRule(size_px=(64, 36), balanced=False, seed=2), **more
     )
 
 

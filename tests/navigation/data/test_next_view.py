@@ -15,9 +15,15 @@ from world2minecraft.navigation.data.distractors import (
     RankBalancer,
     is_valid_choice,
 )
-from world2minecraft.navigation.data.keyframes import marks_of
-from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, are_apart, unlike
-from world2minecraft.navigation.data.tasks import FOUND_OF, GRADES, MOST_FAR, view_question
+from world2minecraft.navigation.data.keyframes import find_keyframes
+from world2minecraft.navigation.data.pictures import (
+    EncodedPicture,
+    PictureStore,
+    StoredPicture,
+    picture_difference,
+    show_different_views,
+)
+from world2minecraft.navigation.data.tasks import FOUND_OF, GRADES, MAX_FAR, view_question
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
 from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
@@ -30,7 +36,7 @@ def way(*moves):
     walk, stances = free_walker(VLNCE, 1.0), [Stance(0.0, 0.0, 0.0)]
     for move in moves:
         stances.append(walk(stances[-1], move)[0])
-    return marks_of(DiscreteWalk((*moves, STOP), tuple(stances)), VLNCE, 0.25)
+    return find_keyframes(DiscreteWalk((*moves, STOP), tuple(stances)), VLNCE, 0.25)
 
 
 WAY = way(*[R] * 4, *[F] * 4, *[L] * 3, *[F] * 8, *[R] * 6)
@@ -87,14 +93,14 @@ def a_shot(value, rng):
     grey = np.full((18, 32), 128.0)
     grey[:, :16] = value
     noise = int(rng.integers(1 << 62))
-    return Shot(b"", "0" * 64, 100.0, noise, 40.0, grey.astype(np.uint8).tobytes())
+    return EncodedPicture(b"", "0" * 64, 100.0, noise, 40.0, grey.astype(np.uint8).tobytes())
 
 
 def pictured(name, stance, shot):
-    return Pictured(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
+    return StoredPicture(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
 
 
-class FakeAlbum(Album):
+class FakeAlbum(PictureStore):
     """Pictures by how far a place is from the way's start."""
 
     def __init__(self, rng):
@@ -124,11 +130,13 @@ def test_what_is_taken_is_as_near_as_its_slot_says(seed, grade, step):
     assert len(asked.slots) == 3
     now, right = pictures[step], pictures[step + 1]
     taken = [slot for slot in asked.slots if slot.picture is not None]
-    assert sum(not slot.nearer for slot in taken) <= MOST_FAR[grade]
+    assert sum(not slot.nearer for slot in taken) <= MAX_FAR[grade]
     for slot in taken:
         assert slot.picture is not None
-        assert (unlike(now, slot.picture) < unlike(now, right)) == slot.nearer
-        assert are_apart(slot.picture.stance, right.stance, 1.0)
+        assert (
+            picture_difference(now, slot.picture) < picture_difference(now, right)
+        ) == slot.nearer
+        assert show_different_views(slot.picture.stance, right.stance, 1.0)
         others = [one.picture for one in taken if one is not slot and one.picture]
         assert is_valid_choice(slot.picture, now, [right, *others])
     kinds = [slot.kind for slot in taken]

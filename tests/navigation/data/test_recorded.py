@@ -9,21 +9,21 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.navigation.data.planned_walks import Tourist
+from world2minecraft.navigation.data.planned_walks import TourPlanner
 from world2minecraft.navigation.data.recorded_walks import (
-    checked_at,
-    on_floor,
+    assign_streams,
+    parse_at,
     recorded_tours,
     scene_ids_of,
-    streams_of,
+    snap_to_floor,
 )
-from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.scene_items import SceneRule
 from world2minecraft.navigation.data.set_building import BuildRule, build_navigation_set
 from world2minecraft.navigation.records import read_episodes, read_trajectories
 from world2minecraft.navigation.values import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame
 
-RULE = WorkRule(size_px=(64, 36), balanced=False, seed=4)
+RULE = SceneRule(size_px=(64, 36), balanced=False, seed=4)
 
 
 def line(frame, eye=0.0, **more):
@@ -39,7 +39,7 @@ def write(path, lines):
 
 @pytest.fixture(scope="module")
 def tour(flat):
-    return Tourist(flat).tour("flat_t00", np.random.default_rng([4, *b"flat_t00"]))
+    return TourPlanner(flat).tour("flat_t00", np.random.default_rng([4, *b"flat_t00"]))
 
 
 def test_a_walk_that_was_written_is_walked_again(flat, flat_path, tour, tmp_path):
@@ -97,25 +97,25 @@ def test_who_flies_or_stands_on_a_table_is_left_out(flat):
     feet = flat.start.feet
     places = [feet, (feet[0], feet[1] + 3, feet[2]), (feet[0] + 0.3, feet[1] + 0.4, feet[2])]
     frames = [StreamFrame(n, Stance(*place)) for n, place in enumerate(places)]
-    kept = on_floor(flat, frames)
+    kept = snap_to_floor(flat, frames)
     assert [one.t_s for one in kept] == [0, 2]
     assert {one.stance.y for one in kept} == {feet[1]}
-    assert on_floor(flat, []) == []
+    assert snap_to_floor(flat, []) == []
 
 
 def test_a_stream_finds_its_scene(tmp_path):
     pose = {"x": 0, "y": 0, "z": 0, "yaw": 0, "pitch": 0}
     both = write(tmp_path / "a.jsonl", [{**pose, "scene_id": "east"}, {**pose, "scene_id": "west"}])
     none = write(tmp_path / "b.jsonl", [pose])
-    told = streams_of([str(both)], ["east", "west"])
+    told = assign_streams([str(both)], ["east", "west"])
     assert Counter(told) == Counter({"east": (str(both),), "west": (str(both),)})
-    assert streams_of([str(none)], ["east"]) == {"east": (str(none),)}
+    assert assign_streams([str(none)], ["east"]) == {"east": (str(none),)}
     with pytest.raises(UsageError, match=r"b\.jsonl does not say of which scene it is; name one"):
-        streams_of([str(none)], ["east", "west"])
+        assign_streams([str(none)], ["east", "west"])
     with pytest.raises(UsageError, match="is of scene 'west', which is not among east, north"):
-        streams_of([str(both)], ["east", "north"])
+        assign_streams([str(both)], ["east", "north"])
     with pytest.raises(UsageError, match="--at is feet or eye, not 'head'"):
-        checked_at("head")
+        parse_at("head")
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,9 @@ from world2minecraft import cli
 from world2minecraft.core.errors import BudgetError, DamagedFileError, InputError, ServerError
 from world2minecraft.navigation.data.rewording import (
     annotate_set,
-    asked_by,
     read_set,
-    rewritten_set,
+    reword_set,
+    select_instructions,
     write_set,
 )
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
@@ -82,7 +82,7 @@ def test_words_that_tell_the_way_are_never_followed_by_the_goal_alone(
     plain = Instruction("Own words.", level=level)
     walks = [replace(one, instructions=(plain, *told)) for one in made.trajectories]
     items = [replace(one, instruction=plain) for one in made.items]
-    again = asked_by(replace(made, items=items, trajectories=walks))
+    again = select_instructions(replace(made, items=items, trajectories=walks))
     fit = [one for one in told if level == "goal" or one.level != "goal"]
     best = "human" if any(one.source == "human" for one in fit) else "llm" if fit else "template"
     for item in again.items:
@@ -90,7 +90,7 @@ def test_words_that_tell_the_way_are_never_followed_by_the_goal_alone(
         assert item.instruction.level == level
         if best != "template":
             assert item.instruction.text in [f"{told.index(one)}." for one in fit]
-    assert asked_by(again, ("template",)).items == items
+    assert select_instructions(again, ("template",)).items == items
 
 
 _MADE = []
@@ -147,7 +147,7 @@ def test_a_thing_of_the_scene_that_was_not_told_is_seen(folder):
     made = read_set(folder)
     assert made.names["kitchen"] == ("door", "piano", "red sofa", "table")
     ask = lambda _: "At the red sofa, then the door take a left, pass the table to the piano."  # noqa: E731
-    again, outcomes = rewritten_set(made, ask, "m")
+    again, outcomes = reword_set(made, ask, "m")
     assert outcomes["other landmarks"] == 1  # Of the kitchen: the others know of no sofa.
     assert len(again.trajectories[0].instructions) == 1
 
@@ -159,7 +159,7 @@ def test_a_server_that_is_gone_ends_it_and_one_that_stumbles_does_not(folder):
         raise ServerError("nobody there")
 
     with pytest.raises(ServerError, match="nobody there"):
-        rewritten_set(made, gone, "m")
+        reword_set(made, gone, "m")
     replies = iter([SAME, gone, BudgetError("empty")])
 
     def stumbling(prompt):
@@ -168,9 +168,9 @@ def test_a_server_that_is_gone_ends_it_and_one_that_stumbles_does_not(folder):
             raise reply
         return reply if isinstance(reply, str) else reply(prompt)
 
-    again, outcomes = rewritten_set(made, stumbling, "m")
+    again, outcomes = reword_set(made, stumbling, "m")
     assert outcomes == {"": 1, "no reply": 1, "no budget left": 1}
-    write_set(folder, asked_by(again))
+    write_set(folder, select_instructions(again))
     assert Counter(one.instruction.source for one in read_items(folder)) == {
         "llm": 13, "template": 26,
     }  # fmt: skip

@@ -13,29 +13,29 @@ from PIL import Image
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.navigation.data.blind_baselines import score_baselines
 from world2minecraft.navigation.data.item_building import LetterBalancer, cut_to_quotas
-from world2minecraft.navigation.data.keyframes import Mark
-from world2minecraft.navigation.data.pictures import are_apart
-from world2minecraft.navigation.data.scene_items import WorkRule
+from world2minecraft.navigation.data.keyframes import KeyframeMark
+from world2minecraft.navigation.data.pictures import show_different_views
+from world2minecraft.navigation.data.scene_items import SceneRule
 from world2minecraft.navigation.data.set_building import (
     BuildRule,
     build_navigation_set,
     composition_of,
 )
 from world2minecraft.navigation.data.splits import (
-    leaks_of,
+    find_leaks,
     scene_splits,
     split_of_tour,
     without_shared_pictures,
 )
 from world2minecraft.navigation.data.statistics import (
-    figures,
+    compute_statistics,
     lengths_of,
-    statistics_of,
+    statistics_json,
     statistics_text,
     write_histograms,
 )
 from world2minecraft.navigation.data.tasks import action_steps
-from world2minecraft.navigation.language.parsing import told_in
+from world2minecraft.navigation.language.parsing import parse_instruction
 from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 from world2minecraft.navigation.values import Instruction, Item, Move, Option, Stance
@@ -85,7 +85,7 @@ def test_letters_come_as_often_as_each_other():
 def test_actions_are_asked_about_evenly_or_not_at_all():
     stance, rng = Stance(0, 0, 0), np.random.default_rng(0)
     moves = [Move.LEFT, Move.FORWARD, Move.FORWARD, Move.RIGHT, Move.FORWARD, Move.STOP]
-    marks = [Mark(n, stance, move, 1, (move,)) for n, move in enumerate(moves)]
+    marks = [KeyframeMark(n, stance, move, 1, (move,)) for n, move in enumerate(moves)]
     steps = action_steps(marks, range(6), rng)
     assert sorted(marks[n].move for n in steps) == sorted(Move)
     assert action_steps(marks, range(1, 6), rng) == []
@@ -101,20 +101,20 @@ def test_a_cut_takes_from_every_scene():
 
 def test_leaks_are_found():
     clean = [action("a", scene="s1"), action("b", scene="s2", split="val_unseen", text="Go.")]
-    assert leaks_of(clean).is_clean
+    assert find_leaks(clean).is_clean
     same_scene = [action("a", scene="s1"), action("b", scene="s1", split="val_unseen")]
-    leaks = leaks_of(same_scene)
+    leaks = find_leaks(same_scene)
     assert leaks.scenes == ("s1",)
     assert leaks.instructions == ("Go to the bed.",)
     assert not leaks.is_clean
-    assert leaks_of([clean[0], action("a", split="val_seen")]).images
+    assert find_leaks([clean[0], action("a", split="val_seen")]).images
 
 
 def test_what_shows_a_picture_of_train_is_not_scored_on():
     same, other = action("a", split="val_seen"), action("c", split="val_seen")
     items = [action("a"), same, other, action("b")]
     assert without_shared_pictures(items) == [items[0], other, items[3]]
-    assert leaks_of(without_shared_pictures(items)).images == ()
+    assert find_leaks(without_shared_pictures(items)).images == ()
 
 
 def test_words_that_give_the_answer_away_are_flagged(tmp_path):
@@ -168,7 +168,7 @@ def small_set(flat_path, tmp_path_factory):
 
 
 def small_rule():
-    return BuildRule(trajectories=4, work=WorkRule(size_px=(96, 54), balanced=False, seed=1))
+    return BuildRule(trajectories=4, work=SceneRule(size_px=(96, 54), balanced=False, seed=1))
 
 
 def test_a_small_set_is_sound(small_set, flat):
@@ -199,7 +199,7 @@ def test_the_right_picture_is_the_next_one_and_no_other_could_be(small_set):
         assert item.history == tuple(one.image for one in frames[item.step - 2 : item.step])
         for option in item.options:
             if option.label != item.answer and option.kind != "other_scene":
-                assert are_apart(option.stance, right.stance, item.metres_per_block)
+                assert show_different_views(option.stance, right.stance, item.metres_per_block)
         assert len({option.image for option in item.options}) == 4
 
 
@@ -227,7 +227,7 @@ def test_what_is_told_leads_to_the_end(small_set, flat):
         for instruction in walk.instructions:
             if instruction.level == "route":
                 continue
-            last = told_in(instruction.text, names).landmarks[-1]
+            last = parse_instruction(instruction.text, names).landmarks[-1]
             goals = flat.goals_at(flat.landmark(last))
             way = plan_expert_path(flat, episode.start, goals)
             assert way is not None
@@ -247,13 +247,13 @@ def test_the_same_seed_gives_the_same_bytes(small_set, flat_path, tmp_path):
 
 def test_figures_and_pictures_of_a_set(small_set, tmp_path):
     out, built = small_set
-    statistics, leaks = statistics_of(built.items), leaks_of(built.items)
+    statistics, leaks = compute_statistics(built.items), find_leaks(built.items)
     text = statistics_text(statistics, leaks)
     assert (
         "the paper's                 769   79.0   32.9     15     57     78     96    187" in text
     )
     rows = score_baselines(built.items, out)
-    assert json.dumps(figures(statistics, leaks, rows))
+    assert json.dumps(statistics_json(statistics, leaks, rows))
     assert {row.name for row in rows} >= {"uniform", "majority", "blind", "repeat", "nearest"}
     graded = {row.name: row.accuracy for row in rows if row.name.startswith("nearest ")}
     (nearest,) = [row.accuracy for row in rows if row.name == "nearest"]

@@ -11,12 +11,12 @@ from tests.navigation.data.free_floor import free_walker
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.navigation.data.keyframes import (
-    fault_of_pictures,
-    fault_of_way,
-    marks_of,
-    path_m,
+    find_keyframes,
+    path_fault,
+    path_length_m,
+    picture_fault,
 )
-from world2minecraft.navigation.data.stream_cleaning import segments_of
+from world2minecraft.navigation.data.stream_cleaning import split_into_walks
 from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
 from world2minecraft.navigation.walk_discretization import discretize_walk, simplify_path
 from world2minecraft.navigation.walk_stream import StreamFrame, frame_of_pose
@@ -66,51 +66,51 @@ def test_corners_are_those_of_the_definition(points):
 
 
 def test_a_walk_without_a_stop_is_one_segment():
-    assert [len(part) for part in segments_of(frames(straight(20)), 1.0)] == [20]
+    assert [len(part) for part in split_into_walks(frames(straight(20)), 1.0)] == [20]
 
 
 def test_a_pause_ends_a_walk_and_a_short_one_does_not():
     waits = [(0.0, 2.0)] * 12
     places = [*straight(10), *waits, *straight(10, start=2.2)]
-    parts = segments_of(frames(places), 1.0)
+    parts = split_into_walks(frames(places), 1.0)
     assert len(parts) == 2
     assert parts[0][-1].stance.z == pytest.approx(2.0, abs=0.21)
     assert parts[1][0].stance.z == 2.0
     short = [*straight(10), *waits[:5], *straight(10, start=2.2)]
-    assert len(segments_of(frames(short), 1.0)) == 1
+    assert len(split_into_walks(frames(short), 1.0)) == 1
 
 
 def test_turning_on_the_spot_is_a_part_of_the_way():
     yaws = [0.0] * 10 + list(np.linspace(0, 90, 15)) + [90.0] * 5
     places = [*straight(10), *[(0.0, 2.0)] * 15, *[(-0.2 * n, 2.0) for n in range(1, 6)]]
-    assert len(segments_of(frames(places, yaws), 1.0)) == 1
+    assert len(split_into_walks(frames(places, yaws), 1.0)) == 1
 
 
 def test_looking_around_ends_a_walk():
     yaws = [0.0] * 10 + list(np.arange(15) * 24.0) + [0.0] * 10
     places = [*straight(10), *[(0.0, 2.0)] * 15, *straight(10, start=2.2)]
-    parts = segments_of(frames(places, yaws), 1.0)
+    parts = split_into_walks(frames(places, yaws), 1.0)
     assert len(parts) == 2
     assert sum(map(len, parts)) < 35
 
 
 @pytest.mark.parametrize("jump", [1.6, 30.0])
 def test_a_teleport_ends_a_walk(jump):
-    assert len(segments_of(frames([*straight(5), *straight(5, start=jump + 0.8)]), 1.0)) == 2
+    assert len(split_into_walks(frames([*straight(5), *straight(5, start=jump + 0.8)]), 1.0)) == 2
 
 
 def test_limits_are_in_metres_of_the_room():
     places = [(x * 4, z * 4) for x, z in straight(20)]  # 1 m/s at four blocks a metre
-    assert len(segments_of(frames(places), 4.0)) == 1
+    assert len(split_into_walks(frames(places), 4.0)) == 1
 
 
 def test_gaps_scenes_and_looks_at_the_floor_end_walks():
     walk = frames(straight(20))
     late = [*walk[:10], *(StreamFrame(f.t_s + 5, f.stance, "s", "t") for f in walk[10:])]
-    assert len(segments_of(late, 1.0)) == 2
+    assert len(split_into_walks(late, 1.0)) == 2
     other = [*walk[:10], *(StreamFrame(f.t_s, f.stance, "other", "t") for f in walk[10:])]
-    assert len(segments_of(other, 1.0)) == 2
-    assert segments_of(frames(straight(20), pitch=80.0), 1.0) == []
+    assert len(split_into_walks(other, 1.0)) == 2
+    assert split_into_walks(frames(straight(20), pitch=80.0), 1.0) == []
 
 
 def test_a_corner_is_turned_and_a_heading_met():
@@ -172,7 +172,7 @@ def test_a_wall_refuses_a_walk():
 def test_keyframes_stand_where_runs_end():
     places = [*[(0.0, 0.2 * n) for n in range(11)], *[(-0.2 * n, 2.0) for n in range(1, 11)]]
     walk = discretize_walk(frames(places, [0.0] * 20 + [90.0]), VLNCE, 1.0, free_walker(VLNCE, 1.0))
-    marks = marks_of(walk, VLNCE, 0.25)
+    marks = find_keyframes(walk, VLNCE, 0.25)
     assert marks[0].stance == walk.stances[0]
     assert [mark.action for mark in marks[-1:]] == ["stop"]
     assert all(mark.stance == walk.stances[mark.at] for mark in marks)
@@ -181,16 +181,16 @@ def test_keyframes_stand_where_runs_end():
     replayed = [move for mark in marks for move in [mark.move] * mark.run]
     assert tuple(replayed) == walk.moves
     assert all(mark.chunk == walk.moves[mark.at : mark.at + 4] for mark in marks)
-    assert fault_of_way(marks, path_m(marks, 1.0), 2.8) == ""
-    assert fault_of_way(marks[-1:], 0.0, 0.0) == "goes nowhere"
-    assert fault_of_way(marks, 0.5, 2.8) == "too short"
-    assert fault_of_way(marks, 3.5, 0.2) == "ends where it began"
+    assert path_fault(marks, path_length_m(marks, 1.0), 2.8) == ""
+    assert path_fault(marks[-1:], 0.0, 0.0) == "goes nowhere"
+    assert path_fault(marks, 0.5, 2.8) == "too short"
+    assert path_fault(marks, 3.5, 0.2) == "ends where it began"
 
 
 def test_pictures_that_are_black_or_the_same_are_refused():
-    assert fault_of_pictures([90, 90], [0, 255]) == ""
-    assert fault_of_pictures([90, 3], [0, 255]) == "black picture"
-    assert fault_of_pictures([90, 90], [0, 7]) == "twice the same picture"
+    assert picture_fault([90, 90], [0, 255]) == ""
+    assert picture_fault([90, 3], [0, 255]) == "black picture"
+    assert picture_fault([90, 90], [0, 7]) == "twice the same picture"
 
 
 def test_streams_are_read_with_feet_under_their_eyes(tmp_path):

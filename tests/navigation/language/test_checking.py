@@ -4,11 +4,11 @@ import pytest
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.language.checking import (
-    Spoken,
-    findings,
-    goal_of,
-    names_of,
-    spoken_in,
+    Mention,
+    check_instruction,
+    find_mentions,
+    goal_name,
+    landmark_names_of,
 )
 from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
 
@@ -29,7 +29,7 @@ def a_walk(told=TOLD, name="t0", scene="flat"):
 
 
 def said(text, level):
-    return [(one.is_wrong, one.text) for one in findings(text, level, a_walk(), NAMES)]
+    return [(one.is_wrong, one.text) for one in check_instruction(text, level, a_walk(), NAMES)]
 
 
 @pytest.mark.parametrize(
@@ -75,12 +75,12 @@ def test_what_is_wrong_is_told_first(level, text, expected):
 
 def test_there_are_three_levels():
     with pytest.raises(UsageError, match="level of an instruction must be one of"):
-        findings("Go.", "dance", a_walk(), NAMES)
+        check_instruction("Go.", "dance", a_walk(), NAMES)
 
 
 def test_a_goal_that_shares_its_name_is_told_apart():
     told = (Instruction("Go to the red chair.", level="goal", landmarks=("red chair",)),)
-    found = findings("Please go to the chair.", "goal", a_walk(told), NAMES)
+    found = check_instruction("Please go to the chair.", "goal", a_walk(told), NAMES)
     assert [one.text for one in found if one.is_wrong] == [
         "it does not name where the walk ends: the red chair"
     ]
@@ -88,22 +88,22 @@ def test_a_goal_that_shares_its_name_is_told_apart():
 
 
 def test_a_walk_that_nothing_is_told_of_asks_for_no_goal():
-    assert goal_of(a_walk(())) == ""
-    assert findings("Walk on until you are there.", "landmark", a_walk(()), ()) == [
+    assert goal_name(a_walk(())) == ""
+    assert check_instruction("Walk on until you are there.", "landmark", a_walk(()), ()) == [
         (False, "it names no thing on the way, only where it ends")
     ]
-    assert findings("Walk on until you are there.", "goal", a_walk(()), ()) == []
+    assert check_instruction("Walk on until you are there.", "goal", a_walk(()), ()) == []
 
 
 def test_names_are_those_of_the_scene():
     other = Instruction("Go to the bed.", level="goal", landmarks=("bed",))
     walks = [a_walk(), a_walk((other,), "t1"), a_walk((other,), "t2", "loft")]
-    assert names_of(walks, "flat") == ("bed", "red chair", "upright piano")
-    assert names_of(walks, "loft") == ("bed",)
+    assert landmark_names_of(walks, "flat") == ("bed", "red chair", "upright piano")
+    assert landmark_names_of(walks, "loft") == ("bed",)
 
 
 def test_the_longest_phrase_counts():
-    assert spoken_in("the RED chair beside the piano", NAMES) == [
-        Spoken("red chair beside the piano", ("red chair beside the piano",))
+    assert find_mentions("the RED chair beside the piano", NAMES) == [
+        Mention("red chair beside the piano", ("red chair beside the piano",))
     ]
-    assert spoken_in("a piano-stool", ()) == []
+    assert find_mentions("a piano-stool", ()) == []

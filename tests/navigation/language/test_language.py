@@ -9,15 +9,27 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.language.generation import goal_text, instructions_of, landmark_text
+from world2minecraft.navigation.language.generation import (
+    generate_instructions,
+    goal_text,
+    landmark_text,
+)
 from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
 )
-from world2minecraft.navigation.language.landmark_names import meant, told_apart
-from world2minecraft.navigation.language.parsing import told_in
-from world2minecraft.navigation.language.rewriting import rewritten
-from world2minecraft.navigation.language.route_events import Seen, Stretch, Way, way_of
+from world2minecraft.navigation.language.landmark_names import (
+    matching_landmarks,
+    unambiguous_landmarks,
+)
+from world2minecraft.navigation.language.parsing import parse_instruction
+from world2minecraft.navigation.language.rewriting import rewrite
+from world2minecraft.navigation.language.route_events import (
+    ObservedWalk,
+    Route,
+    RouteSegment,
+    describe_route,
+)
 from world2minecraft.navigation.values import Instruction, Keyframe, Move, Stance, Trajectory
 
 NAMES = ["bed", "sofa", "coffee table", "table", "red chair", "chair beside the sofa", "desk"]
@@ -39,59 +51,61 @@ def walked(corners, yaws, looks=frozenset(), step=0.25, rooms=()):
         angles += [float(np.degrees(np.arctan2(-away[0], -away[1])))] * count
     angles[-1] = yaws[1]
     seen = dict.fromkeys(range(len(places)), frozenset(looks))
-    return Seen(np.array(places), np.array(angles), seen, rooms)
+    return ObservedWalk(np.array(places), np.array(angles), seen, rooms)
 
 
 # In the room the game's yaw 0 looks to -y, 90 to -x, -90 to +x.
 def test_a_turn_to_the_left_is_told_as_one():
-    way = way_of(walked([(0, 0), (0, -2), (2, -2)], (0, -90)), [])
+    way = describe_route(walked([(0, 0), (0, -2), (2, -2)], (0, -90)), [])
     assert way.turns == ("left",)  # From -y to +x, seen from above: counter-clockwise.
-    way = way_of(walked([(0, 0), (0, -2), (-2, -2)], (0, 90)), [])
+    way = describe_route(walked([(0, 0), (0, -2), (-2, -2)], (0, 90)), [])
     assert way.turns == ("right",)
-    way = way_of(walked([(0, 0), (0, 2)], (0, 180)), [])
+    way = describe_route(walked([(0, 0), (0, 2)], (0, 180)), [])
     assert way.turns == ("around",)
-    way = way_of(walked([(0, 0), (0, -2)], (0, 90)), [])
+    way = describe_route(walked([(0, 0), (0, -2)], (0, 90)), [])
     assert way.turns == ("right",)
 
 
 def test_the_side_of_what_is_passed_is_the_walkers():
     left, right = thing("sofa", 1.2, -2.0, 1), thing("desk", -1.2, -2.5, 2)
     walk = walked([(0, 0), (0, -4)], (0, 0), {1, 2})
-    (stretch,) = way_of(walk, [left, right]).stretches
+    (stretch,) = describe_route(walk, [left, right]).stretches
     assert stretch.passing == (("sofa", "left"), ("desk", "right"))
     turned = walked([(0, -4), (0, 0)], (180, 180), {1, 2})
-    (stretch,) = way_of(turned, [left, right]).stretches
+    (stretch,) = describe_route(turned, [left, right]).stretches
     assert stretch.passing == (("desk", "left"), ("sofa", "right"))
 
 
 def test_what_is_not_seen_is_not_spoken_of():
     bed = thing("bed", 0, -3.0)
-    assert way_of(walked([(0, 0), (0, -2)], (0, 0), {1}), [bed]).stop == "bed"
-    blind = way_of(walked([(0, 0), (0, -2)], (0, 0)), [bed])
+    assert describe_route(walked([(0, 0), (0, -2)], (0, 0), {1}), [bed]).stop == "bed"
+    blind = describe_route(walked([(0, 0), (0, -2)], (0, 0)), [bed])
     assert (blind.stop, blind.stretches[0].towards) == ("", "")
 
 
 def test_the_end_is_before_or_beside_a_thing():
     bed = thing("bed", 0, -3.0)
-    assert way_of(walked([(0, 0), (0, -2)], (0, 0), {1}), [bed], "bed").stop_side == "front"
-    assert way_of(walked([(0, 0), (0, -2)], (0, 90), {1}), [bed], "bed").stop_side == "left"
-    assert way_of(walked([(0, 0), (0, -2)], (0, -90), {1}), [bed], "bed").stop_side == "right"
+    assert describe_route(walked([(0, 0), (0, -2)], (0, 0), {1}), [bed], "bed").stop_side == "front"
+    assert describe_route(walked([(0, 0), (0, -2)], (0, 90), {1}), [bed], "bed").stop_side == "left"
+    assert (
+        describe_route(walked([(0, 0), (0, -2)], (0, -90), {1}), [bed], "bed").stop_side == "right"
+    )
 
 
 def test_corrections_are_no_turns():
     zigzag = [(0, 0), (0.1, -0.5), (0, -1), (-0.1, -1.5), (0, -2)]
-    assert way_of(walked(zigzag, (0, 0)), []).turns == ()
-    assert len(way_of(walked(zigzag, (0, 0)), []).stretches) == 1
+    assert describe_route(walked(zigzag, (0, 0)), []).turns == ()
+    assert len(describe_route(walked(zigzag, (0, 0)), []).stretches) == 1
 
 
 def test_rooms_are_named_where_one_comes_into_them():
     rooms = ["hall"] * 8 + ["kitchen"] * 9
-    way = way_of(walked([(0, 0), (0, -4)], (0, 0), rooms=rooms), [])
+    way = describe_route(walked([(0, 0), (0, -4)], (0, 0), rooms=rooms), [])
     assert way.stretches[0].into == "kitchen"
 
 
 stretches = st.builds(
-    Stretch,
+    RouteSegment,
     st.sampled_from([-190.0, -90.0, -40.0, 0.0, 45.0, 90.0, 135.0]),
     st.floats(0.5, 8.0),
     st.sampled_from(["", "sofa"]),
@@ -100,7 +114,7 @@ stretches = st.builds(
     st.sampled_from(["", "kitchen", "bedroom 2"]),
 )
 ways = st.builds(
-    Way,
+    Route,
     st.lists(stretches, min_size=1, max_size=5).map(tuple),
     st.sampled_from([0.0, -60.0, 90.0]),
     st.sampled_from(["", "bed", "chair beside the sofa"]),
@@ -113,14 +127,16 @@ def test_a_turn_is_told_by_the_side_it_was_made_by():
     yaws = np.array([0.0, -60.0, -120.0, -180.0, 170.0, 170.0, 170.0, 170.0])
     line = [(0.0, 0.0)] * 5 + [(-0.1, 0.6), (-0.2, 1.2), (-0.3, 1.8)]
     looks = dict.fromkeys(range(len(line)), frozenset())
-    assert way_of(Seen(np.array(line), yaws, looks), []).stretches[0].turn_deg < -180
+    assert (
+        describe_route(ObservedWalk(np.array(line), yaws, looks), []).stretches[0].turn_deg < -180
+    )
 
 
 @given(ways, st.integers(0, 99))
 @settings(max_examples=200, deadline=None)
 def test_what_is_written_is_read_again(way, seed):
-    for instruction in instructions_of(way, np.random.default_rng(seed)):
-        told = told_in(instruction.text, NAMES)
+    for instruction in generate_instructions(way, np.random.default_rng(seed)):
+        told = parse_instruction(instruction.text, NAMES)
         assert told.landmarks == instruction.landmarks
         assert instruction.text[0].isupper()
         assert instruction.text.endswith(".")
@@ -133,8 +149,11 @@ def test_what_is_written_is_read_again(way, seed):
 
 def test_the_words_are_english():
     rng = np.random.default_rng(0)
-    way = Way(
-        (Stretch(-90, 3.0, passing=(("table", "right"),)), Stretch(90, 2.4, "sofa", "piano")),
+    way = Route(
+        (
+            RouteSegment(-90, 3.0, passing=(("table", "right"),)),
+            RouteSegment(90, 2.4, "sofa", "piano"),
+        ),
         0.0,
         "piano",
         "front",
@@ -164,11 +183,11 @@ def test_the_words_are_english():
     ],
 )
 def test_turns_of_other_words_are_read(text, turns):
-    assert told_in(text, NAMES).turns == turns
+    assert parse_instruction(text, NAMES).turns == turns
 
 
 def test_longer_names_are_read_first():
-    assert told_in("Pass the coffee table and the table.", NAMES).landmarks == (
+    assert parse_instruction("Pass the coffee table and the table.", NAMES).landmarks == (
         "coffee table",
         "table",
     )
@@ -176,15 +195,17 @@ def test_longer_names_are_read_first():
 
 def test_a_name_that_could_mean_two_things_is_not_plain():
     table, coffee = thing("table", 0, 0, 1), thing("coffee table", 3, 0, 2)
-    assert meant("table", [table, coffee]) == [table, coffee]
-    assert told_apart([table, coffee]) == [coffee]
+    assert matching_landmarks("table", [table, coffee]) == [table, coffee]
+    assert unambiguous_landmarks([table, coffee]) == [coffee]
     red = thing("red chair", 0, 0, 1, noun="chair", colour="red")
     blue = thing("blue chair", 2, 0, 2, noun="chair", colour="blue")
-    assert told_apart([red, blue]) == [red, blue]
+    assert unambiguous_landmarks([red, blue]) == [red, blue]
     by_sofa = thing("chair beside the sofa", 0, 0, 1, noun="chair")
     by_door = thing("chair beside the desk", 0.5, 0, 2, noun="chair")
     sofa, desk = thing("sofa", 1.2, 0, 3), thing("desk", -9, 0, 4)
-    assert by_sofa not in told_apart([by_sofa, by_door, sofa, desk])  # Both stand beside the sofa.
+    assert by_sofa not in unambiguous_landmarks(
+        [by_sofa, by_door, sofa, desk]
+    )  # Both stand beside the sofa.
 
 
 @pytest.mark.parametrize(
@@ -200,7 +221,7 @@ def test_a_name_that_could_mean_two_things_is_not_plain():
 )
 def test_a_model_may_change_the_words_alone(reply, refusal):
     told = Instruction("Turn left at the sofa and stop in front of the bed.")
-    made = rewritten(told, NAMES, lambda _: reply)
+    made = rewrite(told, NAMES, lambda _: reply)
     assert made.refusal == refusal
     if not refusal:
         assert made.instruction is not None

@@ -10,7 +10,7 @@ CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks
 
 
 @dataclass(frozen=True)
-class Profile:
+class AxisProfile:
     """How much surface lies at each place along an axis, counted in distinct patches.
 
     ``area_m2`` float64 [bins] counts each bin with its two neighbours, since noise of consumer
@@ -40,7 +40,7 @@ class Profile:
         return float(self.area_m2[index]) if 0 <= index < len(self.area_m2) else 0.0
 
 
-def profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> Profile:
+def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisProfile:
     """Count distinct patches along an axis.
 
     Args:
@@ -49,7 +49,7 @@ def profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> Profile:
         bin_m: width of the bins.
     """
     if not len(points_m):
-        return Profile(0.0, bin_m, np.zeros(1), np.zeros(1))
+        return AxisProfile(0.0, bin_m, np.zeros(1), np.zeros(1))
     start = float(np.floor(points_m[:, axis].min() / bin_m) - 1) * bin_m
     bins = ((points_m[:, axis] - start) / bin_m).astype(np.int64)
     count = int(bins.max()) + 2
@@ -59,10 +59,10 @@ def profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> Profile:
     patch = patches[:, 0] * (patches[:, 1].max() + 1) + patches[:, 1]
     held = np.unique(patch * count + bins)
     near = np.unique(np.concatenate([held - 1, held, held + 1]))
-    return Profile(start, bin_m, _area(near, count), _area(held, count))
+    return AxisProfile(start, bin_m, _area_per_bin(near, count), _area_per_bin(held, count))
 
 
-def _area(codes: np.ndarray, count: int) -> np.ndarray:
+def _area_per_bin(codes: np.ndarray, count: int) -> np.ndarray:
     return np.bincount(codes % count, minlength=count) * (CELL_M * CELL_M)
 
 
@@ -71,13 +71,13 @@ def _area(codes: np.ndarray, count: int) -> np.ndarray:
 # Beside a wall's own face stand others a few centimetres away: a door's leaf and a window's pane
 # behind it, a picture or a wardrobe's back before it. The one with the most surface is the wall.
 
-REACH_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
+SEARCH_RADIUS_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
 BIN_M = 0.01
 LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last parts a wall from a rug or a leaf 2 cm away.
-LIFT_M = 0.003  # What a face is off for other reasons than noise; no patch counts for more.
+MIN_SIGMA_M = 0.003  # What a face is off for other reasons than noise; no patch counts for more.
 
 
-def face_place_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
+def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
     """Return where the largest face near a place lies along an axis.
 
     Args:
@@ -85,12 +85,12 @@ def face_place_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
         axis: 0, 1 or 2.
         place_m: where the face is about; returned where nothing is within 8 cm of it.
     """
-    near = facing.subset(np.abs(facing.points_m[:, axis] - place_m) < REACH_M)
+    near = facing.subset(np.abs(facing.points_m[:, axis] - place_m) < SEARCH_RADIUS_M)
     if not len(near.points_m):
         return place_m
-    found = profile(near.points_m, axis, BIN_M)
+    found = axis_profile(near.points_m, axis, BIN_M)
     place_m = float(found.centers_m()[int(np.argmax(found.area_m2 + found.bin_area_m2))])
-    trust = 1 / (near.sigma_m**2 + LIFT_M**2) / looks(near.points_m, axis)
+    trust = 1 / (near.sigma_m**2 + MIN_SIGMA_M**2) / points_per_cell(near.points_m, axis)
     for limit_m in LIMITS_M:
         off = near.points_m[:, axis] - place_m
         weight = trust * np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
@@ -99,7 +99,7 @@ def face_place_m(facing: OrientedPoints, axis: int, place_m: float) -> float:
     return place_m
 
 
-def looks(points_m: np.ndarray, axis: int) -> np.ndarray:
+def points_per_cell(points_m: np.ndarray, axis: int) -> np.ndarray:
     """Return how many points share each one's 10 cm of a face: many looks are one surface."""
     others = [other for other in range(3) if other != axis]
     cells = np.floor(points_m[:, others] / CELL_M).astype(np.int64)

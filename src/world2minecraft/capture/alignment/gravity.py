@@ -8,20 +8,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.axis_profiles import profile
+from world2minecraft.capture.alignment.axis_profiles import axis_profile
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
 DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.
-VOTERS = 4000
-WITHIN_DEG = 8.0
+MAX_VOTERS = 4000
+VOTE_CONE_DEG = 8.0
 ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
-FACING_DEG = 20.0
-HINT_DEG = 10.0  # ARKit's own world leans by under a degree, one that drifted by a few.
-FLOOR_LEAST_M2 = 0.3
-FLOOR_SHARE = 0.15  # Of the largest level surface: a table top is smaller than that many floors.
+MAX_FACING_DEG = 20.0
+MAX_HINT_OFFSET_DEG = 10.0  # ARKit's own world leans by under a degree, one that drifted by a few.
+MIN_FLOOR_M2 = 0.3
+MIN_FLOOR_SHARE = (
+    0.15  # Of the largest level surface: a table top is smaller than that many floors.
+)
 FLOOR_BAND_M = 0.15  # The first guess of up is off by under 2 degrees, over 4 m.
 PATCH_M = 0.05
-BELOW_SHARE = 0.02  # Points that reflections and noise put under a true floor.
+MAX_BELOW_SHARE = 0.02  # Points that reflections and noise put under a true floor.
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,8 @@ def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> G
         up_hint: unit vector float64 [3] where the capture knows up, as a phone does by its sense
             of gravity; then up lies within 10 degrees of it, and is it where no surface says more.
     """
-    voted = _voted_up(surface) if up_hint is None else up_hint
-    refined = _refined(surface.normals, voted)
+    voted = _vote_up(surface) if up_hint is None else up_hint
+    refined = _refine_up(surface.normals, voted)
     up = refined if _is_near(refined, up_hint) else voted
     height, area = _floor_height(surface, up)
     if area == 0:
@@ -56,15 +58,15 @@ def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> G
 
 
 def _is_near(up: np.ndarray, up_hint: np.ndarray | None) -> bool:
-    return up_hint is None or bool(up @ up_hint >= np.cos(np.radians(HINT_DEG)))
+    return up_hint is None or bool(up @ up_hint >= np.cos(np.radians(MAX_HINT_OFFSET_DEG)))
 
 
-def _voted_up(surface: OrientedPoints) -> np.ndarray:
+def _vote_up(surface: OrientedPoints) -> np.ndarray:
     """Return the best of many directions by support, level image rows and upright images."""
-    directions = _sphere(DIRECTIONS)
-    every = max(1, len(surface.normals) // VOTERS)
+    directions = _fibonacci_sphere(DIRECTIONS)
+    every = max(1, len(surface.normals) // MAX_VOTERS)
     voters = surface.normals[::every]
-    near = np.abs(directions @ voters.T) > np.cos(np.radians(WITHIN_DEG))
+    near = np.abs(directions @ voters.T) > np.cos(np.radians(VOTE_CONE_DEG))
     support = near.mean(axis=1) + 1e-4
     right, down = surface.cameras[:, :3, 0], surface.cameras[:, :3, 1]
     roll = np.mean((right @ directions.T) ** 2, axis=0)
@@ -73,7 +75,7 @@ def _voted_up(surface: OrientedPoints) -> np.ndarray:
     return directions[int(np.argmax(score))]
 
 
-def _sphere(count: int) -> np.ndarray:
+def _fibonacci_sphere(count: int) -> np.ndarray:
     """Return float64 [count, 3] unit vectors, evenly spread (Fibonacci's spiral)."""
     index = np.arange(count) + 0.5
     z = 1 - 2 * index / count
@@ -82,7 +84,7 @@ def _sphere(count: int) -> np.ndarray:
     return np.stack([flat * np.cos(angle), flat * np.sin(angle), z], axis=1)
 
 
-def _refined(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
+def _refine_up(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
     """Move a direction to the middle of the normals around it, in narrowing cones."""
     for within_deg in (10.0, 7.0, 5.0, 4.0, 4.0):
         near = normals[np.abs(normals @ up) > np.cos(np.radians(within_deg))]
@@ -95,18 +97,18 @@ def _refined(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 def _floor_height(surface: OrientedPoints, up: np.ndarray) -> tuple[float, float]:
     """Return the height of the lowest large surface that faces up, and its area in m2."""
-    frame = frame_of_up(up)
+    frame = rotation_to_z(up)
     points = surface.points_m @ frame.T
-    facing = points[surface.normals @ up > np.cos(np.radians(FACING_DEG))]
-    found = profile(facing, axis=2)
+    facing = points[surface.normals @ up > np.cos(np.radians(MAX_FACING_DEG))]
+    found = axis_profile(facing, axis=2)
     heights = np.sort(points[:, 2])
-    for height in found.peaks(max(FLOOR_LEAST_M2, FLOOR_SHARE * found.area_m2.max())):
-        if np.searchsorted(heights, height - 0.10) <= BELOW_SHARE * len(heights):
+    for height in found.peaks(max(MIN_FLOOR_M2, MIN_FLOOR_SHARE * found.area_m2.max())):
+        if np.searchsorted(heights, height - 0.10) <= MAX_BELOW_SHARE * len(heights):
             return float(height), found.area_at(float(height))
     return float(np.quantile(heights, 0.005)), 0.0
 
 
-def frame_of_up(up: np.ndarray) -> np.ndarray:
+def rotation_to_z(up: np.ndarray) -> np.ndarray:
     """Return a rotation [3, 3] that carries ``up`` to +z; the turn about it is arbitrary."""
     other = np.eye(3)[int(np.argmin(np.abs(up)))]
     x = np.cross(other, up)
@@ -122,9 +124,9 @@ def _fit_floor(
     Patches weigh alike however often they were looked at: by pixels alone, the floor nearest to
     the camera, with its own bend of the depth, would tip the kitchen's floor by 0.3 degrees.
     """
-    frame = frame_of_up(up)
+    frame = rotation_to_z(up)
     points = surface.points_m @ frame.T
-    level = surface.normals @ up > np.cos(np.radians(FACING_DEG))
+    level = surface.normals @ up > np.cos(np.radians(MAX_FACING_DEG))
     points = points[level & (np.abs(points[:, 2] - height_m) < FLOOR_BAND_M)]
     share = 1 / (_patch_counts(points) + 3.0)
     plane = np.array([0.0, 0.0, height_m])  # z = a x + b y + c

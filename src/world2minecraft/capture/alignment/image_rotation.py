@@ -22,8 +22,12 @@ from world2minecraft.capture.images import (
 )
 from world2minecraft.core.types import Camera
 
-LEAST_LEAN = 0.3  # A camera within 17 degrees of straight up or down does not tell its roll.
-SAID = {1: "a quarter turn to the left", 2: "half a turn", 3: "a quarter turn to the right"}
+MIN_UP_IN_IMAGE = 0.3  # A camera within 17 degrees of straight up or down does not tell its roll.
+TURN_DESCRIPTIONS = {
+    1: "a quarter turn to the left",
+    2: "half a turn",
+    3: "a quarter turn to the right",
+}
 # The camera after one turn of the image, counter-clockwise: its right was down, its down was left.
 _TURNED_TO_CAMERA = np.array(
     [[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -31,7 +35,7 @@ _TURNED_TO_CAMERA = np.array(
 
 
 @dataclass(frozen=True)
-class TurnedImage:
+class RotatedImage:
     """An ``ImageSource``: another image, turned counter-clockwise by quarter turns."""
 
     image: ImagePlace
@@ -71,7 +75,7 @@ class TurnedImage:
         return np.ascontiguousarray(np.rot90(read_raw(self.image), self.quarter_turns))
 
 
-def quarter_turns_of(frames: Sequence[FrameFiles], world_up: np.ndarray) -> int:
+def find_quarter_turns(frames: Sequence[FrameFiles], world_up: np.ndarray) -> int:
     """Return by how many quarter turns, counter-clockwise, most images must be turned.
 
     Args:
@@ -86,7 +90,7 @@ def quarter_turns_of(frames: Sequence[FrameFiles], world_up: np.ndarray) -> int:
     if not poses:
         return 0
     up = np.stack([np.asarray(pose)[:3, :3].T @ world_up for pose in poses])[:, :2]
-    telling = up[np.linalg.norm(up, axis=1) > LEAST_LEAN]
+    telling = up[np.linalg.norm(up, axis=1) > MIN_UP_IN_IMAGE]
     if not len(telling):
         return 0
     # Of up in the image: above, right of it, below, left of it.
@@ -95,7 +99,7 @@ def quarter_turns_of(frames: Sequence[FrameFiles], world_up: np.ndarray) -> int:
     return int(votes.argmax()) if votes.max() > 0.5 * len(telling) else 0
 
 
-def turned_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:
+def rotate_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:
     """Return a frame whose images, lenses and pose are turned; its geometry stays the same."""
     if quarter_turns % 4 == 0:
         return frame
@@ -105,16 +109,16 @@ def turned_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:
         frame,
         camera_to_world=None if pose is None else pose @ turned_to_camera,
         depth_to_colour=turned_to_camera.T @ frame.depth_to_colour @ turned_to_camera,
-        colour_path=_turned(frame.colour_path, quarter_turns),
-        colour_camera=_turned_lens(frame.colour_camera, quarter_turns),
-        depth_path=_turned(frame.depth_path, quarter_turns),
-        depth_camera=_turned_lens(frame.depth_camera, quarter_turns),
-        labels_path=_turned(frame.labels_path, quarter_turns),
-        trust_path=_turned(frame.trust_path, quarter_turns),
+        colour_path=_rotate_image(frame.colour_path, quarter_turns),
+        colour_camera=_rotate_optional_camera(frame.colour_camera, quarter_turns),
+        depth_path=_rotate_image(frame.depth_path, quarter_turns),
+        depth_camera=_rotate_optional_camera(frame.depth_camera, quarter_turns),
+        labels_path=_rotate_image(frame.labels_path, quarter_turns),
+        trust_path=_rotate_image(frame.trust_path, quarter_turns),
     )
 
 
-def turned_camera(camera: Camera, quarter_turns: int) -> Camera:
+def rotate_camera(camera: Camera, quarter_turns: int) -> Camera:
     """Return the camera of an image that is turned counter-clockwise by quarter turns."""
     for _ in range(quarter_turns % 4):
         k1, k2, p1, p2, k3 = camera.distortion
@@ -130,9 +134,9 @@ def turned_camera(camera: Camera, quarter_turns: int) -> Camera:
     return camera
 
 
-def _turned(image: ImagePlace | None, quarter_turns: int) -> ImagePlace | None:
-    return None if image is None else TurnedImage(image, quarter_turns % 4)
+def _rotate_image(image: ImagePlace | None, quarter_turns: int) -> ImagePlace | None:
+    return None if image is None else RotatedImage(image, quarter_turns % 4)
 
 
-def _turned_lens(camera: Camera | None, quarter_turns: int) -> Camera | None:
-    return None if camera is None else turned_camera(camera, quarter_turns)
+def _rotate_optional_camera(camera: Camera | None, quarter_turns: int) -> Camera | None:
+    return None if camera is None else rotate_camera(camera, quarter_turns)

@@ -13,14 +13,14 @@ import numpy as np
 
 from world2minecraft.capture.alignment.axis_profiles import (
     BIN_M,
-    LIFT_M,
-    Profile,
-    face_place_m,
-    looks,
-    profile,
+    MIN_SIGMA_M,
+    AxisProfile,
+    axis_profile,
+    face_position_m,
+    points_per_cell,
 )
-from world2minecraft.capture.alignment.gravity import Ground, find_ground, frame_of_up
-from world2minecraft.capture.alignment.walls import Box, find_box, find_yaw
+from world2minecraft.capture.alignment.gravity import Ground, find_ground, rotation_to_z
+from world2minecraft.capture.alignment.walls import RoomBox, find_room_box, find_yaw
 from world2minecraft.core.coordinates import COMPASS_OF_SIDE, rotation_about_z
 from world2minecraft.core.types import Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
@@ -33,15 +33,15 @@ from world2minecraft.geometry.rotations import rotation_from_vector
 # looks along an axis is a plane across it, at a place of its own, and one small turn of the frame
 # must fit them all.
 
-FACING = 0.97  # Cosine of 14 degrees.
-FACE_LEAST_M2 = 0.5
-FACE_SHARE = 0.15  # Of the largest that looks the same way.
+MIN_FACING_COSINE = 0.97  # Cosine of 14 degrees.
+MIN_FACE_M2 = 0.5
+MIN_FACE_SHARE = 0.15  # Of the largest that looks the same way.
 LIMITS_M = (0.05, 0.03, 0.02, 0.012, 0.012)
-SPREADS = 8.0  # A level face's limit is at least that many times the median distance from it.
+SPREAD_FACTOR = 8.0  # A level face's limit is at least that many times the median distance from it.
 # Walls lean and tables stand askew more often than floors slope: with one say for all, the shared
 # kitchen's floor would lean by 0.5 degrees.
 WALL_SAY, FLOOR_SAY = 0.1, 4.0
-STEADY_M2 = 0.02  # Moments that a face must exceed to be heard: 0.15 m from its middle on average.
+DAMPING_M2 = 0.02  # Moments that a face must exceed to be heard: 0.15 m from its middle on average.
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Faces:
     count: int
 
 
-def straightening_turn(level: OrientedPoints) -> np.ndarray:
+def axis_aligning_rotation(level: OrientedPoints) -> np.ndarray:
     """Return the small rotation [3, 3] that lays large faces along the axes.
 
     Args:
@@ -66,7 +66,9 @@ def straightening_turn(level: OrientedPoints) -> np.ndarray:
     if faces.count == 0:
         return turn
     for limit_m in LIMITS_M:
-        turn = rotation_from_vector(_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
+        turn = (
+            rotation_from_vector(_gauss_newton_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
+        )
     return turn
 
 
@@ -75,18 +77,18 @@ def find_faces(level: OrientedPoints) -> Faces:
     points, axes, owners, weights, count = [], [], [], [], 0
     for axis in range(3):
         for sign in (-1.0, 1.0):
-            facing = np.flatnonzero(sign * level.normals[:, axis] > FACING)
+            facing = np.flatnonzero(sign * level.normals[:, axis] > MIN_FACING_COSINE)
             along = level.points_m[facing, axis]
-            found = profile(level.points_m[facing], axis)
-            least = max(FACE_LEAST_M2, FACE_SHARE * float(found.area_m2.max()))
-            for place in _apart(found, least):
+            found = axis_profile(level.points_m[facing], axis)
+            least = max(MIN_FACE_M2, MIN_FACE_SHARE * float(found.area_m2.max()))
+            for place in _separate_peaks(found, least):
                 near = facing[np.abs(along - place) < LIMITS_M[0]]
                 points.append(level.points_m[near])
                 axes.append(np.full(len(near), axis))
                 owners.append(np.full(len(near), count))
-                noise = 1 / (level.sigma_m[near] ** 2 + LIFT_M**2)
+                noise = 1 / (level.sigma_m[near] ** 2 + MIN_SIGMA_M**2)
                 say = WALL_SAY if axis < 2 else FLOOR_SAY if abs(place) < LIMITS_M[0] else 1.0
-                weights.append(say * noise / looks(level.points_m[near], axis))
+                weights.append(say * noise / points_per_cell(level.points_m[near], axis))
                 count += 1
     if not count:
         return Faces(np.zeros((0, 3)), np.zeros(0, int), np.zeros(0, int), np.zeros(0), 0)
@@ -94,7 +96,7 @@ def find_faces(level: OrientedPoints) -> Faces:
     return Faces(points, np.concatenate(axes), np.concatenate(owners), weights, count)
 
 
-def _apart(found: Profile, least_m2: float) -> list[float]:
+def _separate_peaks(found: AxisProfile, least_m2: float) -> list[float]:
     """Return the peaks that have no larger one within twice the first limit."""
     largest_first = sorted(found.peaks(least_m2), key=lambda place: -found.area_at(float(place)))
     kept: list[float] = []
@@ -104,17 +106,17 @@ def _apart(found: Profile, least_m2: float) -> list[float]:
     return kept
 
 
-def _step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
+def _gauss_newton_step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
     """Return the turn vector [3] that flattens the faces, by one reweighted step (Tukey)."""
     index = np.arange(len(points))
     along = points[index, faces.axis]
-    places = _fullest_places(faces, along)
+    places = _densest_positions(faces, along)
     # Where depth bends, a narrow limit would choose among the bends of a floor; a wall's parts a
     # few centimetres apart are to be told apart whatever the spread.
     off = np.abs(along - places[faces.face])
     level = faces.axis == 2
     spread_m = float(np.median(off[level])) if level.any() else 0.0
-    limits_m = np.where(level, max(limit_m, SPREADS * spread_m), limit_m)
+    limits_m = np.where(level, max(limit_m, SPREAD_FACTOR * spread_m), limit_m)
     # A turn w moves a point by w x p; these are its parts along the face's axis.
     rows = np.zeros_like(points)
     rows[index, (faces.axis + 1) % 3] = points[index, (faces.axis + 2) % 3]
@@ -132,12 +134,12 @@ def _step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
         centred = rows - np.stack(means, axis=1)[faces.face]
         off = along + rows @ turn - places[faces.face]
         moment = centred.T @ (centred * weight[:, None])
-        moment[range(3), range(3)] += STEADY_M2 * weight.sum()
+        moment[range(3), range(3)] += DAMPING_M2 * weight.sum()
         turn = turn - np.linalg.solve(moment, centred.T @ (weight * off))
     return turn
 
 
-def _fullest_places(faces: Faces, along: np.ndarray) -> np.ndarray:
+def _densest_positions(faces: Faces, along: np.ndarray) -> np.ndarray:
     """Return where most weight of each face gathers within 3 cm, in steps of 1 cm."""
     places = np.zeros(faces.count)
     for face in range(faces.count):
@@ -148,12 +150,12 @@ def _fullest_places(faces: Faces, along: np.ndarray) -> np.ndarray:
     return places
 
 
-SIDE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
-HEIGHT_M = (1.5, 12.0)
-LEAST_POINTS = 500
+SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
+HEIGHT_RANGE_M = (1.5, 12.0)
+MIN_POINTS = 500
 DECIMALS = 9
-UNSEEN_NOTES = ("no floor was seen", "no wall was seen", "no ceiling was seen")
-ELBOW_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
+UNSEEN_NOTE_STARTS = ("no floor was seen", "no wall was seen", "no ceiling was seen")
+CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
 
 
 @dataclass(frozen=True)
@@ -180,10 +182,10 @@ def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment
         ImplausibleRoomError: too little surface was seen, or the size is no room's.
     """
     surface = collect_oriented_points(views)
-    if len(surface.points_m) < LEAST_POINTS:
+    if len(surface.points_m) < MIN_POINTS:
         raise ImplausibleRoomError(
             f"only {len(surface.points_m)} places of the depth images are smooth surface; "
-            f"at least {LEAST_POINTS} are needed: is this depth of a room?"
+            f"at least {MIN_POINTS} are needed: is this depth of a room?"
         )
     return align_surface(surface, up_hint)
 
@@ -192,15 +194,15 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     """Find the room in oriented points of the scan's frame; ``find_ground`` takes the hint."""
     ground = find_ground(surface, up_hint)
     scan_to_level = np.eye(4)
-    scan_to_level[:3, :3] = frame_of_up(ground.up)
+    scan_to_level[:3, :3] = rotation_to_z(ground.up)
     scan_to_level[2, 3] = -ground.height_m
     level = surface.transformed(scan_to_level)
-    scan_to_level = _turn_to_walls(level) @ scan_to_level
+    scan_to_level = _rotation_to_walls(level) @ scan_to_level
     level = surface.transformed(scan_to_level)
-    scan_to_level = _straightened(level, ground.floor_area_m2 > 0) @ scan_to_level
+    scan_to_level = _axis_alignment(level, ground.floor_area_m2 > 0) @ scan_to_level
     level = surface.transformed(scan_to_level)
-    box = find_box(level)
-    low_m, high_m = _with_cameras(box, level)
+    box = find_room_box(level)
+    low_m, high_m = _extend_to_cameras(box, level)
     level_to_room = np.eye(4)
     level_to_room[:3, 3] = -low_m
     size = high_m - low_m
@@ -210,7 +212,7 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(ground, box, size))
 
 
-def realigned(scan: Scan, surface: OrientedPoints) -> Scan:
+def realign(scan: Scan, surface: OrientedPoints) -> Scan:
     """Return a scan whose room is found anew in a better surface of its frame.
 
     Where that is no plausible room, or nothing was seen by depth, the scan stays as it is.
@@ -221,7 +223,7 @@ def realigned(scan: Scan, surface: OrientedPoints) -> Scan:
         found = align_surface(surface, scan.world_up)
     except ImplausibleRoomError:
         return scan
-    notes = tuple(note for note in scan.notes if not note.startswith(UNSEEN_NOTES))
+    notes = tuple(note for note in scan.notes if not note.startswith(UNSEEN_NOTE_STARTS))
     return replace(
         scan,
         scan_to_room=found.scan_to_room,
@@ -230,7 +232,7 @@ def realigned(scan: Scan, surface: OrientedPoints) -> Scan:
     )
 
 
-def _turn_to_walls(level: OrientedPoints) -> np.ndarray:
+def _rotation_to_walls(level: OrientedPoints) -> np.ndarray:
     """Return the turn about z that puts walls along the axes and the first camera's look to +y."""
     yaw_deg = find_yaw(level)
     look = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
@@ -239,17 +241,19 @@ def _turn_to_walls(level: OrientedPoints) -> np.ndarray:
     return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
 
 
-def _straightened(level: OrientedPoints, has_floor: bool) -> np.ndarray:
+def _axis_alignment(level: OrientedPoints, has_floor: bool) -> np.ndarray:
     """Return the small move that lays all large faces along the axes and the floor on 0."""
     move = np.eye(4)
-    move[:3, :3] = straightening_turn(level)
+    move[:3, :3] = axis_aligning_rotation(level)
     if has_floor:
         turned = level.transformed(move)
-        move[2, 3] = -face_place_m(turned.subset(turned.normals[:, 2] > FACING), 2, 0.0)
+        move[2, 3] = -face_position_m(
+            turned.subset(turned.normals[:, 2] > MIN_FACING_COSINE), 2, 0.0
+        )
     return move
 
 
-def _with_cameras(box: Box, level: OrientedPoints) -> tuple[np.ndarray, np.ndarray]:
+def _extend_to_cameras(box: RoomBox, level: OrientedPoints) -> tuple[np.ndarray, np.ndarray]:
     """Return the box's corners, moved out behind the cameras at the sides where none was seen.
 
     Whoever held the camera stood in the room, even where no frame looks at the wall behind.
@@ -258,14 +262,18 @@ def _with_cameras(box: Box, level: OrientedPoints) -> tuple[np.ndarray, np.ndarr
     places = level.cameras[:, :3, 3]
     for axis, name in enumerate("xyz"):
         if f"{name}+" not in box.seen:
-            high[axis] = max(high[axis], places[:, axis].max() + ELBOW_M[axis])
+            high[axis] = max(high[axis], places[:, axis].max() + CAMERA_CLEARANCE_M[axis])
         if axis < 2 and f"{name}-" not in box.seen:
-            low[axis] = min(low[axis], places[:, axis].min() - ELBOW_M[axis])
+            low[axis] = min(low[axis], places[:, axis].min() - CAMERA_CLEARANCE_M[axis])
     return low, high
 
 
 def _check_size(size: np.ndarray) -> None:
-    sides = (("long", size[0], SIDE_M), ("deep", size[1], SIDE_M), ("high", size[2], HEIGHT_M))
+    sides = (
+        ("long", size[0], SIDE_RANGE_M),
+        ("deep", size[1], SIDE_RANGE_M),
+        ("high", size[2], HEIGHT_RANGE_M),
+    )
     for word, length, (least, most) in sides:
         if not least <= length <= most:
             raise ImplausibleRoomError(
@@ -274,7 +282,7 @@ def _check_size(size: np.ndarray) -> None:
             )
 
 
-def _notes(ground: Ground, box: Box, size: np.ndarray) -> tuple[str, ...]:
+def _notes(ground: Ground, box: RoomBox, size: np.ndarray) -> tuple[str, ...]:
     notes = []
     if ground.floor_area_m2 == 0:
         notes.append("no floor was seen; the lowest points stand for it")

@@ -7,21 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.axis_profiles import face_place_m, profile
+from world2minecraft.capture.alignment.axis_profiles import axis_profile, face_position_m
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
-UPRIGHT = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
-FACING = 0.94  # Cosine of 20 degrees.
-WALL_LEAST_M2 = 0.5  # A wardrobe's door has more; what is small is furniture.
-WALL_SHARE = 0.2  # Of the largest surface that faces the same way.
-BEYOND_SHARE = 0.03  # Of the patches: what is seen through doors, windows and mirrors.
-CEILING_LEAST_M = 1.8
+MAX_WALL_LEAN = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
+MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
+MIN_WALL_M2 = 0.5  # A wardrobe's door has more; what is small is furniture.
+MIN_WALL_SHARE = 0.2  # Of the largest surface that faces the same way.
+MAX_BEYOND_SHARE = 0.03  # Of the patches: what is seen through doors, windows and mirrors.
+MIN_CEILING_M = 1.8
 EDGE_QUANTILE = 0.005
 
 
 @dataclass(frozen=True)
-class Box:
+class RoomBox:
     """The room's inner box in the level frame, float64 [3] each, and which sides were seen.
 
     ``seen`` names of x-, x+, y-, y+, z+ the sides that a surface holds; the others end where
@@ -39,7 +39,7 @@ def find_yaw(surface: OrientedPoints) -> float:
     The normals of upright surfaces vote modulo a quarter turn; the large walls' own lines then
     say it finely.
     """
-    upright = surface.normals[np.abs(surface.normals[:, 2]) < UPRIGHT]
+    upright = surface.normals[np.abs(surface.normals[:, 2]) < MAX_WALL_LEAN]
     if len(upright) < 50:
         return 0.0
     angles = np.degrees(np.arctan2(upright[:, 1], upright[:, 0])) % 90
@@ -61,9 +61,9 @@ def _wall_slope(surface: OrientedPoints) -> float:
     total, weights = 0.0, 0.0
     for axis in (0, 1):
         for sign in (-1, 1):
-            points = surface.points_m[sign * surface.normals[:, axis] > FACING]
-            found = profile(points, axis)
-            for place in found.peaks(max(WALL_LEAST_M2, 0.4 * float(found.area_m2.max()))):
+            points = surface.points_m[sign * surface.normals[:, axis] > MIN_FACING_COSINE]
+            found = axis_profile(points, axis)
+            for place in found.peaks(max(MIN_WALL_M2, 0.4 * float(found.area_m2.max()))):
                 slope, weight = _line_slope(points, axis, float(place))
                 total += weight * (-slope if axis == 0 else slope)
                 weights += weight
@@ -89,44 +89,44 @@ def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, f
     return slope, float(np.sum(weight * (along - middle) ** 2))
 
 
-def find_box(surface: OrientedPoints) -> Box:
+def find_room_box(surface: OrientedPoints) -> RoomBox:
     """Return the inner box of a room whose walls lie along x and y and whose floor is z = 0."""
     low, high, seen = np.zeros(3), np.zeros(3), []
     for axis, name in ((0, "x"), (1, "y")):
         for sign, ends, side in ((1, low, "-"), (-1, high, "+")):
-            place, found = _side(surface, axis, sign)
+            place, found = _find_side(surface, axis, sign)
             ends[axis] = place
             if found:
                 seen.append(name + side)
-    high[2], found = _ceiling(surface)
+    high[2], found = _find_ceiling(surface)
     if found:
         seen.append("z+")
-    return Box(low, high, tuple(seen))
+    return RoomBox(low, high, tuple(seen))
 
 
-def _side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bool]:
+def _find_side(surface: OrientedPoints, axis: int, sign: int) -> tuple[float, bool]:
     """Return where the room ends at one side, and whether a wall holds it.
 
     ``sign`` is that of the inward normal: +1 at the low side. The outermost large surface is the
     wall, unless too much of the scan lies beyond it.
     """
     outward = -sign * surface.points_m[:, axis]
-    patches = _distinct(surface.points_m, outward)
+    patches = _one_value_per_cell(surface.points_m, outward)
     end = float(np.quantile(patches, 1 - EDGE_QUANTILE))
-    facing = sign * surface.normals[:, axis] > FACING
-    found = profile(np.column_stack([outward, _others(surface.points_m, axis)])[facing], 0)
-    places = found.peaks(max(WALL_LEAST_M2, WALL_SHARE * float(found.area_m2.max())))
+    facing = sign * surface.normals[:, axis] > MIN_FACING_COSINE
+    found = axis_profile(np.column_stack([outward, _other_axes(surface.points_m, axis)])[facing], 0)
+    places = found.peaks(max(MIN_WALL_M2, MIN_WALL_SHARE * float(found.area_m2.max())))
     for place in places[::-1]:
-        if np.mean(patches > place + 0.10) <= BEYOND_SHARE:
-            return face_place_m(surface.subset(facing), axis, -sign * float(place)), True
+        if np.mean(patches > place + 0.10) <= MAX_BEYOND_SHARE:
+            return face_position_m(surface.subset(facing), axis, -sign * float(place)), True
     return -sign * end, False
 
 
-def _others(points: np.ndarray, axis: int) -> np.ndarray:
+def _other_axes(points: np.ndarray, axis: int) -> np.ndarray:
     return points[:, [other for other in range(3) if other != axis]]
 
 
-def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _one_value_per_cell(points: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return one of the values for each 10 cm cell that holds a point."""
     cells = np.floor(points / 0.1).astype(np.int64)
     cells -= cells.min(axis=0)
@@ -134,13 +134,13 @@ def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
     return values[np.unique(code + cells[:, 2], return_index=True)[1]]
 
 
-def _ceiling(surface: OrientedPoints) -> tuple[float, bool]:
+def _find_ceiling(surface: OrientedPoints) -> tuple[float, bool]:
     """Return the height of the highest large surface that faces down, or where points end."""
     points = surface.points_m
-    facing = surface.subset(surface.normals[:, 2] < -FACING)
-    found = profile(facing.points_m, 2)
-    high = _distinct(points, points[:, 2])
-    for place in found.peaks(WALL_LEAST_M2)[::-1]:
-        if place > CEILING_LEAST_M and np.mean(high > place + 0.10) <= BEYOND_SHARE:
-            return face_place_m(facing, 2, float(place)), True
+    facing = surface.subset(surface.normals[:, 2] < -MIN_FACING_COSINE)
+    found = axis_profile(facing.points_m, 2)
+    high = _one_value_per_cell(points, points[:, 2])
+    for place in found.peaks(MIN_WALL_M2)[::-1]:
+        if place > MIN_CEILING_M and np.mean(high > place + 0.10) <= MAX_BEYOND_SHARE:
+            return face_position_m(facing, 2, float(place)), True
     return float(np.quantile(high, 1 - EDGE_QUANTILE)), False

@@ -1,6 +1,6 @@
 """What ``w2m scan`` found, on one page: plan, photos, directions of look and doubts."""
 
-from world2minecraft.capture.poster.page import poster, poster_png
+from world2minecraft.capture.poster.page import draw_poster, poster_png
 from world2minecraft.capture.poster_marker import is_poster
 
-__all__ = ["is_poster", "poster", "poster_png"]
+__all__ = ["is_poster", "draw_poster", "poster_png"]

@@ -5,7 +5,7 @@ import unicodedata
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-DOUBLE = 2  # Lines and letters are drawn at twice the size: edges come out smooth.
+SUPERSAMPLING = 2  # Lines and letters are drawn at twice the size: edges come out smooth.
 PAPER, INK, FAINT, RULE = (252, 251, 248), (34, 38, 43), (112, 118, 125), (219, 216, 208)
 PANEL = (243, 241, 235)
 OK, WARN, STOP = (62, 142, 96), (214, 138, 22), (196, 62, 46)
@@ -15,7 +15,7 @@ Colour = tuple[int, int, int]
 Point = tuple[float, float]
 
 
-def blend(one: Colour, other: Colour, share: float) -> Colour:
+def blend_colours(one: Colour, other: Colour, share: float) -> Colour:
     """Return the colour that lies a share of the way from one to another."""
     mixed = [round(a + (b - a) * share) for a, b in zip(one, other, strict=True)]
     return mixed[0], mixed[1], mixed[2]
@@ -25,7 +25,7 @@ class Sheet:
     """A page in final pixels; whatever is drawn may lie between them."""
 
     def __init__(self, width_px: int, height_px: int):
-        self.image = Image.new("RGB", (width_px * DOUBLE, height_px * DOUBLE), PAPER)
+        self.image = Image.new("RGB", (width_px * SUPERSAMPLING, height_px * SUPERSAMPLING), PAPER)
         self.draw = ImageDraw.Draw(self.image)
 
     def text(
@@ -33,15 +33,18 @@ class Sheet:
         bold: bool = False, anchor: str = "la",
     ) -> None:  # fmt: skip
         """Write one line; ``anchor`` is Pillow's, such as ``mm`` for the middle."""
-        font = ImageFont.load_default(size * DOUBLE)
+        font = ImageFont.load_default(size * SUPERSAMPLING)
         self.draw.text(
-            (at[0] * DOUBLE, at[1] * DOUBLE), plain(words), colour, font, anchor,
+            (at[0] * SUPERSAMPLING, at[1] * SUPERSAMPLING), to_ascii(words), colour, font, anchor,
             stroke_width=1 if bold else 0, stroke_fill=colour,
         )  # fmt: skip
 
     def width(self, words: str, size: float) -> float:
         """Return how wide a line is, in final pixels."""
-        return self.draw.textlength(plain(words), ImageFont.load_default(size * DOUBLE)) / DOUBLE
+        return (
+            self.draw.textlength(to_ascii(words), ImageFont.load_default(size * SUPERSAMPLING))
+            / SUPERSAMPLING
+        )
 
     def wrapped(self, words: str, size: float, width: float) -> list[str]:
         """Cut a text into lines of at most a width."""
@@ -59,9 +62,9 @@ class Sheet:
         if self.width(words, size) <= width:
             return words
         keep = len(words)
-        while keep > 4 and self.width(_cut(words, keep), size) > width:
+        while keep > 4 and self.width(_elide(words, keep), size) > width:
             keep -= 1
-        return _cut(words, keep)
+        return _elide(words, keep)
 
     def box(
         self, corner: Point, size: Point, fill: Colour | None = None,
@@ -70,17 +73,21 @@ class Sheet:
         """Draw a rectangle with round corners."""
         ends = (*corner, corner[0] + size[0], corner[1] + size[1])
         self.draw.rounded_rectangle(
-            [value * DOUBLE for value in ends], radius * DOUBLE, fill, outline, round(line * DOUBLE)
+            [value * SUPERSAMPLING for value in ends],
+            radius * SUPERSAMPLING,
+            fill,
+            outline,
+            round(line * SUPERSAMPLING),
         )
 
     def line(self, points: list[Point], colour: Colour, width: float = 1) -> None:
         """Draw a line through points."""
-        flat = [(x * DOUBLE, y * DOUBLE) for x, y in points]
-        self.draw.line(flat, colour, max(1, round(width * DOUBLE)), joint="curve")
+        flat = [(x * SUPERSAMPLING, y * SUPERSAMPLING) for x, y in points]
+        self.draw.line(flat, colour, max(1, round(width * SUPERSAMPLING)), joint="curve")
 
     def shape(self, points: list[Point], fill: Colour, alpha: float = 1.0) -> None:
         """Fill a polygon, through which one sees where ``alpha`` is under 1."""
-        flat = np.array(points) * DOUBLE
+        flat = np.array(points) * SUPERSAMPLING
         low = np.floor(flat.min(axis=0)).astype(int)
         high = np.ceil(flat.max(axis=0)).astype(int) + 1
         mask = Image.new("L", (int(high[0] - low[0]), int(high[1] - low[1])), 0)
@@ -92,27 +99,27 @@ class Sheet:
         """Draw a disc."""
         ends = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
         width = 2 if outline else 0
-        self.draw.ellipse([value * DOUBLE for value in ends], fill, outline, width)
+        self.draw.ellipse([value * SUPERSAMPLING for value in ends], fill, outline, width)
 
     def picture(self, pixels: np.ndarray, corner: Point, size: Point, smooth: bool = True) -> None:
         """Put uint8 [H, W, 3] into a box, stretched to it."""
-        target = (round(size[0] * DOUBLE), round(size[1] * DOUBLE))
+        target = (round(size[0] * SUPERSAMPLING), round(size[1] * SUPERSAMPLING))
         how = Image.Resampling.BICUBIC if smooth else Image.Resampling.NEAREST
-        at = (round(corner[0] * DOUBLE), round(corner[1] * DOUBLE))
+        at = (round(corner[0] * SUPERSAMPLING), round(corner[1] * SUPERSAMPLING))
         self.image.paste(Image.fromarray(pixels).resize(target, how), at)
 
     def finished(self) -> np.ndarray:
         """Return the page, uint8 [H, W, 3]."""
-        return np.asarray(self.image.reduce(DOUBLE))
+        return np.asarray(self.image.reduce(SUPERSAMPLING))
 
 
-def plain(words: str) -> str:
+def to_ascii(words: str) -> str:
     """Return a text in letters that the font has: those of ASCII, accents left out."""
     split = unicodedata.normalize("NFKD", words)
     kept = "".join(letter for letter in split if not unicodedata.combining(letter))
     return kept.encode("ascii", "replace").decode()
 
 
-def _cut(words: str, keep: int) -> str:
+def _elide(words: str, keep: int) -> str:
     front = keep // 2
     return f"{words[:front]}...{words[len(words) - (keep - front) :]}" if keep else "..."

@@ -1,4 +1,4 @@
-"""``poster``: the page of a capture, and its PNG.
+"""``draw_poster``: the page of a capture, and its PNG.
 
 With poses: a plan at the left; photos, looks and doubts at the right. Without: a large contact
 sheet at the left; sharpness, overlap and doubts at the right.
@@ -22,14 +22,19 @@ from world2minecraft.capture.poster.canvas import (
     Point,
     Sheet,
 )
-from world2minecraft.capture.poster.panels import draw_bars, draw_looks, draw_photos, draw_plan
-from world2minecraft.capture.poster_marker import MARK
+from world2minecraft.capture.poster.panels import (
+    draw_bars,
+    draw_photos,
+    draw_plan,
+    draw_view_directions,
+)
+from world2minecraft.capture.poster_marker import SOFTWARE_TAG
 from world2minecraft.capture.quality.diagnostics import (
-    ALONE_SHARE,
-    BLURRED,
-    DARK,
-    SOFT,
-    Doubt,
+    BLURRED_SHARE,
+    DARK_BRIGHTNESS,
+    ISOLATED_SHARE,
+    MIN_SHARPNESS,
+    Diagnostic,
     blurred_pictures,
 )
 
@@ -43,13 +48,13 @@ TOP_PX, FOOT_PX = 140, 76
 BODY_PX = 19
 
 
-def poster(summary: "CaptureSummary") -> np.ndarray:
+def draw_poster(summary: "CaptureSummary") -> np.ndarray:
     """Draw the page of a described capture, uint8 [1040, 1600, 3]."""
     sheet = Sheet(WIDTH_PX, HEIGHT_PX)
     _head(sheet, summary)
     tall = HEIGHT_PX - TOP_PX - FOOT_PX - EDGE_PX / 2
     left, right = (EDGE_PX, TOP_PX), (EDGE_PX + LEFT_PX + 40, TOP_PX)
-    marks = marks_of(summary)
+    marks = picture_marks(summary)
     survey = summary.survey
     if survey.plan is not None and survey.directions is not None:
         draw_plan(
@@ -60,10 +65,10 @@ def poster(summary: "CaptureSummary") -> np.ndarray:
         if survey.pictures:
             draw_photos(sheet, survey.pictures, marks, right, (RIGHT_PX, 380), 4, 3)
             top += 380 + 18
-        draw_looks(sheet, survey.directions, (right[0], top), (RIGHT_PX, 170))
+        draw_view_directions(sheet, survey.directions, (right[0], top), (RIGHT_PX, 170))
         _doubts(sheet, summary.doubts, (right[0], top + 190), TOP_PX + tall)
     else:
-        columns, rows = _grid(len(survey.pictures))
+        columns, rows = _contact_sheet_grid(len(survey.pictures))
         draw_photos(sheet, survey.pictures, marks, left, (LEFT_PX, tall), columns, rows)
         _charts(sheet, summary, right)
         _doubts(sheet, summary.doubts, (right[0], TOP_PX + 400), TOP_PX + tall)
@@ -71,19 +76,19 @@ def poster(summary: "CaptureSummary") -> np.ndarray:
     return sheet.finished()
 
 
-def _grid(count: int) -> tuple[int, int]:
+def _contact_sheet_grid(count: int) -> tuple[int, int]:
     for columns, rows in ((2, 2), (3, 3), (3, 4), (4, 5), (5, 6)):
         if count <= columns * rows:
             return columns, rows
     return 5, 6
 
 
-def marks_of(summary: "CaptureSummary") -> dict[int, str]:
+def picture_marks(summary: "CaptureSummary") -> dict[int, str]:
     """Return the doubtful pictures' indices among the usable frames, each with its word."""
     if summary.route.kind == "solid":
         return {}
     pictures = summary.survey.pictures
-    dark = {picture.index: "dark" for picture in pictures if picture.brightness < DARK}
+    dark = {picture.index: "dark" for picture in pictures if picture.brightness < DARK_BRIGHTNESS}
     lit = [picture for picture in pictures if picture.index not in dark]
     return dark | {picture.index: "blurred" for picture in blurred_pictures(lit)}
 
@@ -107,7 +112,7 @@ def _head(sheet: Sheet, summary: "CaptureSummary") -> None:
     sheet.line([(EDGE_PX, 120), (WIDTH_PX - EDGE_PX, 120)], RULE, 1)
 
 
-def _verdict(doubts: tuple[Doubt, ...]) -> str:
+def _verdict(doubts: tuple[Diagnostic, ...]) -> str:
     stops = sum(doubt.level == "stop" for doubt in doubts)
     warns = sum(doubt.level == "warn" for doubt in doubts)
     if stops:
@@ -120,7 +125,9 @@ def _verdict(doubts: tuple[Doubt, ...]) -> str:
 def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
     pictures = summary.survey.pictures
     sharp = np.array([picture.sharpness for picture in pictures])
-    limit = max(BLURRED * float(np.median(sharp)), SOFT) if len(sharp) else SOFT
+    limit = (
+        max(BLURRED_SHARE * float(np.median(sharp)), MIN_SHARPNESS) if len(sharp) else MIN_SHARPNESS
+    )
     ends = (pictures[0].name, pictures[-1].name) if pictures else ("", "")
     ends = (sheet.clipped(ends[0], 15, 300), sheet.clipped(ends[1], 15, 300))
     capped = np.minimum(sharp, 3 * np.median(sharp)) if len(sharp) else sharp
@@ -130,14 +137,14 @@ def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
     title = "Share of each picture that the next one shows too"
     shares = summary.survey.shares
     if np.isfinite(shares).any():
-        draw_bars(sheet, title, shares, ALONE_SHARE, below, (RIGHT_PX, 180), ends, 1.0)
+        draw_bars(sheet, title, shares, ISOLATED_SHARE, below, (RIGHT_PX, 180), ends, 1.0)
     else:
         sheet.text(below, title, 18)
         text = "not looked at: there are too many pictures to take every one"
         sheet.text((below[0], below[1] + 32), text, 17, FAINT)
 
 
-def _doubts(sheet: Sheet, doubts: tuple[Doubt, ...], corner: Point, bottom: float) -> None:
+def _doubts(sheet: Sheet, doubts: tuple[Diagnostic, ...], corner: Point, bottom: float) -> None:
     """Write the doubts from the worst to what is well, as many as there is room for."""
     top, step = corner[1], BODY_PX + 6
     for place, doubt in enumerate(doubts):
@@ -183,6 +190,6 @@ def poster_png(summary: "CaptureSummary") -> bytes:
     """Return the page as a PNG that says whose it is; the same capture gives the same bytes."""
     stream = io.BytesIO()
     told = PngInfo()
-    told.add_text("Software", MARK)
-    Image.fromarray(poster(summary)).save(stream, "PNG", pnginfo=told)
+    told.add_text("Software", SOFTWARE_TAG)
+    Image.fromarray(draw_poster(summary)).save(stream, "PNG", pnginfo=told)
     return stream.getvalue()

@@ -16,7 +16,7 @@ from world2minecraft.capture.poster.canvas import (
     Colour,
     Point,
     Sheet,
-    blend,
+    blend_colours,
 )
 from world2minecraft.capture.quality.picture_quality import Picture
 from world2minecraft.capture.quality.top_view import Plan
@@ -25,11 +25,11 @@ from world2minecraft.capture.validation import spread_over
 
 # The chart of looks: how many pictures cover each heading and each height of look.
 
-DEEP = blend(FIRST, INK, 0.45)
+DEEP = blend_colours(FIRST, INK, 0.45)
 HEADINGS = ("N", "E", "S", "W", "N")
 
 
-def draw_looks(sheet: Sheet, directions: Directions, corner: Point, size: Point) -> None:
+def draw_view_directions(sheet: Sheet, directions: Directions, corner: Point, size: Point) -> None:
     """Draw the chart into a box: headings across, north at both ends; up at the top."""
     sheet.text(corner, "Looked at: heading and tilt", 18)
     most = int(directions.seen.max())
@@ -38,7 +38,7 @@ def draw_looks(sheet: Sheet, directions: Directions, corner: Point, size: Point)
     )
     left, top = corner[0] + 62, corner[1] + 28
     wide, tall = size[0] - 62, size[1] - 28 - 22
-    sheet.picture(heat(directions), (left, top), (wide, tall), smooth=False)
+    sheet.picture(direction_heatmap(directions), (left, top), (wide, tall), smooth=False)
     sheet.box((left, top), (wide, tall), outline=RULE)
     for words, share in (("up", 1 / 6), ("level", 0.5), ("down", 5 / 6)):
         sheet.text((left - 8, top + tall * share), words, 16, FAINT, anchor="rm")
@@ -50,11 +50,11 @@ def draw_looks(sheet: Sheet, directions: Directions, corner: Point, size: Point)
         sheet.text((at, top + tall + 4), words, 16, INK, anchor=anchor)
 
 
-def heat(directions: Directions) -> np.ndarray:
+def direction_heatmap(directions: Directions) -> np.ndarray:
     """Return the counts as colours, uint8 [18, 36, 3], up at the top; none is the panel's."""
     seen = directions.seen[::-1]
     share = np.sqrt(seen / max(1, int(seen.max())))[..., None]
-    low, high = np.array(blend(PANEL, FIRST, 0.25)), np.array(DEEP)
+    low, high = np.array(blend_colours(PANEL, FIRST, 0.25)), np.array(DEEP)
     colours = low * (1 - share) + high * share
     return np.where(seen[..., None] > 0, colours, np.array(PANEL)).round().astype(np.uint8)
 
@@ -82,13 +82,13 @@ def draw_photos(
     """
     width = (size[0] - GAP_PX * (columns - 1)) / columns
     height = (size[1] - GAP_PX * (rows - 1)) / rows
-    for place, picture in enumerate(chosen_pictures(pictures, marks, columns * rows)):
+    for place, picture in enumerate(select_pictures(pictures, marks, columns * rows)):
         row, column = divmod(place, columns)
         at = (corner[0] + column * (width + GAP_PX), corner[1] + row * (height + GAP_PX))
-        _tile(sheet, picture, marks.get(picture.index, ""), at, (width, height))
+        _draw_tile(sheet, picture, marks.get(picture.index, ""), at, (width, height))
 
 
-def chosen_pictures(
+def select_pictures(
     pictures: Sequence[Picture], marks: Mapping[int, str], count: int
 ) -> list[Picture]:
     """Return evenly spread pictures; up to a quarter of the places go to doubtful ones."""
@@ -100,7 +100,7 @@ def chosen_pictures(
     return sorted([*kept, *others], key=lambda picture: picture.index)
 
 
-def _tile(sheet: Sheet, picture: Picture, mark: str, at: Point, size: Point) -> None:
+def _draw_tile(sheet: Sheet, picture: Picture, mark: str, at: Point, size: Point) -> None:
     """Draw a picture cut to its tile, or whole within it where it stands upright."""
     sheet.box(at, size, PANEL)
     height, width = picture.thumb.shape[:2]
@@ -180,18 +180,20 @@ def draw_plan(
         walked: whether somebody walked from camera to camera.
     """
     sheet.box(corner, size, PANEL, radius=10)
-    place = Placed(plan, corner, size)
+    place = PanelTransform(plan, corner, size)
     if plan.colour.size:
-        sheet.picture(shaded(plan), place.corner, place.size)
+        sheet.picture(shade_top_view(plan), place.corner, place.size)
     if plan.room_size_m is not None:
-        _room(sheet, plan, place)
-    _cameras(sheet, plan, place, doubtful, walked)
-    _scale_bar(sheet, place, corner, size, has_unit)
+        _draw_room_size(sheet, plan, place)
+    _draw_cameras(sheet, plan, place, doubtful, walked)
+    _draw_scale_bar(sheet, place, corner, size, has_unit)
     if directions is not None:
-        _rose(sheet, directions, (corner[0] + size[0] - 66, corner[1] + size[1] - 66))
+        _draw_direction_rose(
+            sheet, directions, (corner[0] + size[0] - 66, corner[1] + size[1] - 66)
+        )
 
 
-class Placed:
+class PanelTransform:
     """Where a plan lies in its panel; it keeps 54 px free below for the scale bar."""
 
     def __init__(self, plan: Plan, corner: Point, size: Point):
@@ -213,7 +215,7 @@ class Placed:
         )
 
 
-def shaded(plan: Plan) -> np.ndarray:
+def shade_top_view(plan: Plan) -> np.ndarray:
     """Return the plan's raster as it is printed: relief from heights, walls in ink, uint8."""
     height = np.where(plan.seen, plan.height_m, 0.0)
     for axis in (0, 1):
@@ -243,7 +245,7 @@ def _outside(plan: Plan) -> np.ndarray:
     return (beyond[1][:, None] | beyond[0][None]).astype(np.float64)
 
 
-def _room(sheet: Sheet, plan: Plan, place: Placed) -> None:
+def _draw_room_size(sheet: Sheet, plan: Plan, place: PanelTransform) -> None:
     """Write the room's measures at its sides."""
     if plan.room_size_m is None:
         return
@@ -254,19 +256,19 @@ def _room(sheet: Sheet, plan: Plan, place: Placed) -> None:
         ((left, bottom), (right, bottom)), ((left, top), (right, top)),
         ((left, top), (left, bottom)), ((right, top), (right, bottom)),
     ):  # fmt: skip
-        _dashed(sheet, start, end)
-    _tag(sheet, ((left + right) / 2, top), f"{x:.1f} m")
-    _tag(sheet, (left, (top + bottom) / 2), f"{y:.1f} m")
-    _tag(sheet, ((left + right) / 2, bottom), f"{z:.1f} m high")
+        _draw_dashed_line(sheet, start, end)
+    _draw_tag(sheet, ((left + right) / 2, top), f"{x:.1f} m")
+    _draw_tag(sheet, (left, (top + bottom) / 2), f"{y:.1f} m")
+    _draw_tag(sheet, ((left + right) / 2, bottom), f"{z:.1f} m high")
 
 
-def _tag(sheet: Sheet, at: Point, words: str) -> None:
+def _draw_tag(sheet: Sheet, at: Point, words: str) -> None:
     width = sheet.width(words, 16) + 16
     sheet.box((at[0] - width / 2, at[1] - 12), (width, 24), PAPER, RULE, 12)
     sheet.text(at, words, 16, INK, anchor="mm")
 
 
-def _dashed(sheet: Sheet, start: Point, end: Point) -> None:
+def _draw_dashed_line(sheet: Sheet, start: Point, end: Point) -> None:
     length = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     for along in np.arange(0, length, 10):
         a, b = along / length, min(along + 5, length) / length
@@ -276,14 +278,14 @@ def _dashed(sheet: Sheet, start: Point, end: Point) -> None:
         sheet.line(ends, FAINT, 1)
 
 
-def _cameras(
-    sheet: Sheet, plan: Plan, place: Placed, doubtful: frozenset[int], walked: bool
+def _draw_cameras(
+    sheet: Sheet, plan: Plan, place: PanelTransform, doubtful: frozenset[int], walked: bool
 ) -> None:
     """Draw the way of the camera and what it looked at, from teal to orange in time."""
     poses, count = plan.cameras, len(plan.cameras)
     points = [place.at(float(pose[0, 3]), float(pose[1, 3])) for pose in poses]
     for index in range(count - 1) if walked else ():
-        colour = blend(FIRST, LAST, index / max(1, count - 1))
+        colour = blend_colours(FIRST, LAST, index / max(1, count - 1))
         sheet.line([points[index], points[index + 1]], PAPER, 4)
         sheet.line([points[index], points[index + 1]], colour, 2)
     long = min(CONE_M * place.px_per_m, 46.0)
@@ -291,19 +293,25 @@ def _cameras(
     for index in np.unique(np.linspace(0, count - 1, min(CONES, count)).round().astype(int)):
         look = poses[index, :2, 2]
         flat = float(np.hypot(*look))
-        colour = WARN if int(index) in doubtful else blend(FIRST, LAST, index / max(1, count - 1))
+        colour = (
+            WARN
+            if int(index) in doubtful
+            else blend_colours(FIRST, LAST, index / max(1, count - 1))
+        )
         if flat > 0.15:
-            _cone(sheet, points[index], float(np.arctan2(look[1], look[0])), long * flat, colour)
+            _draw_view_cone(
+                sheet, points[index], float(np.arctan2(look[1], look[0])), long * flat, colour
+            )
         sheet.dot(points[index], 4, colour, PAPER)
     if not walked:
         return
     if count:
-        _flag(sheet, points[0], "start", FIRST)
+        _draw_flag(sheet, points[0], "start", FIRST)
     if count > 1:
-        _flag(sheet, points[-1], "end", LAST)
+        _draw_flag(sheet, points[-1], "end", LAST)
 
 
-def _cone(sheet: Sheet, at: Point, angle: float, long: float, colour: Colour) -> None:
+def _draw_view_cone(sheet: Sheet, at: Point, angle: float, long: float, colour: Colour) -> None:
     ends = [
         (at[0] + long * np.cos(angle + side), at[1] - long * np.sin(angle + side))
         for side in (np.radians(HALF_DEG), -np.radians(HALF_DEG))
@@ -312,14 +320,16 @@ def _cone(sheet: Sheet, at: Point, angle: float, long: float, colour: Colour) ->
     sheet.line([ends[0], at, ends[1]], PAPER, 1)
 
 
-def _flag(sheet: Sheet, at: Point, words: str, colour: Colour) -> None:
+def _draw_flag(sheet: Sheet, at: Point, words: str, colour: Colour) -> None:
     width = sheet.width(words, 15) + 14
     sheet.box((at[0] - width / 2, at[1] - 33), (width, 22), colour, radius=11)
     sheet.text((at[0], at[1] - 22), words, 15, PAPER, anchor="mm")
     sheet.dot(at, 6, colour, PAPER)
 
 
-def _scale_bar(sheet: Sheet, place: Placed, corner: Point, size: Point, has_unit: bool) -> None:
+def _draw_scale_bar(
+    sheet: Sheet, place: PanelTransform, corner: Point, size: Point, has_unit: bool
+) -> None:
     left, low = corner[0] + 22, corner[1] + size[1] - 24
     if not has_unit:
         sheet.text((left, low), "the poses have no unit: no scale", 17, FAINT, anchor="lm")
@@ -332,7 +342,7 @@ def _scale_bar(sheet: Sheet, place: Placed, corner: Point, size: Point, has_unit
     sheet.text((end + 10, low), f"{length:g} m", 17, INK, anchor="lm")
 
 
-def _rose(sheet: Sheet, directions: Directions, middle: Point) -> None:
+def _draw_direction_rose(sheet: Sheet, directions: Directions, middle: Point) -> None:
     """Draw how much of each heading is seen: petals of eight sectors, gaps in orange."""
     sheet.dot(middle, 50, PAPER, RULE)
     for index, share in enumerate(directions.sectors()):

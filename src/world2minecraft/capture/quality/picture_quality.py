@@ -14,7 +14,7 @@ from world2minecraft.core.errors import InputError
 
 WORK_PX = 640  # Blur that hurts at the 1024 px of posing shows at this size too.
 THUMB_PX = 360
-MOST_PICTURES = 120
+MAX_PICTURES = 120
 BUDGET_MPX = 200.0  # About 5 s of decoding.
 DRAFT_COST = 0.15  # A JPEG at a quarter of its size, against one decoded whole.
 STRONG_SHARE = 0.1  # Blur is judged at the strongest edges alone: bare walls have none.
@@ -39,7 +39,7 @@ class Picture:
     bare: float
 
 
-def look_at_pictures(frames: Sequence[FrameFiles], most: int = MOST_PICTURES) -> list[Picture]:
+def sample_pictures(frames: Sequence[FrameFiles], most: int = MAX_PICTURES) -> list[Picture]:
     """Decode some of the frames' colour images, evenly spread; damaged ones are passed over.
 
     Args:
@@ -54,7 +54,7 @@ def look_at_pictures(frames: Sequence[FrameFiles], most: int = MOST_PICTURES) ->
         except InputError:
             continue
         if colour is not None:
-            pictures.append(picture_of(frame.name, index, colour))
+            pictures.append(measure_picture(frame.name, index, colour))
     return pictures
 
 
@@ -71,7 +71,7 @@ def _is_jpeg(place: ImagePlace) -> bool:
     return place.name.lower().endswith((".jpg", ".jpeg"))
 
 
-def picture_of(name: str, index: int, colour: np.ndarray) -> Picture:
+def measure_picture(name: str, index: int, colour: np.ndarray) -> Picture:
     """Return what is kept of a picture, uint8 [H, W, 3] of about ``WORK_PX``."""
     grey = np.asarray(Image.fromarray(colour).convert("L"), np.float32)
     image = Image.fromarray(colour)
@@ -82,7 +82,7 @@ def picture_of(name: str, index: int, colour: np.ndarray) -> Picture:
         np.array(image, np.uint8),
         round(sharpness(grey), 4),
         round(float(np.median(grey)), 1),
-        round(bare_share(grey), 4),
+        round(textureless_share(grey), 4),
     )
 
 
@@ -97,11 +97,11 @@ def sharpness(grey: np.ndarray) -> float:
         two directions in which it is less: a shaken camera blurs along one alone. It compares a
         picture with itself, so that what is shown matters little (after Crete et al. 2007).
     """
-    lost = [share for share in (_lost(grey), _lost(grey.T)) if share is not None]
+    lost = [share for share in (_blur_loss(grey), _blur_loss(grey.T)) if share is not None]
     return max(0.0, min(lost, default=0.0))
 
 
-def _lost(grey: np.ndarray) -> float | None:
+def _blur_loss(grey: np.ndarray) -> float | None:
     """Return what a mean of three along the rows takes from the strongest steps; None of none."""
     if grey.shape[1] < 8:
         return None
@@ -116,7 +116,7 @@ def _lost(grey: np.ndarray) -> float | None:
     return float(step[strong].mean()) / max(float(soft[strong].mean()), 1e-3) - 1
 
 
-def bare_share(grey: np.ndarray) -> float:
+def textureless_share(grey: np.ndarray) -> float:
     """Return the share of patches of float32 [H, W] whose contrast no feature stands on."""
     rows, columns = grey.shape[0] // PATCH_PX, grey.shape[1] // PATCH_PX
     if not rows or not columns:
@@ -131,26 +131,26 @@ def bare_share(grey: np.ndarray) -> float:
 # This is a look, not a match: at the kitchen's and a generated room's neighbours it is within about
 # a tenth of what their depth says, as a median over many pairs; a single pair may be far off.
 
-WIDTH_PX = 64
-LEAST_SHARE = 0.2  # Smaller overlaps agree by chance.
-AGREES = 0.4  # Pictures of different places reach this correlation one time in three.
-SOFT = 8.0  # Grey levels: noise of bare walls is not blown up to texture.
+OVERLAP_WIDTH_PX = 64
+MIN_OVERLAP = 0.2  # Smaller overlaps agree by chance.
+MIN_CORRELATION = 0.4  # Pictures of different places reach this correlation one time in three.
+NOISE_LEVEL = 8.0  # Grey levels: noise of bare walls is not blown up to texture.
 
 
-def neighbour_shares(pictures: Sequence[Picture]) -> np.ndarray:
+def neighbour_overlaps(pictures: Sequence[Picture]) -> np.ndarray:
     """Return the share of each picture that the next one shows too, float64 [len - 1].
 
     NaN where the two are no neighbours in the capture; 0 where no shift agrees.
     """
-    small = [_flattened(picture.thumb) for picture in pictures]
+    small = [_high_pass(picture.thumb) for picture in pictures]
     shares = np.full(max(0, len(pictures) - 1), np.nan)
     for place, (one, other) in enumerate(pairwise(pictures)):
         if other.index - one.index == 1:
-            shares[place] = shared_share(small[place], small[place + 1])
+            shares[place] = overlap_share(small[place], small[place + 1])
     return shares
 
 
-def shared_share(one: np.ndarray, other: np.ndarray) -> float:
+def overlap_share(one: np.ndarray, other: np.ndarray) -> float:
     """Return the share of the area that two flattened pictures show both, by the best shift."""
     if one.shape != other.shape:  # One is upright, the other lies: a look cannot tell.
         return float("nan")
@@ -168,15 +168,17 @@ def shared_share(one: np.ndarray, other: np.ndarray) -> float:
     variance = (summed(2, 0) - sum_one**2 / count) * (summed(0, 2) - sum_other**2 / count)
     likeness = covariance / np.sqrt(np.maximum(variance, (1e-3 * one.size) ** 2))
     area = count / one.size
-    likeness[area < LEAST_SHARE] = -1.0
+    likeness[area < MIN_OVERLAP] = -1.0
     best = int(np.argmax(likeness * area**0.25))  # Of two that agree alike, the larger overlap.
-    return round(float(area.flat[best]), 2) if likeness.flat[best] >= AGREES else 0.0
+    return round(float(area.flat[best]), 2) if likeness.flat[best] >= MIN_CORRELATION else 0.0
 
 
-def _flattened(thumb: np.ndarray) -> np.ndarray:
+def _high_pass(thumb: np.ndarray) -> np.ndarray:
     """Return a picture 64 px wide without its slow changes of light, float64 [h, 64]."""
-    height = max(8, round(WIDTH_PX * thumb.shape[0] / thumb.shape[1]))
-    grey = Image.fromarray(thumb).convert("L").resize((WIDTH_PX, height), Image.Resampling.BOX)
+    height = max(8, round(OVERLAP_WIDTH_PX * thumb.shape[0] / thumb.shape[1]))
+    grey = (
+        Image.fromarray(thumb).convert("L").resize((OVERLAP_WIDTH_PX, height), Image.Resampling.BOX)
+    )
     detail = np.asarray(grey, np.float64)
     detail = detail - np.asarray(grey.filter(ImageFilter.BoxBlur(8)), np.float64)
-    return detail / (np.abs(detail).mean() + SOFT)
+    return detail / (np.abs(detail).mean() + NOISE_LEVEL)

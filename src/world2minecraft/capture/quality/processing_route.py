@@ -33,7 +33,7 @@ class Route:
         return self.kind in ("posed photos", "photos", "video")
 
 
-_CALLED = {
+_INPUT_NAMES = {
     "rgbd": "posed RGB-D frames",
     "posed photos": "pictures with poses, no depth",
     "photos": "photos without poses",
@@ -41,7 +41,7 @@ _CALLED = {
     "unposed rgbd": "RGB-D frames without poses",
     "solid": "a solid, looked at from within",
 }
-_WORDS = {
+_DESCRIPTIONS = {
     "rgbd": "depth and poses are taken as they are",
     "posed photos": "poses are checked and depth is computed from the pictures",
     "photos": "poses and depth are computed from the pictures",
@@ -51,7 +51,7 @@ _WORDS = {
 }
 
 
-def route_of(judged: JudgedCapture) -> Route:
+def choose_route(judged: JudgedCapture) -> Route:
     """Return the route of a judged capture."""
     kind = _kind(judged)
     each = FRAME_S
@@ -59,7 +59,7 @@ def route_of(judged: JudgedCapture) -> Route:
         each += POSE_S
     if kind in ("photos", "video", "posed photos"):
         each += STEREO_S
-    return Route(kind, _CALLED[kind], _WORDS[kind], BUILD_S + each * len(judged.frames))
+    return Route(kind, _INPUT_NAMES[kind], _DESCRIPTIONS[kind], BUILD_S + each * len(judged.frames))
 
 
 def _kind(judged: JudgedCapture) -> Kind:

@@ -6,8 +6,8 @@ import numpy as np
 
 from world2minecraft.capture.quality.picture_quality import (
     Picture,
-    look_at_pictures,
-    neighbour_shares,
+    neighbour_overlaps,
+    sample_pictures,
 )
 from world2minecraft.capture.quality.top_view import Plan, plan_of
 from world2minecraft.capture.quality.view_directions import Directions, directions_of
@@ -34,13 +34,13 @@ class Survey:
 def survey_capture(judged: JudgedCapture) -> Survey:
     """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
     if judged.posed:
-        pictures = look_at_pictures(judged.frames, PICTURES_POSED)
+        pictures = sample_pictures(judged.frames, PICTURES_POSED)
         plan = plan_of(judged)
         lenses = [frame.colour_camera or frame.depth_camera for frame in judged.frames]
         # With depth, how much neighbours share matters little; stereo lives of it.
         unknown = np.full(max(0, len(pictures) - 1), np.nan)
-        shares = unknown if judged.has_depth else neighbour_shares(pictures)
+        shares = unknown if judged.has_depth else neighbour_overlaps(pictures)
         seen = directions_of(lenses, plan.cameras)
         return Survey(judged, tuple(pictures), shares, plan, seen)
-    pictures = look_at_pictures(judged.frames)
-    return Survey(judged, tuple(pictures), neighbour_shares(pictures), None, None)
+    pictures = sample_pictures(judged.frames)
+    return Survey(judged, tuple(pictures), neighbour_overlaps(pictures), None, None)

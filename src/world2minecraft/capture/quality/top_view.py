@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.alignment.gravity import frame_of_up
+from world2minecraft.capture.alignment.gravity import rotation_to_z
 from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.frames import FrameFiles
-from world2minecraft.capture.open_scan import ALIGNED_FRAMES
+from world2minecraft.capture.open_scan import (ALIGNMENT_FRAMES)
 from world2minecraft.capture.quality.view_directions import up_of_cameras
 from world2minecraft.capture.validation import JudgedCapture, spread_over
 from world2minecraft.capture.view_stream import CaptureViews
@@ -65,7 +65,7 @@ def plan_of(judged: JudgedCapture) -> Plan:
     with_depth = [frame for frame in judged.frames if frame.depth_path]
     if not with_depth:
         return _plan_of_cameras(judged, poses)
-    gathered = _Gathered(judged, spread_over(with_depth, ALIGNED_FRAMES))
+    gathered = _Gathered(judged, spread_over(with_depth, ALIGNMENT_FRAMES))
     problem, found = "", None
     try:
         found = align(gathered.views(), judged.capture.world_up)
@@ -132,7 +132,7 @@ def _level(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
     """Return a turn that sets the scan upright, first look to the north, from what is known."""
     up = judged.capture.world_up
     turned = np.eye(4)
-    turned[:3, :3] = frame_of_up(up_of_cameras(poses) if up is None else np.asarray(up))
+    turned[:3, :3] = rotation_to_z(up_of_cameras(poses) if up is None else np.asarray(up))
     look = turned[:3, :3] @ poses[0, :3, 2]
     if np.hypot(look[0], look[1]) > 0.1:
         angle = np.pi / 2 - np.arctan2(look[1], look[0])

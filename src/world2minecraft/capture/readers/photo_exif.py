@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageOps
 
-from world2minecraft.capture.images import ImageHeader, NamedByFile, check_whole, opened_image
+from world2minecraft.capture.images import ImageHeader, NamedByFile, check_whole, open_image
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera
@@ -52,7 +52,7 @@ class UprightPhoto(NamedByFile):
 
     def header(self) -> ImageHeader:
         """Return the size after turning."""
-        with opened_image(self.path) as image:
+        with open_image(self.path) as image:
             return ImageHeader(*_upright_size(image), image.mode)
 
     def check_whole(self) -> None:
@@ -61,7 +61,7 @@ class UprightPhoto(NamedByFile):
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3] sRGB."""
-        with opened_image(self.path) as image:
+        with open_image(self.path) as image:
             return np.array(ImageOps.exif_transpose(image).convert("RGB"), np.uint8)
 
     def raw(self) -> np.ndarray:
@@ -71,7 +71,7 @@ class UprightPhoto(NamedByFile):
 
 def photo_facts(path: AnyPath) -> PhotoFacts:
     """Read what a photo says of itself. Raises what ``read_header`` raises."""
-    with opened_image(path) as image:
+    with open_image(path) as image:
         width, height = _upright_size(image)
         general, own = _tags(image)
         focal = _focal_px(own, image.size)

@@ -14,8 +14,8 @@ import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import HEIF_SUFFIXES
-from world2minecraft.capture.options import LEAST_FRAMES, ScanOptions
-from world2minecraft.capture.poster_marker import lies_about
+from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
+from world2minecraft.capture.poster_marker import is_saved_poster
 from world2minecraft.capture.readers.photo_exif import PhotoFacts, UprightPhoto, photo_facts
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
@@ -65,7 +65,7 @@ class PhotoFolderSource:
                 folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
             )
         kept, skipped = _kept(paths)
-        if len(kept) < LEAST_FRAMES:
+        if len(kept) < MIN_FRAMES:
             why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
             count = f"{len(kept)} photo" + "s" * (len(kept) != 1)
             reason = f"holds {count} that can be used{why}; take 30 or more of the room"
@@ -110,7 +110,7 @@ def _photos(folder: AnyPath) -> list[AnyPath]:
         and not path.name.startswith((".", "._"))
         and not _NOT_COLOUR.search(path.stem)
         and path.is_file()
-        and not lies_about(path)
+        and not is_saved_poster(path)
     ]
     return sorted(found, key=lambda path: (natural_key(path.name), path.name))
 

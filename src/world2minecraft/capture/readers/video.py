@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from world2minecraft.capture.alignment.image_rotation import TurnedImage
+from world2minecraft.capture.alignment.image_rotation import RotatedImage
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import MAX_PIXELS, ImagePlace
-from world2minecraft.capture.options import LEAST_FRAMES, ScanOptions
-from world2minecraft.capture.poster_marker import lies_about
+from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
+from world2minecraft.capture.poster_marker import is_saved_poster
 from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open_movie
 from world2minecraft.capture.readers.photo_exif import DIAGONAL_MM
 from world2minecraft.core.archives import AnyPath, ArchivePath
@@ -285,7 +285,7 @@ class VideoSource:
         _check(path, look)
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
         chosen = picked(look, wanted)
-        if len(chosen) < LEAST_FRAMES:
+        if len(chosen) < MIN_FRAMES:
             places = f"{len(chosen)} place" + "s" * (len(chosen) != 1)
             raise CaptureError(
                 path,
@@ -305,7 +305,7 @@ def _video_in(place: AnyPath) -> AnyPath | None:
     if not place.is_dir():
         return None
     held = [path for path in place.iterdir() if not path.name.startswith(".")]
-    if any(path.suffix.lower() in _IMAGES and not lies_about(path) for path in held):
+    if any(path.suffix.lower() in _IMAGES and not is_saved_poster(path) for path in held):
         return None
     videos = [path for path in held if path.suffix.lower() in SUFFIXES and path.is_file()]
     return videos[0] if len(videos) == 1 else None
@@ -344,7 +344,7 @@ def _frames(path: AnyPath, look: VideoLook, chosen: list[int]) -> tuple[FrameFil
             continue
         image: ImagePlace = MoviePicture(path, number)
         if look.quarter_turns:
-            image = TurnedImage(image, look.quarter_turns)
+            image = RotatedImage(image, look.quarter_turns)
         time_s = float(look.times[index] * look.tick_s)
         frames.append(
             FrameFiles(f"frame-{number:06d}", None, image, camera, time_s=round(time_s, 6))

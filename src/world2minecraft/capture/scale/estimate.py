@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.capture.alignment.room_frame import LEAST_POINTS, ImplausibleRoomError
+from world2minecraft.capture.alignment.room_frame import MIN_POINTS, ImplausibleRoomError
 from world2minecraft.capture.scale import priors
 from world2minecraft.capture.scale.known_lengths import LEVELS, Known, candidates
 from world2minecraft.capture.scale.measurements import Level, Measures, measure
@@ -138,10 +138,10 @@ def estimate_scale(surface: OrientedPoints, knowns: Sequence[Known] = ()) -> Sca
         ImplausibleRoomError: too little surface was seen.
         UsageError: nothing was seen of what a known length speaks of.
     """
-    if len(surface.points_m) < LEAST_POINTS:
+    if len(surface.points_m) < MIN_POINTS:
         raise ImplausibleRoomError(
             f"only {len(surface.points_m)} places of the depth are smooth surface; at least "
-            f"{LEAST_POINTS} are needed to find the scale: take more photos of floor and walls"
+            f"{MIN_POINTS} are needed to find the scale: take more photos of floor and walls"
         )
     measures = measure(surface)
     return _by_knowns(measures, knowns) if knowns else _by_habits(measures)

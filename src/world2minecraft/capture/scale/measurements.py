@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.capture.alignment.axis_profiles import profile
-from world2minecraft.capture.alignment.gravity import find_ground, frame_of_up
-from world2minecraft.capture.alignment.walls import find_box, find_yaw
+from world2minecraft.capture.alignment.axis_profiles import axis_profile
+from world2minecraft.capture.alignment.gravity import find_ground, rotation_to_z
+from world2minecraft.capture.alignment.walls import find_room_box, find_yaw
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
@@ -161,7 +161,7 @@ def _levelled(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
     """Return the surface with the floor at z = 0 and z up, and whether a floor was seen."""
     ground = find_ground(surface)
     to_level = np.eye(4)
-    to_level[:3, :3] = frame_of_up(ground.up)
+    to_level[:3, :3] = rotation_to_z(ground.up)
     to_level[2, 3] = -ground.height_m
     return surface.transformed(to_level), ground.floor_area_m2 > 0
 
@@ -176,7 +176,7 @@ def _lowest_camera(heights: np.ndarray) -> float:
 def _levels(level: OrientedPoints) -> list[Level]:
     """Return the faces that look up between a stool's height and the chest's, from low to high."""
     up = level.points_m[level.normals[:, 2] > FACING]
-    found = profile(up, 2, 0.02)
+    found = axis_profile(up, 2, 0.02)
     peaks = [at for at in found.peaks(LEVEL_LEAST_M2) if LEVEL_M[0] <= at <= LEVEL_M[1]]
     levels: list[Level] = []
     for place in peaks:
@@ -197,7 +197,7 @@ def _top(level: OrientedPoints) -> float:
 def _ceiling(level: OrientedPoints, camera: float) -> float | None:
     """Return the height of the lowest large face that looks down over the cameras."""
     down = level.points_m[level.normals[:, 2] < -FACING]
-    found = profile(down, 2, 0.03)
+    found = axis_profile(down, 2, 0.03)
     least = CEILING_OVER_CAMERA * camera
     places = [float(at) for at in found.peaks(CEILING_LEAST_M2) if at > least]
     if not places:
@@ -209,7 +209,7 @@ def _ceiling(level: OrientedPoints, camera: float) -> float | None:
 
 def _sides(level: OrientedPoints) -> tuple[float | None, float | None]:
     """Return the longer and the shorter side of the room, each None where a wall is missing."""
-    box = find_box(level.transformed(rotation_about_z(-find_yaw(level))))
+    box = find_room_box(level.transformed(rotation_about_z(-find_yaw(level))))
     sides = []
     for axis, name in enumerate("xy"):
         both = {f"{name}-", f"{name}+"} <= set(box.seen)

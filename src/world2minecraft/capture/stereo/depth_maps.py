@@ -15,7 +15,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.unprojection import pixel_rays, project
-from world2minecraft.rendering.thread_pool import side_by_side
+from world2minecraft.rendering.thread_pool import run_parallel
 
 # Which photos each is compared with: those that see the same things at a good angle.
 
@@ -178,7 +178,7 @@ def swept_depths(
         swept[number] = _swept(small[number], others, every_m, values)
 
     for first in range(0, len(small), AT_ONCE):
-        side_by_side(one, range(first, min(first + AT_ONCE, len(small))))
+        run_parallel(one, range(first, min(first + AT_ONCE, len(small))))
         done = min(first + AT_ONCE, len(small))
         progress(STAGE, done, 2 * len(small), small[done - 1].name)
     return swept, neighbours

@@ -63,7 +63,7 @@ def run(
         InputError: a world cannot be read. ServerError, BudgetError: the model cannot be asked.
     """
     from world2minecraft.core.files import read_bytes, write_json
-    from world2minecraft.navigation.running.tables import text_of
+    from world2minecraft.navigation.running.tables import format_text
     from world2minecraft.paper.layouts.judge import means_of, prompt_sum
     from world2minecraft.paper.layouts.table import grade_table
 
@@ -75,7 +75,7 @@ def run(
         {"model": chat.name, "prompt": prompt_sum(), "wish": told, "repeats": repeats,
          "temperature": chat.temperature, "scenes": [one.told() for one in grades]},
     )  # fmt: skip
-    print(text_of(grade_table(means_of(grades))))
+    print(format_text(grade_table(means_of(grades))))
     unread = sum(one.unread for one in grades)
     if unread:
         print(
@@ -92,7 +92,7 @@ def graded(
     from world2minecraft.cli.compare.build import folder_names
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.formats.build_source import read_source
+    from world2minecraft.formats.build_source import read_build
     from world2minecraft.paper.layouts.importers import read_layouts_of
     from world2minecraft.paper.layouts.judge import grade, pictures_of
 
@@ -101,7 +101,7 @@ def graded(
     with shown() as progress:
         for done, (place, scene) in enumerate(zip(places, scenes, strict=True)):
             progress("judge", done, len(places), scene.name)
-            pictures = pictures_of(read_source(place).volume)
+            pictures = pictures_of(read_build(place).volume)
             for number, picture in enumerate(pictures, start=1):
                 write_bytes(out / "pictures" / f"{names[done]}-{number}.jpg", picture.data)
             grades.append(

@@ -57,7 +57,7 @@ def run(
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json
-    from world2minecraft.navigation.running.tables import markdown_of, text_of
+    from world2minecraft.navigation.running.tables import format_markdown, format_text
     from world2minecraft.paper.layouts import score_scene, summary_of
     from world2minecraft.paper.layouts.importers import How, read_layouts_of
     from world2minecraft.paper.layouts.reference import is_truth, true_scene
@@ -75,7 +75,7 @@ def run(
         progress("layouts", len(found), len(found))
     told = {name: summary_of(some, [known] * len(some) if known else ())
             for name, some in by_method(scored).items()}  # fmt: skip
-    write = markdown_of if markdown else text_of
+    write = format_markdown if markdown else format_text
     print(write(layout_table(told)), write(other_table(told)), "\n".join(NOTES), sep="\n\n")
     option.say_skipped(found)
     if json_path is not None:

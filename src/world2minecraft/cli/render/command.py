@@ -144,7 +144,7 @@ def draw(
 def _draw_plan(
     plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
-    from world2minecraft.rendering.batch.streaming import SPARE, done_behind
+    from world2minecraft.rendering.batch.streaming import SPARE, ordered_map
 
     total = len(plan.shots) * (look.photo_samples if look.photo else 1)
     done = 0
@@ -161,7 +161,7 @@ def _draw_plan(
     writers = min(max(look.threads, look.jobs), most)
     with closing(_pictures(plan, look, looks, options, step)) as pictures:
         written = (writer.later(*one) for one in pictures)
-        for _ in done_behind(written, lambda write: write(), writers, writers + SPARE):
+        for _ in ordered_map(written, lambda write: write(), writers, writers + SPARE):
             pass
     progress("render", total, total)
 
@@ -171,7 +171,7 @@ def _pictures(
 ) -> Generator[tuple["Shot", "Picture", "BlockVolume"], None, None]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.rendering import prepare_scene
-    from world2minecraft.rendering.presentation.shot_frames import exposed
+    from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
 
     exposure = None
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):
@@ -179,7 +179,7 @@ def _pictures(
         volume = plan.volume_of(shots[0])
         scene = prepare_scene(volume, looks.source, texture_px=looks.side_px)
         if exposure is None:  # One for all, so that pictures of one plan belong together.
-            exposure = exposed(scene, options.light, shots).exposure
+            exposure = with_common_exposure(scene, options.light, shots).exposure
         scene = replace(scene, exposure=exposure)
         pictures = take(scene, shots, look, options, step)
         for shot, picture in zip(shots, pictures, strict=True):

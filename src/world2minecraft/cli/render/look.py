@@ -10,9 +10,9 @@ from world2minecraft.core.errors import UsageError
 if TYPE_CHECKING:
     from world2minecraft.cli.render.shots import Kind, Medium
     from world2minecraft.rendering import BlockScene, LookLight, Picture
-    from world2minecraft.rendering.block_elements import LookSource
+    from world2minecraft.rendering.block_elements import ModelSource
     from world2minecraft.rendering.presentation.shot_frames import DrawOptions
-    from world2minecraft.rendering.resource_packs import PackLooks
+    from world2minecraft.rendering.resource_packs import ResourcePackModels
     from world2minecraft.rendering.views import Shot
 
 TEXTURES_PX = (16, 32, 64, 128)
@@ -28,9 +28,9 @@ OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
 class Looks:
     """Where models and textures come from, and the side of a texture."""
 
-    source: "LookSource"
+    source: "ModelSource"
     side_px: int
-    packs: "PackLooks | None" = None
+    packs: "ResourcePackModels | None" = None
 
     def notes(self, palette: "Sequence[str]") -> list[str]:
         """Return what a user should know: states without a look, files that cannot be read."""
@@ -114,12 +114,12 @@ class Look:
 
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
-        from world2minecraft.rendering.light_parameters import PAPER
+        from world2minecraft.rendering.light_parameters import BACKDROP
         from world2minecraft.rendering.presentation.shot_frames import DrawOptions
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above one sees no sky; a build stands out best on paper, but not at night.
-        paper = PAPER if kind in ("orbit", "turntable") and self.hour is None else None
+        paper = BACKDROP if kind in ("orbit", "turntable") and self.hour is None else None
         light, samples = self.light_of(kind), self.samples or usual
         return DrawOptions(outputs, light, samples, self.threads, paper, self.device, self.jobs)
 
@@ -129,17 +129,17 @@ class Look:
         Raises:
             InputError: a pack cannot be read.
         """
-        from world2minecraft.rendering.block_models import OwnLooks
+        from world2minecraft.rendering.block_models import BuiltinModels
 
         if not self.packs:
             side_px = self.texture_px or OWN_PX
-            return Looks(OwnLooks(side_px), side_px)
-        from world2minecraft.rendering.block_elements import LookStack
-        from world2minecraft.rendering.resource_packs import PackLooks
+            return Looks(BuiltinModels(side_px), side_px)
+        from world2minecraft.rendering.block_elements import ModelSourceStack
+        from world2minecraft.rendering.resource_packs import ResourcePackModels
 
-        packs = PackLooks(self.packs)
+        packs = ResourcePackModels(self.packs)
         side_px = self.texture_px or packs.texture_px
-        return Looks(LookStack((packs, OwnLooks(side_px))), side_px, packs)
+        return Looks(ModelSourceStack((packs, BuiltinModels(side_px))), side_px, packs)
 
 
 def take(
@@ -161,12 +161,12 @@ def take(
     Raises:
         UsageError: this version has no such tier, or it cannot do what is asked for.
     """
-    from world2minecraft.rendering.presentation.shot_frames import frames_of
+    from world2minecraft.rendering.presentation.shot_frames import draw_shots
 
     if look.photo:
         yield from _photos(scene, shots, look, options, step)
         return
-    for picture in frames_of(scene, shots, options):
+    for picture in draw_shots(scene, shots, options):
         step(1)
         yield picture
 
@@ -176,9 +176,9 @@ def _photos(
     step: Callable[[int], None],
 ) -> "Iterator[Picture]":  # fmt: skip
     """Trace photos; the first one's exposure is that of all."""
-    from world2minecraft.rendering.path_tracing import lamps_of, render_photo
+    from world2minecraft.rendering.path_tracing import emitters_of, render_photo
 
-    lamps, light = lamps_of(scene), options.light
+    lamps, light = emitters_of(scene), options.light
     for shot in shots:
         told = 0
 

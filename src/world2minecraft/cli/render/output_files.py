@@ -138,12 +138,12 @@ class Writer:
     def finish(self, volume: "BlockVolume") -> None:
         """Write the poses, and what the numbers mean where there are any."""
         from world2minecraft.core.files import write_json
-        from world2minecraft.rendering.output import table_of_names
+        from world2minecraft.rendering.output import id_names
         from world2minecraft.rendering.views import write_lines
 
         write_lines(self.target.beside(LINES_FILE), self.lines)
         if any(name in _NUMBERS for name in self.target.layers):
-            write_json(self.target.beside(NAMES_FILE), table_of_names(volume))
+            write_json(self.target.beside(NAMES_FILE), id_names(volume))
 
     def _files(self) -> dict[str, Path]:
         from world2minecraft.rendering.output import file_name

@@ -95,17 +95,17 @@ def run(
         read. OutputError: the folder cannot be written.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.navigation.data.recorded_walks import checked_at
-    from world2minecraft.navigation.data.scene_items import WorkRule
+    from world2minecraft.navigation.data.recorded_walks import parse_at
+    from world2minecraft.navigation.data.scene_items import SceneRule
     from world2minecraft.navigation.data.set_building import BuildRule
 
-    work = WorkRule(
+    work = SceneRule(
         views=views, move_set=_moves(moves), balanced=not every_keyframe, size_px=_size(size),
         seed=seed,
     )  # fmt: skip
     rule = BuildRule(
         composition, trajectories, paper_size, paper_split, unseen_share,
-        tuple(map(str, stream or ())), checked_at(at), work,
+        tuple(map(str, stream or ())), parse_at(at), work,
     )  # fmt: skip
     if not (scenes or rooms or houses):
         raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")

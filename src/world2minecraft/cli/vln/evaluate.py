@@ -84,13 +84,13 @@ def run(
     from world2minecraft.external_models.chat_transport import is_endpoint
     from world2minecraft.navigation.agents.question_answering import VlmAnswerer
     from world2minecraft.navigation.records import read_items
-    from world2minecraft.navigation.running.item_evaluation import TRAININGS, picked_items
+    from world2minecraft.navigation.running.item_evaluation import TRAININGS, select_items
 
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
     target = out or option.folder_of(agent)
     every = read_items(folder)
-    items = picked_items(
+    items = select_items(
         every, split=split, task=task, composition=composition, count=count, seed=seed
     )
     place = folder if folder.is_dir() else folder.parent
@@ -136,10 +136,10 @@ def _baseline(
 
 
 def _say(target: Path, items: "list[Item]", chat: Any) -> None:
-    from world2minecraft.navigation.running.tables import answers_table, read_result, text_of
+    from world2minecraft.navigation.running.tables import answers_table, format_text, read_result
 
     print()
-    print(text_of(answers_table([read_result(target)])))
+    print(format_text(answers_table([read_result(target)])))
     print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter,")
     print("3 failed three items that the server did not answer; both count as wrong")
     if chat is not None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.exporters import Handoff
+    from world2minecraft.navigation.exporters import ExportResult
 
 EXAMPLES = """\
 w2m vln export SET --to llamafactory --out SFT         rows, dataset_info.json and the SFT recipe
@@ -54,7 +54,7 @@ def run(
     steps that it will take are told here, before a GPU is rented. docs/vln-finetuning.md has more.
     """
     from world2minecraft.cli.progress import shown
-    from world2minecraft.navigation.exporters import HandoffRule, export_set
+    from world2minecraft.navigation.exporters import ExportOptions, export_set
 
     choices = {
         "tasks": None if task is None else (task,),
@@ -66,13 +66,13 @@ def run(
         "image_style": images,
         "seed": seed,
     }
-    rule = HandoffRule(**{name: value for name, value in choices.items() if value is not None})
+    rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
     with shown() as progress:
         handoff = export_set(source, to, out, rule, progress=progress)
     _say(handoff)
 
 
-def _say(handoff: "Handoff") -> None:
+def _say(handoff: "ExportResult") -> None:
     for one in handoff.written:
         steps = f", {one.steps:,} steps" if one.steps else ""
         tokens = f", at most {one.tokens:,} tokens a row" if one.tokens else ""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from world2minecraft.navigation.agents.values import Decision, Observation
-    from world2minecraft.navigation.running.episode_runner import Walk
+    from world2minecraft.navigation.running.episode_runner import EpisodeWalk
     from world2minecraft.navigation.values import Episode, Move, Stance
 
 VIEW_COLUMNS, VIEW_ROWS = 64, 24
@@ -40,7 +40,7 @@ class LinesLive:
     ) -> None:
         """Say nothing: decisions tell it."""
 
-    def ended(self, walk: "Walk") -> None:
+    def ended(self, walk: "EpisodeWalk") -> None:
         """Say how it went."""
         from world2minecraft.navigation.running.film import end_text
 
@@ -74,7 +74,7 @@ class ScreenLive(LinesLive):
         self._rows = [*self._rows, row][-ROWS_KEPT:]
         self._draw()
 
-    def ended(self, walk: "Walk") -> None:
+    def ended(self, walk: "EpisodeWalk") -> None:
         """Show how it went."""
         from world2minecraft.navigation.running.film import end_text
 

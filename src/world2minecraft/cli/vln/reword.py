@@ -55,9 +55,9 @@ def run(
     from world2minecraft.core.errors import UsageError
     from world2minecraft.navigation.data.rewording import (
         ORDER,
-        annotated,
-        asked_by,
+        add_annotations,
         read_set,
+        select_instructions,
         write_set,
     )
 
@@ -65,11 +65,11 @@ def run(
         raise UsageError("nothing to do; give --annotations FILE, --rewrite MODEL or --plain")
     made, chat, outcomes = read_set(path), None, Counter[str]()
     if annotations is not None:
-        made = annotated(made, annotations)
+        made = add_annotations(made, annotations)
     if rewrite:
         chat = asked.open(rewrite, path / REPLIES)
         made, outcomes = _rewritten(made, chat, jobs)
-    made = asked_by(made, ORDER[-1:] if plain else ORDER)
+    made = select_instructions(made, ORDER[-1:] if plain else ORDER)
     write_set(path, made)
     _say(path, made, outcomes, chat)
 
@@ -80,13 +80,13 @@ def _rewritten(
     from world2minecraft.cli.progress import shown
     from world2minecraft.external_models.chat_messages import Turn
     from world2minecraft.external_models.structured_replies import strip_reasoning
-    from world2minecraft.navigation.data.rewording import rewritten_set
+    from world2minecraft.navigation.data.rewording import reword_set
 
     def ask(prompt: str) -> str:
         return strip_reasoning(chat.ask((Turn("user", (prompt,)),))[1].text)
 
     with shown() as progress:
-        return rewritten_set(made, ask, chat.name, jobs, progress)
+        return reword_set(made, ask, chat.name, jobs, progress)
 
 
 def _say(

@@ -114,7 +114,7 @@ def run(
         ServerError: a model cannot be asked. BudgetError: a cap is reached.
     """
     from world2minecraft.navigation.agents import make_agent
-    from world2minecraft.navigation.running.sentence_goals import Wish
+    from world2minecraft.navigation.running.sentence_goals import GoalRequest
 
     folder = out or option.folder_of(agent)
     _check_apart(folder, scene)
@@ -126,7 +126,7 @@ def run(
 
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
     walker = make_agent(agent, chat, chunk=chunk, history=history, **how)
-    wish = Wish(instruction, goal, _stance(start), moves, max_steps)
+    wish = GoalRequest(instruction, goal, _stance(start), moves, max_steps)
     with closing(_Grounds(server)) as grounds, _invited(walker, no_browser):
         episodes = _episodes(scene, wish, count, grounds)
         told = _walk(folder, episodes, grounds, walker, seed, video, chats)
@@ -159,7 +159,7 @@ class _Grounds:
         return self._scenes[path]
 
     def _on_server(self, path: str) -> Any:
-        from world2minecraft.navigation.server.body import join
+        from world2minecraft.navigation.server.player import join
         from world2minecraft.navigation.server.scene import open_server_scene
 
         if not self._bodies:
@@ -171,17 +171,17 @@ class _Grounds:
             body.close()
 
     def __call__(self, episode: "Episode") -> Any:
-        from world2minecraft.navigation.running.episode_ground import SceneGround
+        from world2minecraft.navigation.running.simulator import SceneSimulator
 
         key = (episode.scene, episode.move_set)
         if key not in self._grounds:
             scene = self.scene(episode.scene)
             if self._server:
-                from world2minecraft.navigation.server.scene import ServerGround
+                from world2minecraft.navigation.server.scene import ServerSimulator
 
-                self._grounds[key] = ServerGround(scene, episode.move_set)
+                self._grounds[key] = ServerSimulator(scene, episode.move_set)
             else:
-                self._grounds[key] = SceneGround(scene, episode.move_set)
+                self._grounds[key] = SceneSimulator(scene, episode.move_set)
         return self._grounds[key]
 
 
@@ -190,7 +190,7 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
 
     from world2minecraft.core.errors import UsageError
     from world2minecraft.navigation.records import EPISODES, read_episodes, resolve_scene_path
-    from world2minecraft.navigation.running.sentence_goals import episode_of
+    from world2minecraft.navigation.running.sentence_goals import episode_of_sentence
 
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
         if wish.instruction or wish.goal:
@@ -202,7 +202,7 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
         return [replace(one, scene=str(resolve_scene_path(one.scene, folder))) for one in found]
     if not wish.instruction:
         raise UsageError('say what to do, such as w2m vln run OUT "Go to the table"')
-    return [episode_of(grounds.scene(str(scene)), wish)]
+    return [episode_of_sentence(grounds.scene(str(scene)), wish)]
 
 
 def _walk(
@@ -212,7 +212,10 @@ def _walk(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.vln.live_view import live
     from world2minecraft.navigation.records import write_episodes
-    from world2minecraft.navigation.running.course import run_course, write_course
+    from world2minecraft.navigation.running.episode_evaluation import (
+        evaluate_agent,
+        write_walks_result,
+    )
     from world2minecraft.navigation.running.film import FILM_FILE, Film
     from world2minecraft.navigation.running.trace import TraceWriter
 
@@ -229,7 +232,7 @@ def _walk(
 
     with live() as shown:
         try:
-            walks, beside = run_course(episodes, grounds, walker, observers=watching, seed=seed)
+            walks, beside = evaluate_agent(episodes, grounds, walker, observers=watching, seed=seed)
         except BaseException:
             for film in films:
                 film.drop()
@@ -238,7 +241,7 @@ def _walk(
     facts: dict[str, Any] = {"move_sets": sorted({one.move_set for one in episodes}), "seed": seed}
     if chats:
         facts |= {"model": chats[0].name, "cost": chats[0].ledger.to_json()}
-    return write_course(folder, walks, beside, facts)
+    return write_walks_result(folder, walks, beside, facts)
 
 
 @contextmanager
@@ -272,10 +275,10 @@ def _place(episode: "Episode", episodes: "list[Episode]") -> str:
 def _say(
     folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
 ) -> None:
-    from world2minecraft.navigation.running.tables import HEADS_NOTE, text_of, walks_table
+    from world2minecraft.navigation.running.tables import HEADS_NOTE, format_text, walks_table
 
     print()
-    print(f"{text_of(walks_table([told]))}\n{HEADS_NOTE}")
+    print(f"{format_text(walks_table([told]))}\n{HEADS_NOTE}")
     if chats:
         print(f"asked: {option.cost_line(chats[0])}")
     place = folder / _place(episodes[0], episodes)

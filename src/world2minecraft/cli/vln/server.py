@@ -31,7 +31,7 @@ def run(
     Raises:
         UsageError: something is missing, or a name is wrong. ServerError: it is not let in.
     """
-    from world2minecraft.navigation.server import installing
+    from world2minecraft.navigation.server import mineflayer_install as installing
 
     if install:
         print("fetching mineflayer, as pinned; nothing of it is run")
@@ -45,7 +45,7 @@ def run(
 
 
 def _look(address: str, name: str, version: str) -> None:
-    from world2minecraft.navigation.server.body import join
+    from world2minecraft.navigation.server.player import join
 
     with join(address, name=name, version=version) as body:
         x, y, z = body.body.position

@@ -50,17 +50,21 @@ def run(
     """
     from world2minecraft.core.files import write_json
     from world2minecraft.navigation.data.blind_baselines import score_baselines as score
-    from world2minecraft.navigation.data.splits import leaks_of
-    from world2minecraft.navigation.data.statistics import figures, statistics_of, statistics_text
+    from world2minecraft.navigation.data.splits import find_leaks
+    from world2minecraft.navigation.data.statistics import (
+        compute_statistics,
+        statistics_json,
+        statistics_text,
+    )
     from world2minecraft.navigation.records import read_items
 
     items = read_items(path)
-    statistics, leaks = statistics_of(items), leaks_of(items)
+    statistics, leaks = compute_statistics(items), find_leaks(items)
     print(statistics_text(statistics, leaks))
     rows = score(items, path if path.is_dir() else path.parent) if baselines else []
     _say_baselines(rows)
     if json_file is not None:
-        write_json(json_file, figures(statistics, leaks, rows))
+        write_json(json_file, statistics_json(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
     if plot is not None:
         from world2minecraft.navigation.data.statistics import write_histograms

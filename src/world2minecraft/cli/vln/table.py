@@ -26,14 +26,14 @@ def run(runs: Runs, markdown: Markdown = False) -> None:
     from world2minecraft.navigation.running.tables import (
         HEADS_NOTE,
         answers_table,
-        markdown_of,
+        format_markdown,
+        format_text,
         paired_table,
         read_result,
-        text_of,
         walks_table,
     )
 
-    write = markdown_of if markdown else text_of
+    write = format_markdown if markdown else format_text
     results = [read_result(path) for path in runs]
     walks = [one for one in results if one["kind"] == "walks"]
     answers = [one for one in results if one["kind"] == "answers"]

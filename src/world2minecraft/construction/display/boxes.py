@@ -1,8 +1,8 @@
-"""Few boxes out of the parts of a template: exact ones, and coarser ones only over a limit.
+"""A template's parts as few boxes, and the boxes as display entities in the object's frame.
 
 Parts may overlap; where they do the smaller one shows, as a shelf does in the books of a bay. The
 planes of all parts cut the shape into cells of any size, and the cells of one block are joined to
-boxes again.
+boxes again, in coarser steps only where a limit requires it.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,13 @@ from world2minecraft.furniture import Part
 from world2minecraft.geometry.box_decomposition import cover_boxes, partition_boxes, simplify_boxes
 from world2minecraft.minecraft.entities import block_display
 
-# Where an object stands: its own frame in the room, and its boxes as display entities.
+LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
+FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
+SAME_M = 1e-6  # Planes nearer than this are one.
+# Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
+# in one plane, do not flicker: a screen tells so much apart across a room.
+INSET_BLOCKS = 0.0005
+Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Piece(NamedTuple):
@@ -117,15 +123,6 @@ def entities_of(
             )
         )
     return result
-
-
-LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
-FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
-SAME_M = 1e-6  # Planes nearer than this are one.
-# Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
-# in one plane, do not flicker: a screen tells so much apart across a room.
-INSET_BLOCKS = 0.0005
-Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def pieces_of(

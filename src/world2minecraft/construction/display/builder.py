@@ -1,4 +1,4 @@
-"""The objects of one room as display entities: templates by their parts, all else by its cells."""
+"""The objects of a room as display entities: templates by parts, the rest by their own cells."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -42,9 +42,15 @@ from world2minecraft.geometry.morphology import dilate_faces
 from world2minecraft.minecraft.entities import VIEW_BLOCKS
 from world2minecraft.minecraft.visual_shapes import is_luminous
 
-# An object without a template: its own cells as few coloured boxes.
-
 MOST_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
+# Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
+MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
+MOST_PIECES_ELSE, MOST_PIECES_ROUND = 8, 24
+ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
+LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
+FREE_SHARE = 0.5  # Cells: how finely a template is asked whether it stands in free space.
+FULL_LIGHT = 15
+APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
 
 
 def frame_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> Frame:
@@ -116,16 +122,6 @@ def without_specks(cells: np.ndarray, least: int) -> np.ndarray:
     numbers = parts[tuple((cells - low).T)]
     kept: np.ndarray = cells[sizes[numbers] >= least]
     return kept if len(kept) else cells
-
-
-# Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
-MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
-MOST_PIECES_ELSE, MOST_PIECES_ROUND = 8, 24
-ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
-LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
-FREE_SHARE = 0.5  # Cells: how finely a template is asked whether it stands in free space.
-FULL_LIGHT = 15
-APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
 
 
 def most_pieces(found: Template) -> int:

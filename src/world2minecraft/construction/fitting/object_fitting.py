@@ -1,7 +1,9 @@
-"""Furniture that is given as boxes, fitted with a little stretching so that it reads well.
+"""Fitting of one object by the best stable shapes, over sub-block shifts and small stretches.
 
-A seat at 1.8 blocks cannot be joined to legs that end at 1 or 2. What a builder does is to make
-the chair a hand higher; so sizes may change by up to a quarter, at a price.
+A table on the room's grid vanishes at 2 blocks per metre; the same table moved by up to half a
+block is a table. So an object is fitted about its own middle and goes to the lattice afterwards. An
+object that is given as boxes may also be stretched: a seat at 1.8 blocks cannot be joined to legs
+that end at 1 or 2, so sizes may change by up to a quarter, at a cost.
 """
 
 from collections.abc import Iterator
@@ -22,15 +24,17 @@ from world2minecraft.construction.fitting.selection import choose
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
 from world2minecraft.construction.fitting.stabilization import broken_share, finished
 
-# One object by the best stable shapes, in its own frame, with a search over sub-block shifts.
-#
-# A table on the room's grid vanishes at 2 blocks a metre; the same table moved by up to half a block
-# is a table. So an object is fitted about its own middle, and goes to the lattice afterwards.
-
 PHASE_STEP = 1  # Sub-cells: of 64 shifts the best is worth 0.03 of IoU more than of 16.
 FINALISTS = 6  # Phases that are solved with joints after all were tried without.
 EVEN = 0.85  # IoU with its mirror image from which an object is taken for symmetric.
 USUAL = Rules()
+MOST, LEAST = 1.25, 0.8
+TALLEST = 1.15  # A higher chair does not fit under its table.
+STRETCH_COST = 0.25  # IoU given up for a stretch by the factor e.
+JOINT_COST = 0.5  # IoU given up where no joint touches.
+THIN_WORTH = 0.2  # IoU that all of the thin parts are worth.
+HEIGHTS = 8  # At most so many heights are tried.
+SAME = 1e-6
 
 
 class Fit(NamedTuple):
@@ -133,15 +137,6 @@ def _filled_box(grid: np.ndarray) -> tuple[tuple[slice, ...], np.ndarray]:
         return (slice(0, 1),) * 3, np.zeros(3, int)
     low, high = at.min(0) * [1, 1, 0], at.max(0) + 1
     return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True)), low
-
-
-MOST, LEAST = 1.25, 0.8
-TALLEST = 1.15  # A higher chair does not fit under its table.
-STRETCH_COST = 0.25  # IoU given up for a stretch by the factor e.
-JOINT_COST = 0.5  # IoU given up where no joint touches.
-THIN_WORTH = 0.2  # IoU that all of the thin parts are worth.
-HEIGHTS = 8  # At most so many heights are tried.
-SAME = 1e-6
 
 
 class PartsFit(NamedTuple):

@@ -1,4 +1,4 @@
-"""What is to be fitted, as blocks of sub-cells, and by which rules."""
+"""The fitting problem: the shares of sub-cells that are to be covered, and the rules of the fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,10 +10,12 @@ import numpy as np
 from world2minecraft.construction.fitting.selection import Gains, gains_of
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
 
-# Fine cells and boxes as shares of the sub-cells of blocks, and which cells are thin.
-
 THIN_M = 0.1  # Legs, plates and panels; what is thinner than this counts as thin.
 SNAP = 6  # Decimals of a sub-cell: 12.5 * 0.08 does not fall short of a whole block.
+THIN_WEIGHT = 2.0  # A thin sub-cell counts double: thin recall grows by half and more.
+LEAST_FLOW = 0.5  # Sub-cells of a face (of 64) from which the wanted runs through it.
+WAYS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
+UP, DOWN = 4, 5
 
 
 def covered_blocks(
@@ -158,12 +160,6 @@ def from_blocks(blocks: np.ndarray) -> np.ndarray:
     x, y, z = blocks.shape[:3]
     split = blocks.reshape(x, y, z, SUB, SUB, SUB).transpose(0, 3, 1, 4, 2, 5)
     return np.ascontiguousarray(split).reshape(x * SUB, y * SUB, z * SUB)
-
-
-THIN_WEIGHT = 2.0  # A thin sub-cell counts double: thin recall grows by half and more.
-LEAST_FLOW = 0.5  # Sub-cells of a face (of 64) from which the wanted runs through it.
-WAYS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
-UP, DOWN = 4, 5
 
 
 @dataclass(frozen=True)

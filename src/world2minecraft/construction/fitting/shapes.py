@@ -1,8 +1,9 @@
-"""How much of each sub-cell of a block a block state fills, in room axes.
+"""The shapes that a fit may choose from, and how much of each sub-cell of a block they fill.
 
-A block has ``SUB`` sub-cells along each axis. What is seen of it counts, not what one bumps into.
-The boxes of a state are in block axes (y up); masks
-are ``[x, y, z]`` with z up, like every array of a room.
+A shape is a kind of block and the properties that turn it: ``stairs[facing=east,half=top]``. Which
+block of that kind it becomes is a matter of colour and palette, decided later. A block has ``SUB``
+sub-cells along each axis. The visual shape counts, not the collision shape. The boxes of a state
+are in block axes (y up); masks are ``[x, y, z]`` with z up, like every array of a room.
 """
 
 from collections.abc import Sequence
@@ -18,6 +19,22 @@ from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
 SUB = 8  # Finer masks gained 0.003 to 0.013 of IoU for three times the time (reference/fit.md).
 PROBES = 32  # Along each axis: every box of the game's that matters lies on 32nds.
+SIDES = ("east", "north", "west", "south")  # Counter-clockwise.
+CORNERS = ("inner_left", "inner_right", "outer_left", "outer_right")
+# A block of each kind, which says what the kind looks like.
+SAMPLES = {
+    "full": "minecraft:oak_planks",
+    "slab": "minecraft:oak_slab",
+    "stairs": "minecraft:oak_stairs",
+    "trapdoor": "minecraft:oak_trapdoor",
+    "carpet": "minecraft:white_carpet",
+    "post": "minecraft:oak_fence",
+}
+DRY = {"slab", "stairs", "trapdoor", "post"}  # What states whether it stands in water.
+# Of two shapes that fit alike the commoner is taken; in sub-cells of 512. A carpet is the colour
+# of cloth alone and needs what it lies on; an open trapdoor can be clicked shut.
+PRICES = {"full": 0.0, "slab": 2.0, "stairs": 6.0, "trapdoor": 4.0, "carpet": 2.0, "post": 4.0}
+CALM = frozenset(("full", "slab", "stairs", "trapdoor"))
 
 
 @lru_cache(maxsize=1 << 14)
@@ -69,28 +86,6 @@ def faces_of(state: str) -> np.ndarray:
             faces[axis, side] = plane.reshape(SUB, step, SUB, step).any((1, 3))
     faces.flags.writeable = False
     return faces
-
-
-# The shapes that a fit may choose from, apart from what they are made of.
-#
-# A shape is a kind of block and the properties that turn it: ``stairs[facing=east,half=top]``. Which
-# block of that kind it becomes is a question of colour, and of the palette, that is asked later.
-
-SIDES = ("east", "north", "west", "south")  # Counter-clockwise.
-CORNERS = ("inner_left", "inner_right", "outer_left", "outer_right")
-# A block of each kind, which says what the kind looks like.
-SAMPLES = {
-    "full": "minecraft:oak_planks",
-    "slab": "minecraft:oak_slab",
-    "stairs": "minecraft:oak_stairs",
-    "trapdoor": "minecraft:oak_trapdoor",
-    "carpet": "minecraft:white_carpet",
-    "post": "minecraft:oak_fence",
-}
-DRY = {"slab", "stairs", "trapdoor", "post"}  # What states whether it stands in water.
-# Of two shapes that fit alike the commoner is taken; in sub-cells of 512. A carpet is the colour
-# of cloth alone and needs what it lies on; an open trapdoor can be clicked shut.
-PRICES = {"full": 0.0, "slab": 2.0, "stairs": 6.0, "trapdoor": 4.0, "carpet": 2.0, "post": 4.0}
 
 
 @dataclass(frozen=True, order=True)
@@ -281,6 +276,3 @@ def shape_set(kinds: frozenset[str]) -> ShapeSet:
     if "stairs" in kinds:
         chosen += [one for corner in CORNERS for one in _stairs(corner)]
     return ShapeSet(tuple(chosen), free)
-
-
-CALM = frozenset(("full", "slab", "stairs", "trapdoor"))

@@ -1,4 +1,11 @@
-"""From gains to shapes that stand: stable, on legs, joined, symmetric, and without crumbs."""
+"""Passes that make chosen shapes stable: joined, on legs, evened out, and without loose pieces.
+
+Block by block the best shapes of a chair are a plate at the top of one block and a leg at the
+bottom of it: a hovering seat. So shapes that touch score higher where the object runs through the
+face between them. A part that stands on nothing gets posts, such as a table top whose legs were too
+thin. What the game would change at the next update is changed here: stairs beside stairs become
+corners, carpets lie on something, a single post stays single.
+"""
 
 from functools import lru_cache
 
@@ -9,16 +16,18 @@ from world2minecraft.construction.fitting.selection import Gains, choose
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
 from world2minecraft.geometry.connected_components import label_components
 
-# What holds together: shapes that touch where the thing that they show runs on.
-#
-# Block by block the best shapes of a chair are a plate at the top of one block and a leg at the
-# bottom of it: a hovering seat. So a pair of shapes pays where the wanted runs through the face
-# between them and they do not touch.
-
 BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
 LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
 STACKED = 30.0  # Stairs over stairs: an upright wall of them looks like a washboard.
 ROUNDS = 6
+LEAST_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
+LEAST_SPAN = 2  # Blocks from which a part stands on its corners; a narrower one has one post.
+MOST_POSTS = 4
+STEPS = np.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)])  # East, north, west, south.
+JOINING = ("full", "stairs", "post")  # What a fence would reach out to.
+LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
+POLE_FILL, POLE_SPAN = 0.2, 4  # A pole is half a block thick at most, both ways.
+CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left out.
 
 
 @lru_cache(maxsize=16)
@@ -99,13 +108,6 @@ def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
         meet = contact[2 * axis][grid[tuple(inner)], grid[tuple(outer)]]
         board[tuple(between)] = meet
     return label_components(board, corners=False)[0][::2, ::2, ::2]
-
-
-# What stands on nothing, but should, gets posts under it: a table top whose legs were too thin.
-
-LEAST_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
-LEAST_SPAN = 2  # Blocks from which a part stands on its corners; a narrower one has one post.
-MOST_POSTS = 4
 
 
 def grounded(
@@ -254,14 +256,6 @@ def _touching_shape(
     return best if row >= 0 and np.isfinite(gains[best]) else 0
 
 
-# Shapes that stay as they are: what the game would change at the next update is changed here.
-#
-# Stairs beside stairs become corners; carpets lie on something; a single post stays single.
-
-STEPS = np.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)])  # East, north, west, south.
-JOINING = ("full", "stairs", "post")  # What a fence would reach out to.
-
-
 def with_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     """Return shapes, int [X, Y, Z], with the stair corners that the game makes of neighbours.
 
@@ -367,11 +361,6 @@ def _add_carpets(grid, cells, scores, shapes, shut, ground) -> None:
                 continue
             if scores[row, number] > max(scores[row, now], 0):
                 grid[x, y, z] = number
-
-
-LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
-POLE_FILL, POLE_SPAN = 0.2, 4  # A pole is half a block thick at most, both ways.
-CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left out.
 
 
 def finished(

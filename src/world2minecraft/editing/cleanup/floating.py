@@ -1,7 +1,8 @@
-"""Clean-up of what hangs in the air: joined, put down, hung up, or taken away.
+"""Clean-up of floating blocks: they are joined, lowered, hung up or removed.
 
-Blocks hold together where their shapes meet. What holds to the floor, or to a piece of structure
-of some size, is carried; everything else floats.
+Blocks hold together where their shapes meet, not where their cells do: a lantern over a lower slab
+has half a block of air under it. What holds to the floor, or to a large enough piece of structure,
+is supported; everything else floats.
 """
 
 from functools import lru_cache
@@ -26,14 +27,20 @@ from world2minecraft.editing.sight import (
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
-# What touches what in a volume: blocks are joined where their shapes meet, not where cells do.
-#
-# A lantern over a lower slab has half a block of air under it though their cells are neighbours.
-
 GAP = 1 / 8  # Blocks: shapes nearer than this touch for the eye. A fence's bar is 1/8 thick.
 # Half of the 26 neighbours: the others are these, seen from the other side.
 SIDES = (-1, 0, 1)
 STEPS = tuple(step for step in product(SIDES, SIDES, SIDES) if step > (0, 0, 0))
+CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
+JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
+STEP_M = 0.5  # and moved aside by no more.
+CORD_M = 1.25  # A cord is no longer than this.
+ROUNDS = 8  # What stood on something that is moved floats then, and is mended next;
+GENTLE_ROUNDS = 4  # what is not mended by now never will be.
+CORD = "minecraft:chain[axis=y,waterlogged=false]"
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+DOWN, UP = np.array([0, -1, 0]), np.array([0, 1, 0])
+ASIDE = tuple(np.array(step) for step in ((1, 0, 0), (-1, 0, 0), (0, 0, 1), (0, 0, -1)))
 
 
 def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarray) -> np.ndarray:
@@ -96,18 +103,6 @@ def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
     low = np.maximum(mine[:, None, :3], its[None, :, :3] + away)
     high = np.minimum(mine[:, None, 3:], its[None, :, 3:] + away)
     return bool((high - low > -GAP + 1e-6).all(axis=2).any())
-
-
-CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
-JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
-STEP_M = 0.5  # and moved aside by no more.
-CORD_M = 1.25  # A cord is no longer than this.
-ROUNDS = 8  # What stood on something that is moved floats then, and is mended next;
-GENTLE_ROUNDS = 4  # what is not mended by now never will be.
-CORD = "minecraft:chain[axis=y,waterlogged=false]"
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-DOWN, UP = np.array([0, -1, 0]), np.array([0, 1, 0])
-ASIDE = tuple(np.array(step) for step in ((1, 0, 0), (-1, 0, 0), (0, 0, 1), (0, 0, -1)))
 
 
 def mend_floating(draft: Draft) -> None:

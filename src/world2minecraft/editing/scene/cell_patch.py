@@ -1,4 +1,7 @@
-"""Changes of cells put together: each cell once, with what it becomes at last."""
+"""Sets of cells as runs, and patches that combine several changes of cells into one operation.
+
+Runs are ``[[start, length], ...]`` of flat C-order cell numbers, sorted and without overlap.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,8 +11,6 @@ import numpy as np
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, GridCells, Operation
 from world2minecraft.editing.scene.draft import ARRAYS, SceneDraft
-
-# Cells as runs: ``[[start, length], ...]`` of flat C-order numbers, sorted and apart.
 
 
 def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:

@@ -1,10 +1,14 @@
-"""The journal of a scene: a log of its history that a kill does not break.
+"""The journal of a scene: a log of its history on disk that survives a kill.
 
-A file of records (``records.py``). The first has the verb ``@``: its number is the revision at
-which the journal starts, and with it comes the name of its generation and a line feed. Each
-further one is a step, and raises the revision by one: ``+`` an operation with its number, its
-kind and the operation itself; ``-`` and ``*`` that the one of this number was taken back or done
-again, with who did so and when. Operations stay on the disk; memory holds where they lie.
+A file of records (``record_log``). The first has the verb ``@``: its number is the revision at
+which the journal starts, followed by the name of its generation and a line feed. Each further
+record is a step and raises the revision by one: ``+`` an operation with its number, its kind and
+the operation itself; ``-`` and ``*`` that the operation of this number was undone or redone, with
+who did so and when. Operations stay on the disk; memory holds their positions.
+
+An operation is stored as an NBT tree of runs of cells and what they hold. The bytes depend on the
+operation alone: cells are sorted, and an array of one repeated value is stored as that value.
+Reading checks sizes against those of the scene before it allocates memory.
 """
 
 import json
@@ -21,12 +25,6 @@ from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cell
 from world2minecraft.editing.scene.history import Line
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
 
-# An operation on a scene as bytes and back: an NBT tree of runs of cells and what they hold.
-#
-# The bytes depend on what the operation does and nothing else: cells are sorted, and an array that
-# holds one value throughout is one value. Reading checks sizes against the scene's before it takes
-# memory.
-
 OPERATION_LIMITS = NbtLimits(depth=12, values=4_000_000, bytes=1 << 30)
 Shape = tuple[int, int, int]
 # Fields of GridCells, the bytes of one cell and how they are read.
@@ -37,6 +35,9 @@ _ARRAYS = {
     "source": np.dtype("u1"),
     "instance": np.dtype("<u2"),
 }
+MARK = b"w2m scene 1\n"
+START, DO, UNDO, REDO = b"@", b"+", b"-", b"*"
+_KIND = 1024  # Bytes in which a kind ends: 200 characters of any alphabet.
 
 
 def pack_operation(operation: Operation, shape: Shape) -> bytes:
@@ -192,11 +193,6 @@ def _numbers(values: Sequence[Any], count: int) -> np.ndarray:
     if len(values) != count:
         raise ValueError(f"a box of {len(values)} numbers, not {count}")
     return np.array(values, np.float64)
-
-
-MARK = b"w2m scene 1\n"
-START, DO, UNDO, REDO = b"@", b"+", b"-", b"*"
-_KIND = 1024  # Bytes in which a kind ends: 200 characters of any alphabet.
 
 
 class Step(NamedTuple):

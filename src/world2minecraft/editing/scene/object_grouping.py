@@ -1,4 +1,4 @@
-"""All commands on objects."""
+"""Commands that change which cells form an object: split, merge, relabel and cluster again."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -34,8 +34,6 @@ from world2minecraft.editing.scene.object_transforms import (
     TurnObjects,
 )
 from world2minecraft.editing.scene.scene_objects import instance_of, object_of
-
-# Commands on which cells make an object: split, merged, given another class, found anew.
 
 ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
 

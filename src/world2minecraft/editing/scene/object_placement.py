@@ -1,4 +1,4 @@
-"""The command that puts an object where it belongs: on what is under it, or at a wall."""
+"""Where furniture comes to stand: a new piece at a point, or an object snapped to floor or wall."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -15,7 +15,8 @@ from world2minecraft.editing.scene.object_boxes import object_named, plan_extent
 from world2minecraft.editing.scene.object_transforms import Id, planned_shift
 from world2minecraft.furniture import Template, facing, size_in_cells, surroundings
 
-# Where new furniture comes to stand: on what is under a place, or hang at it.
+WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
+WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.
 
 
 class StandingBox(NamedTuple):
@@ -87,10 +88,6 @@ def _turn(
     """Return which way a full box of its size would look."""
     cells = (np.argwhere(np.ones(counts, bool)) + corner).astype(np.int32)
     return facing(cells, chosen.class_id, surroundings(draft.labels)).quarter_turns
-
-
-WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
-WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.
 
 
 class SnapObject(Command):

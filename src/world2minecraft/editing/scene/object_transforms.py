@@ -1,4 +1,7 @@
-"""Commands on whole objects: delete, move, turn, duplicate."""
+"""Commands on whole objects: delete, move, turn and duplicate.
+
+Cells move with their object: whole cells, onto free ones, within the grid.
+"""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
@@ -26,7 +29,11 @@ from world2minecraft.editing.scene.object_boxes import (
     turned_cells,
 )
 
-# Cells that go where their object goes: whole cells, onto free ones, within the grid.
+Id = Annotated[int, Field(ge=1, le=65535)]
+Ids = Annotated[tuple[Id, ...], Field(min_length=1, max_length=65535)]
+Metre = Annotated[float, Field(ge=-10_000, le=10_000)]
+Point = tuple[Metre, Metre, Metre]
+QuarterTurns = Annotated[int, Field(ge=-3, le=3)]
 
 
 def planned_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str) -> Operation:
@@ -96,13 +103,6 @@ def owned(held: GridCells, number: int) -> GridCells:
 def middle_cell(draft: SceneDraft, one: SceneObject) -> np.ndarray:
     """Return the cell, int64 [3], that holds an object's centre."""
     return metres_to_cells(one.center_m, draft.origin_m, draft.voxel_m)
-
-
-Id = Annotated[int, Field(ge=1, le=65535)]
-Ids = Annotated[tuple[Id, ...], Field(min_length=1, max_length=65535)]
-Metre = Annotated[float, Field(ge=-10_000, le=10_000)]
-Point = tuple[Metre, Metre, Metre]
-QuarterTurns = Annotated[int, Field(ge=-3, le=3)]
 
 
 class DeleteObjects(Command):

@@ -1,4 +1,28 @@
-"""Commands that mend what a scan left: floaters, holes, rough surfaces."""
+"""Commands that repair what a scan left: floaters, holes and rough surfaces.
+
+**Floaters.** A piece is all occupied cells, of any class, that are connected by faces, edges or
+corners. It floats where it is small and not the largest of the scene. A piece with cells of
+structure floats only where it is smaller than the smallest wall, whatever size is asked for. A lamp
+whose cord was not seen floats by this rule too, so the list names its object.
+
+**Holes.** A gap is where a plane has no cell, nothing else stands in its layer, and structure
+bounds it on three of the four sides in the plane. In a floor or a ceiling something must have been
+seen over or under it too; where nothing was, it must be bounded on all four sides and have at most
+four square metres, as the floor under a wardrobe. Behind a slope or another wall a wall or a
+ceiling ends. Window cells are part of their wall. Which gaps are holes:
+
+==================================  =============================================================
+hidden: neither the cell nor one    a hole: the wall behind a wardrobe, the floor under a bed
+before or behind it was seen
+unseen, but next to seen air        a hole in a floor or a ceiling; in a wall it may be the glass
+                                    of a window, so as below
+seen to be air                      a hole up to a quarter of a square metre; a larger one is a
+                                    door, a window or a stairwell, and stays open
+==================================  =============================================================
+
+**Smoothing** is a majority filter over the 26 neighbours that never moves structure or unseen
+cells.
+"""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -29,17 +53,14 @@ from world2minecraft.editing.scene.voxel_commands import (
 )
 from world2minecraft.geometry.connected_components import label_components
 
-# What hangs in the air: small pieces of cells that hold to nothing.
-#
-# A piece is all occupied cells, of whatever classes, that hold together by faces, edges or corners.
-# It floats where it is small and not the largest of the scene: what holds to a wall, a floor or a
-# large piece is part of that piece. A piece with cells of structure floats only where it is smaller
-# than the smallest wall, however large one asks for: a ceiling without walls is no dirt. A lamp whose
-# cord was not seen floats by this rule too, so the list names its object.
-
 # A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
 # lost their hold: so one looks before deleting, and does not begin with large ones.
 MAX_CELLS = 30
+HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
+HIDDEN_M2 = 4.0  # No piece of furniture is larger.
+PILLAR_CELLS = 3  # A column with so many wall cells bounds the floor.
+FLAT_FACES = 4  # So many other faces has a cell within a sheet.
+PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,30 +97,6 @@ def _floater(draft: SceneDraft, cells: np.ndarray) -> Floater:
 
 def _largest_first(one: Floater) -> tuple:
     return (-len(one.cells), *map(int, one.cells[0]))
-
-
-# Holes in the planes of a room, told from doors, windows and stairwells.
-#
-# A gap is where a plane has no cell, nothing else stands in its layer, and structure bounds it to
-# three of the four sides in the plane. In a floor or a ceiling something was seen over or under it
-# too; where nothing was, it is bounded to all four sides and has at most four square metres, as the
-# floor under a wardrobe. Behind a slope or another wall a wall or a ceiling ends. What of a gap is
-# a hole:
-#
-# ==================================  =============================================================
-# hidden: neither the cell nor one    a hole: the wall behind a wardrobe, the floor under a bed
-# before or behind it was seen
-# unseen, but beside seen air         in a floor or a ceiling a hole; in a wall it may be the glass
-#                                     of a window, so as below
-# seen to be air                      a hole up to a quarter of a square metre; a larger one is a
-#                                     door, a window or a stairwell, and stays open
-# ==================================  =============================================================
-#
-# Window cells are part of their wall. Whoever names a cell of a gap fills that gap, whatever it is.
-
-HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
-HIDDEN_M2 = 4.0  # No piece of furniture is larger.
-PILLAR_CELLS = 3  # A column with so many wall cells bounds the floor.
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,18 +217,6 @@ def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
     small = np.bincount(parts.ravel()) <= most
     small[0] = False
     return small[parts]
-
-
-# A majority filter that never moves structure.
-#
-# Each cell looks at the 26 around it. A cell of furniture takes the class of most furniture cells
-# there, itself counted, where that is more than half of them. A cell that was seen to be empty is
-# filled with that class where 17 of its neighbours are furniture: a pit in a surface. A bump goes: a
-# cell that holds to one face alone, of a cell that holds to four others; ends of legs and rims stay.
-# Walls, floors, ceilings, windows and unseen cells stay as they are.
-
-FLAT_FACES = 4  # So many other faces has a cell within a sheet.
-PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
 
 
 def smoothed(labels: np.ndarray) -> np.ndarray:

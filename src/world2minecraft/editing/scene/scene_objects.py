@@ -1,4 +1,4 @@
-"""Objects of a scene from what the stages give, and back."""
+"""Objects of a scene: their connected cells, and conversion from and to what the stages give."""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,8 +6,6 @@ import numpy as np
 
 from world2minecraft.core.types import ObjectInstance, Placement, SceneObject
 from world2minecraft.geometry.connected_components import label_components
-
-# Connected parts of cells, and boxes around them.
 
 Box = tuple[slice, slice, slice]
 

@@ -1,4 +1,13 @@
-"""Commands on all that is of one class: given another, or erased."""
+"""Commands on cells, chosen by a person or by class: paint, erase, fill, paste, relabel.
+
+A painted cell has full confidence and counts as observed. Its colour stays where it was occupied;
+elsewhere it takes the colour of the nearest cell of its class within half a metre, or black.
+
+Cells of an object class belong to an object of that class: each connected part of the painted cells
+to the one with which it shares most faces, the lowest id of a tie, or to none where it touches
+none. Cells of structure and erased cells belong to none. An object that loses its last cell is
+removed with its furniture; one that loses or gains some keeps its box and its furniture.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -22,19 +31,15 @@ from world2minecraft.editing.scene.scene_objects import (
     shifted,
 )
 
-# What cells become when they are painted, erased or filled, and whose they are then.
-#
-# A painted cell is sure and observed. Its colour stays where it was occupied; where it was not, it
-# takes the colour of the nearest cell of its class within half a metre, or none (black).
-#
-# Cells of an object class belong to an object of that class: each connected part of the painted
-# cells to the one that it shares most faces with, the lowest id of a tie; to none where it touches
-# none. Cells of structure and erased cells belong to none. An object that loses its last cell goes,
-# with its furniture; one that loses or gains some keeps its box and its furniture as they are.
-
 MAX_IDS = 1 << 16
 FEW = 16
 COLOUR_REACH_M = 0.5  # Paint and wood change from one end of a room to the other.
+Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
+Runs = Annotated[list[Run], Field(max_length=MAX_RUNS)]
+ClassId = Annotated[int, Field(ge=0, le=11)]
+EMPTY = 0
+Cell = tuple[int, int, int]
+OccupiedId = Annotated[int, Field(ge=1, le=11)]
 
 
 def planned_cells(
@@ -173,15 +178,6 @@ def _nearest_colours(draft: SceneDraft, cells: np.ndarray, class_id: int) -> np.
     return np.where(found[:, None], draft.colour[at], 0).astype(np.uint8)
 
 
-# Commands on cells that a person names: painted, erased, given another class, copied.
-
-Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
-Runs = Annotated[list[Run], Field(max_length=MAX_RUNS)]
-ClassId = Annotated[int, Field(ge=0, le=11)]
-EMPTY = 0
-Cell = tuple[int, int, int]
-
-
 class CellCommand(Command):
     """What commands on cells share: cells of ``locked`` classes stay as they are."""
 
@@ -318,9 +314,6 @@ def check_cell(draft: SceneDraft, cell: tuple[int, int, int]) -> None:
     """
     if not all(0 <= at < side for at, side in zip(cell, draft.shape, strict=True)):
         raise UsageError(f"cell {list(cell)} lies outside the grid of {list(draft.shape)} cells")
-
-
-OccupiedId = Annotated[int, Field(ge=1, le=11)]
 
 
 class RelabelClass(CellCommand):

@@ -18,6 +18,9 @@ from world2minecraft.furniture.layout_checks import (
 )
 from world2minecraft.geometry.planes import HorizontalPlane, find_horizontal_planes
 
+NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
 # The figures of the layout: what collides, lies outside, hangs in the air or got lost.
 
 
@@ -95,9 +98,6 @@ def confidence_facts(scene: FinishedScene) -> dict[str, Any]:
 def _area_m2(room: Layout) -> float:
     x, y = room.floor_polygon_m.T
     return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
-
-
-NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def scene_facts(scene: FinishedScene) -> dict[str, Any]:

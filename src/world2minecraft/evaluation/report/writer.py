@@ -30,10 +30,8 @@ from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.rendering.preview import plan_view, preview
 
 # The report of a run without photos: a plan's, or several rooms joined.
-#
 # There is no evidence to compare with, so it shows what was built, what is in it, and how it came
 # about. ``report.html``, ``report.json`` and ``preview.png`` are written, as of any run.
-
 PLAN_PX = 720
 
 

@@ -35,12 +35,12 @@ from world2minecraft.rendering.scene_tables import FACE_NORMALS
 from world2minecraft.rendering.voxel_camera import VoxelScene, cast_voxels, prepare_voxels
 
 # Truth put in after fusion: true geometry, with the votes and colours of the real pictures.
-#
 # Each cell that a noise-free ray reached or crossed is occupied or free as the truth says. What the
 # cell is called, the 2D labels say, right or wrong: each pixel votes for the cell in which its ray
 # truly ends. So a labeller that is given this evidence shows what geometry alone still costs.
-
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
+
+OWN_CELLS = "cells"
 
 
 @dataclass(eq=False)
@@ -169,9 +169,6 @@ def _fill(sums: _Sums, occupied: np.ndarray) -> None:
     at = np.flatnonzero(bare.reshape(-1))
     for values in (sums.votes, sums.colour, sums.hits):
         values[at] = values[from_flat]
-
-
-OWN_CELLS = "cells"
 
 
 def put_true_labels(out: Path, room: TrueRoom) -> None:

@@ -14,7 +14,6 @@ from world2minecraft.evaluation.scoring.used_frames import UsedFrame, common_mov
 from world2minecraft.formats.scan import read_poses
 
 # How far an estimated room frame is off, told apart from errors of occupancy.
-
 STRAIGHT_DEG = 10.0  # A wall of the truth that runs along an axis of the estimated frame.
 
 

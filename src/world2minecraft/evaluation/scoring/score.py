@@ -42,8 +42,12 @@ from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.scene import Scene, read_scene
 
 # How much of the true room stands in the blocks of the world that was built.
-
 NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
+
+HOW = (
+    "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "
+    "by SSCNet's rule (4 of 64 sub-cells). Objects match within 0.3 m."
+)
 
 
 def world_facts(out: Path, true_labels: np.ndarray, reached: Reached) -> dict[str, Any]:
@@ -79,12 +83,6 @@ def class_at(scene: Scene, points_m: np.ndarray) -> np.ndarray:
     inside = np.asarray(((blocks >= 0) & (blocks < scene.semantic.shape)).all(axis=1))
     at = np.where(inside[:, None], blocks, 0).astype(np.int64)
     return np.where(inside, scene.semantic[tuple(at.T)], 0)
-
-
-HOW = (
-    "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "
-    "by SSCNet's rule (4 of 64 sub-cells). Objects match within 0.3 m."
-)
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,6 +37,9 @@ from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.stages import LATER_STEPS
 
+AFTER = ("alignment", "fusion", "labels", "instances", "templates")
+
+
 # The parameters that a run was made with, read back from its ``manifest.json``.
 
 
@@ -65,9 +68,6 @@ def _restored(default: Any, stated: dict[str, Any]) -> Any:
                 value = tuple(value)
             changes[entry.name] = value
     return replace(default, **changes)
-
-
-AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 
 
 @dataclass(eq=False)

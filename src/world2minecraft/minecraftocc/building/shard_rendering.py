@@ -34,7 +34,7 @@ from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 from world2minecraft.minecraftocc.types import OccSample, SceneVoxels
 from world2minecraft.rendering import BlockScene, LookLight, prepare_scene, render_volume
-from world2minecraft.rendering.presentation.shot_frames import exposed
+from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
 from world2minecraft.rendering.views import Shot
 
 COLOUR = ("colour", "depth")
@@ -132,7 +132,7 @@ def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
     light = LookLight(hour=facts.hour)
     plain = prepare_scene(volume)
     shots = [Shot(view.camera, view.camera_to_room) for view in views]
-    scene = exposed(plain, light, shots) if recipe.pictures else plain
+    scene = with_common_exposure(plain, light, shots) if recipe.pictures else plain
     rule = recipe.region
     if recipe.is_block_cells:
         rule = replace(rule, voxel_m=facts.metres_per_block)

@@ -18,7 +18,7 @@ from threading import Thread
 from typing import Any
 
 from world2minecraft.core.errors import WorkerError
-from world2minecraft.rendering.batch.workers import sendable
+from world2minecraft.rendering.batch.workers import picklable_error
 
 MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
 PATIENCE_S = 5.0
@@ -105,11 +105,7 @@ def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
     try:
         return Done(order.number, order.task(order.item, tick))
     except Exception as error:
-        return Failed(sendable(error))
-
-
-
-
+        return Failed(picklable_error(error))
 
 
 @dataclass(eq=False)
@@ -214,12 +210,12 @@ class PoolEngine:
 def _started() -> _Hand:
     """Start a worker: a new interpreter on every system, so that all behave alike."""
     # Late: a worker reads this file too, and begins faster without the renderer.
-    from world2minecraft.rendering.batch.workers import deaf_to_interrupts  # noqa: PLC0415
+    from world2minecraft.rendering.batch.workers import ignore_interrupts  # noqa: PLC0415
 
     context = get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=serve, args=(theirs,), name="w2m-dataset", daemon=True)
-    with deaf_to_interrupts():
+    with ignore_interrupts():
         process.start()
     theirs.close()  # So that the pipe ends with the worker.
     return _Hand(process, ours)

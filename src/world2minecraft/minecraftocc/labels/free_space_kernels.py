@@ -9,7 +9,7 @@ it. What is left is tested pixel by pixel.
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.rendering.ray_caster.ray import steep
+from world2minecraft.rendering.ray_caster.ray import away_from_zero
 
 CROSSED_M = 0.001
 TILE = 8  # Pixels a side whose greatest depth is kept.
@@ -115,7 +115,7 @@ def crosses(place, lens, depth, u, v, i, j, k):
     begin = 0.0
     for axis in range(3):
         low = (i if axis == 0 else (j if axis == 1 else k)) - place[axis, 3]
-        d = steep(place[axis, 0] * x + place[axis, 1] * y + place[axis, 2])
+        d = away_from_zero(place[axis, 0] * x + place[axis, 1] * y + place[axis, 2])
         near, far = low / d, (low + 1.0) / d
         begin, end = max(begin, min(near, far)), min(end, max(near, far))
     return end - begin > CROSSED_M

@@ -14,15 +14,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.navigation.data.keyframes import MOST_FORWARD_M, Mark
+from world2minecraft.navigation.data.keyframes import MAX_FORWARD_M, KeyframeMark
 from world2minecraft.navigation.data.pictures import (
-    Album,
-    Pictured,
-    Shot,
-    is_nearly,
-    look_apart,
-    shows_something,
-    unlike,
+    EncodedPicture,
+    PictureStore,
+    StoredPicture,
+    are_distinguishable,
+    has_detail,
+    is_near_duplicate,
+    picture_difference,
 )
 from world2minecraft.navigation.values import Move, Stance
 from world2minecraft.navigation.walk_discretization import StepFunction
@@ -63,15 +63,15 @@ class DistractorSlot:
 
     kind: str
     nearer: bool
-    picture: Pictured | None = None
+    picture: StoredPicture | None = None
 
 
 class DistractorPicker:
     """Takes the wrong pictures of one question."""
 
-    def __init__(self, album: Album, now: Pictured, right: Pictured):
+    def __init__(self, album: PictureStore, now: StoredPicture, right: StoredPicture):
         self._album, self._now, self._right = album, now, right
-        self._limit = unlike(now, right)
+        self._limit = picture_difference(now, right)
 
     def filled(
         self, plan: Sequence[DistractorSlot], places: Sequence[tuple[str, Stance]], most_far: int
@@ -86,7 +86,7 @@ class DistractorPicker:
         looks = self._album.look([stance for _, stance in places])
         left: dict[bool, list[tuple[str, Stance]]] = {True: [], False: []}
         for place, look in zip(places, looks, strict=True):  # Small pictures say where to go.
-            left[unlike(self._now, look) < self._limit].append(place)
+            left[picture_difference(self._now, look) < self._limit].append(place)
         slots: list[DistractorSlot] = []
         for slot in plan:
             is_wanted = slot.nearer or most_far > 0
@@ -106,18 +106,20 @@ class DistractorPicker:
         for _ in range(min(MAX_TRIES, len(left))):
             kind, stance = left.pop(0)
             (shot,) = self._album.take([stance])
-            as_wanted = (unlike(self._now, shot) < self._limit) == near
+            as_wanted = (picture_difference(self._now, shot) < self._limit) == near
             if as_wanted and is_valid_choice(shot, self._now, others):
                 name = f"{self._right.image.removesuffix('.jpg')}_{kind}{len(slots)}.jpg"
                 return DistractorSlot(kind, near, self._album.write(name, stance, shot))
         return None
 
 
-def is_valid_choice(one: Pictured | Shot, now: Pictured, others: Sequence[Pictured]) -> bool:
+def is_valid_choice(
+    one: StoredPicture | EncodedPicture, now: StoredPicture, others: Sequence[StoredPicture]
+) -> bool:
     """Whether a picture is something to choose: not the present one, not one of the others."""
-    if not shows_something(one) or is_nearly(one, now):
+    if not has_detail(one) or is_near_duplicate(one, now):
         return False
-    return all(look_apart(one, other) for other in others)
+    return all(are_distinguishable(one, other) for other in others)
 
 
 RENDERED_KINDS = ("turned", "other_move", "mirror", "beside")
@@ -135,7 +137,7 @@ class DistractorSampler:
     walker: StepFunction
     metres_per_block: float
 
-    def places(self, kind: str, marks: Sequence[Mark], step: int) -> list[Stance]:
+    def places(self, kind: str, marks: Sequence[KeyframeMark], step: int) -> list[Stance]:
         """Return where pictures of a kind may be taken, none of them the right one's stance.
 
         Args:
@@ -154,16 +156,16 @@ class DistractorSampler:
         }[kind]()
         return [stance for stance in dict.fromkeys(found) if stance != right]
 
-    def _other_moves(self, mark: Mark) -> list[Stance]:
+    def _other_moves(self, mark: KeyframeMark) -> list[Stance]:
         found = []
         for move in (Move.LEFT, Move.RIGHT):
             if move != mark.move:
                 found += [self._after(mark.stance, [move] * count) for count in OTHER_TURNS]
         if mark.move != Move.FORWARD:
-            found += [self._ahead(mark.stance, length_m) for length_m in (0.5, MOST_FORWARD_M)]
+            found += [self._ahead(mark.stance, length_m) for length_m in (0.5, MAX_FORWARD_M)]
         return [stance for stance in found if stance is not None]
 
-    def _mirrored(self, marks: Sequence[Mark], step: int) -> list[Stance]:
+    def _mirrored(self, marks: Sequence[KeyframeMark], step: int) -> list[Stance]:
         found = []
         for first in range(max(0, step - MIRRORED_RUNS + 1), step + 1):
             moves = [mark.move for mark in marks[first : step + 1] for _ in range(mark.run)]

@@ -14,7 +14,7 @@ from pathlib import Path
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.engine import opened_engine
-from world2minecraft.navigation.data.planned_walks import Tourist
+from world2minecraft.navigation.data.planned_walks import TourPlanner
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.procgen.worlds import house_of, write_house
@@ -87,7 +87,7 @@ def _make(order: _Order, tick: Callable[[int], None]) -> None:
             if again:  # It was made right here.
                 shutil.rmtree(out)
             _make_room(out, kind, chance + again * MAX_SEEDS)
-            if Tourist(open_scene(out)).has_goals:
+            if TourPlanner(open_scene(out)).has_goals:
                 break
     tick(1)
 

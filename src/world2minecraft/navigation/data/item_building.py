@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.navigation.data.pictures import Pictured
-from world2minecraft.navigation.data.scene_items import MADE_BY, SceneWork
+from world2minecraft.navigation.data.pictures import StoredPicture
+from world2minecraft.navigation.data.scene_items import WALK_VERSION, SceneItems
 from world2minecraft.navigation.data.tasks import ViewQuestion, action_item, view_item
 from world2minecraft.navigation.values import LETTERS, Item, Trajectory
 
@@ -95,9 +95,9 @@ TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like a
 class _Pool:
     """The pictures of a split, by scene; each with its trajectory."""
 
-    by_scene: dict[str, list[tuple[str, Pictured]]]
+    by_scene: dict[str, list[tuple[str, StoredPicture]]]
 
-    def elsewhere(self, trajectory: Trajectory, rng: np.random.Generator) -> list[Pictured]:
+    def elsewhere(self, trajectory: Trajectory, rng: np.random.Generator) -> list[StoredPicture]:
         own = [
             one
             for name, one in self.by_scene[trajectory.scene_id]
@@ -105,7 +105,7 @@ class _Pool:
         ]
         return _drawn(own, rng)
 
-    def other_scene(self, trajectory: Trajectory, rng: np.random.Generator) -> list[Pictured]:
+    def other_scene(self, trajectory: Trajectory, rng: np.random.Generator) -> list[StoredPicture]:
         others = [name for name in sorted(self.by_scene) if name != trajectory.scene_id]
         if not others:
             return []
@@ -113,11 +113,11 @@ class _Pool:
         return _drawn([one for _, one in chosen], rng)
 
 
-def _drawn(pictures: Sequence[Pictured], rng: np.random.Generator) -> list[Pictured]:
+def _drawn(pictures: Sequence[StoredPicture], rng: np.random.Generator) -> list[StoredPicture]:
     return [pictures[n] for n in rng.permutation(len(pictures))[:TRIES]]
 
 
-def build_items(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
+def build_items(works: Sequence[SceneItems], seed: int = 0) -> list[Item]:
     """Return the items of scenes, those of a trajectory beside each other.
 
     Args:
@@ -142,7 +142,7 @@ def build_items(works: Sequence[SceneWork], seed: int = 0) -> list[Item]:
 
 
 def _views(
-    work: SceneWork,
+    work: SceneItems,
     trajectory: Trajectory,
     questions: dict[str, list[ViewQuestion]],
     pool: _Pool,
@@ -156,14 +156,14 @@ def _views(
             question, trajectory, work.spoken[name], work.pictures[name],
             pool.elsewhere(trajectory, rng), pool.other_scene(trajectory, rng),
             decks["next_view"].deal(), rng,
-            composition=work.composition, oracle_version=MADE_BY,
+            composition=work.composition, oracle_version=WALK_VERSION,
         )  # fmt: skip
         items += [item] if item is not None else []
     return items
 
 
 def _actions(
-    work: SceneWork,
+    work: SceneItems,
     trajectory: Trajectory,
     decks: dict[str, LetterBalancer],
     rng: np.random.Generator,
@@ -172,18 +172,18 @@ def _actions(
     return [
         action_item(
             trajectory, work.spoken[name], work.pictures[name], step, decks["next_action"].deal(),
-            rng, composition=work.composition, oracle_version=MADE_BY,
+            rng, composition=work.composition, oracle_version=WALK_VERSION,
         )
         for step in work.actions[name]
     ]  # fmt: skip
 
 
-def _splits(works: Sequence[SceneWork]) -> list[str]:
+def _splits(works: Sequence[SceneItems]) -> list[str]:
     return sorted({one.split for work in works for one in work.trajectories})
 
 
-def _pool(works: Sequence[SceneWork], split: str) -> _Pool:
-    by_scene: dict[str, list[tuple[str, Pictured]]] = {}
+def _pool(works: Sequence[SceneItems], split: str) -> _Pool:
+    by_scene: dict[str, list[tuple[str, StoredPicture]]] = {}
     for work in works:
         own = [
             (one.trajectory_id, picture)

@@ -21,14 +21,14 @@ ACTIONS = {
     Move.LEFT: "turn left",
     Move.RIGHT: "turn right",
 }
-CHUNK = 4  # So many next moves a keyframe tells: what agents are asked for at a time.
-MOST_FORWARD_M = 1.0  # A guess: the next picture still shows what this one does.
-ABOUT_DEG = 140.0  # Who turns farther turns around, by the left or by the right.
-MOST_TURN_DEG = 60.0  # Less than the width of a picture, for the same reason.
+CHUNK_MOVES = 4  # So many next moves a keyframe tells: what agents are asked for at a time.
+MAX_FORWARD_M = 1.0  # A guess: the next picture still shows what this one does.
+TURN_AROUND_DEG = 140.0  # Who turns farther turns around, by the left or by the right.
+MAX_TURN_DEG = 60.0  # Less than the width of a picture, for the same reason.
 
 
 @dataclass(frozen=True)
-class Mark:
+class KeyframeMark:
     """A keyframe before it has a picture: its place among the moves and what follows."""
 
     at: int  # of the moves: this many were made
@@ -43,7 +43,7 @@ class Mark:
         return ACTIONS[self.move]
 
 
-def marks_of(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list[Mark]:
+def find_keyframes(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list[KeyframeMark]:
     """Return the keyframes of a walk: its start, the end of each run, its end.
 
     Args:
@@ -52,14 +52,16 @@ def marks_of(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list[Mark]
         step_m: how far a step goes.
     """
     most = {
-        Move.FORWARD: max(1, round(MOST_FORWARD_M / step_m)),
-        Move.LEFT: max(1, int(MOST_TURN_DEG // move_set.turn_deg)),
+        Move.FORWARD: max(1, round(MAX_FORWARD_M / step_m)),
+        Move.LEFT: max(1, int(MAX_TURN_DEG // move_set.turn_deg)),
     }
     most[Move.RIGHT] = most[Move.LEFT]
     marks, at = [], 0
     for move, count in _runs(walk.moves):
-        for run in _shared(count, most.get(move, 1)):
-            marks.append(Mark(at, walk.stances[at], move, run, walk.moves[at : at + CHUNK]))
+        for run in _split_evenly(count, most.get(move, 1)):
+            marks.append(
+                KeyframeMark(at, walk.stances[at], move, run, walk.moves[at : at + CHUNK_MOVES])
+            )
             at += run
     return marks
 
@@ -70,13 +72,13 @@ def _runs(moves: Sequence[Move]) -> list[tuple[Move, int]]:
     return [(moves[part[0]], len(part)) for part in parts if len(part)]
 
 
-def _shared(count: int, most: int) -> list[int]:
+def _split_evenly(count: int, most: int) -> list[int]:
     """Share a run into nearly equal ones of at most ``most``."""
     parts = -(-count // most)
     return [count // parts + (n < count % parts) for n in range(parts)]
 
 
-def is_about_turn(marks: Sequence[Mark], step: int, turn_deg: float) -> bool:
+def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) -> bool:
     """Return whether a keyframe is a part of turning so far that either side would do.
 
     Args:
@@ -92,14 +94,14 @@ def is_about_turn(marks: Sequence[Mark], step: int, turn_deg: float) -> bool:
         first -= 1
     while last + 1 < len(marks) and marks[last + 1].move == move:
         last += 1
-    return sum(mark.run for mark in marks[first : last + 1]) * turn_deg > ABOUT_DEG
+    return sum(mark.run for mark in marks[first : last + 1]) * turn_deg > TURN_AROUND_DEG
 
 
-NOWHERE = "goes nowhere"
+NO_MOVEMENT = "goes nowhere"
 
 
 @dataclass(frozen=True)
-class ValidRule:
+class ValidityRule:
     """What a trajectory must be. Choices of ours; the paper says only "meaningful"."""
 
     least_keyframes: int = 4
@@ -111,8 +113,8 @@ class ValidRule:
     least_hash: int = 4  # bits of 64 by which a picture differs from the one before
 
 
-def fault_of_way(
-    marks: Sequence[Mark], path_m: float, apart_m: float, rule: ValidRule | None = None
+def path_fault(
+    marks: Sequence[KeyframeMark], path_m: float, apart_m: float, rule: ValidityRule | None = None
 ) -> str:
     """Return why a way is no trajectory; nothing where it is one.
 
@@ -122,9 +124,9 @@ def fault_of_way(
         apart_m: from its start to its end, on foot.
         rule: what a trajectory must be.
     """
-    how = rule or ValidRule()
+    how = rule or ValidityRule()
     if not any(mark.move == Move.FORWARD for mark in marks):
-        return NOWHERE
+        return NO_MOVEMENT
     if not how.least_m <= path_m <= how.most_m:
         return "too short" if path_m < how.least_m else "too long"
     if apart_m < how.least_apart_m:
@@ -134,8 +136,8 @@ def fault_of_way(
     return "too many keyframes" if len(marks) > how.most_keyframes else ""
 
 
-def fault_of_pictures(
-    means: Sequence[float], hashes: Sequence[int], rule: ValidRule | None = None
+def picture_fault(
+    means: Sequence[float], hashes: Sequence[int], rule: ValidityRule | None = None
 ) -> str:
     """Return why pictures make no trajectory; nothing where they do.
 
@@ -144,14 +146,14 @@ def fault_of_pictures(
         hashes: of each picture, as ``dhash`` gives them.
         rule: what a trajectory must be.
     """
-    how = rule or ValidRule()
+    how = rule or ValidityRule()
     if min(means, default=0.0) < how.least_mean:
         return "black picture"
     apart = [hash_distance(a, b) for a, b in pairwise(hashes)]
     return "twice the same picture" if min(apart, default=64) < how.least_hash else ""
 
 
-def path_m(marks: Sequence[Mark], blocks_per_metre: float) -> float:
+def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:
     """Return how long the way along keyframes is, metres."""
     feet = np.array([mark.stance.feet for mark in marks]) / blocks_per_metre
     return float(np.linalg.norm(np.diff(feet, axis=0), axis=1).sum())

@@ -28,7 +28,7 @@ def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class EncodedPicture:
     """A picture in memory with what tells it from others."""
 
     jpeg: bytes
@@ -39,7 +39,7 @@ class Shot:
     small: bytes  # its grey, uint8, ``COARSE_PX``
 
 
-def shot_of(colour: np.ndarray) -> Shot:
+def encode_picture(colour: np.ndarray) -> EncodedPicture:
     """Return a picture, uint8 [H, W, 3], as JPEG with its sum, mean and hash."""
     image = Image.fromarray(colour)
     buffer = io.BytesIO()
@@ -49,7 +49,7 @@ def shot_of(colour: np.ndarray) -> Shot:
     mean = float(np.asarray(grey, np.float64).mean())
     small = np.asarray(grey.resize(COARSE_PX, Image.Resampling.BOX))
     sum_ = hashlib.sha256(data).hexdigest()
-    return Shot(data, sum_, mean, dhash(grey), float(small.std()), small.tobytes())
+    return EncodedPicture(data, sum_, mean, dhash(grey), float(small.std()), small.tobytes())
 
 
 def dhash(image: Image.Image) -> int:
@@ -71,16 +71,16 @@ def hash_distance(one: int, other: int) -> int:
 
 
 NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
-LEAST_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
-SAME_HASH = 4  # Bits of 64 by which two pictures are told apart at all.
-LEAST_HASH = 6  # Bits of 64 by which a wrong choice differs from the right one.
+MIN_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
+DUPLICATE_HASH_BITS = 4  # Bits of 64 by which two pictures are told apart at all.
+MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right one.
 
 
-Taking = Callable[[Sequence[Stance]], list[Shot]]
+RenderViews = Callable[[Sequence[Stance]], list[EncodedPicture]]
 
 
 @dataclass(frozen=True)
-class Pictured:
+class StoredPicture:
     """A picture of a set: where it lies, where it was taken and what tells it from others."""
 
     image: str  # beside the records, POSIX
@@ -91,44 +91,50 @@ class Pictured:
     small: bytes  # 32x18 of its grey
 
 
-class Album:
+class PictureStore:
     """Takes pictures and writes them under a folder.
 
     ``take`` takes them as they are kept; ``look`` as small as will do to tell how like they are.
     """
 
-    def __init__(self, folder: Path, take: Taking, look: Taking):
+    def __init__(self, folder: Path, take: RenderViews, look: RenderViews):
         self._folder, self.take, self.look = folder, take, look
 
-    def write(self, name: str, stance: Stance, shot: Shot) -> Pictured:
+    def write(self, name: str, stance: Stance, shot: EncodedPicture) -> StoredPicture:
         """Write a picture. Raises OutputError."""
         write_bytes(self._folder / name, shot.jpeg)
-        return Pictured(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
+        return StoredPicture(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
 
 
-def are_apart(one: Stance, other: Stance, metres_per_block: float) -> bool:
+def show_different_views(one: Stance, other: Stance, metres_per_block: float) -> bool:
     """Return whether two stances of a scene show different things."""
     away_m = ((one.x - other.x) ** 2 + (one.y - other.y) ** 2 + (one.z - other.z) ** 2) ** 0.5
     turn_deg = abs(float(wrap_deg(one.yaw_deg - other.yaw_deg)))
     return away_m * metres_per_block >= NEAR_M or turn_deg >= NEAR_DEG
 
 
-def look_apart(one: Pictured | Shot, other: Pictured | Shot) -> bool:
+def are_distinguishable(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> bool:
     """Return whether two pictures differ enough to choose between them."""
-    return hash_distance(one.dhash, other.dhash) >= LEAST_HASH
+    return hash_distance(one.dhash, other.dhash) >= MIN_HASH_BITS
 
 
-def is_nearly(one: Pictured | Shot, other: Pictured | Shot) -> bool:
+def is_near_duplicate(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> bool:
     """Return whether two pictures are nearly the same."""
-    return hash_distance(one.dhash, other.dhash) < SAME_HASH
+    return hash_distance(one.dhash, other.dhash) < DUPLICATE_HASH_BITS
 
 
-def unlike(one: Pictured | Shot, other: Pictured | Shot) -> float:
+def picture_difference(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> float:
     """Return how far two pictures are apart, seen so small that only things count."""
     pair = [np.frombuffer(picture.small, np.uint8).astype(np.float32) for picture in (one, other)]
     return float(((pair[0] - pair[1]) ** 2).mean())
 
 
-def shows_something(one: Pictured | Shot) -> bool:
+def has_detail(one: StoredPicture | EncodedPicture) -> bool:
     """Return whether a picture is more than a bare wall."""
-    return one.detail >= LEAST_DETAIL
+    return one.detail >= MIN_DETAIL

@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m, shortest_path
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.language.landmark_names import told_apart
+from world2minecraft.navigation.language.landmark_names import unambiguous_landmarks
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, wrap_deg
@@ -25,9 +25,9 @@ SPOKEN_DEG = 35.0  # and a turn at the end that counts.
 AHEAD_M = 0.6  # One looks to where one will be.
 ELBOW_M, NARROW_COST = 0.5, 3.0  # One keeps so far from walls; at a wall a metre counts four.
 STOPS = 8  # Of a tour.
-LEAST_LEG_M = 1.6  # Nearer things are no next stop.
-HUNG_M = 1.2  # What hangs so high over the floor is nothing to find one's way by,
-LEAST_SIDE_M = 0.4  # and what is smaller is no goal.
+MIN_LEG_M = 1.6  # Nearer things are no next stop.
+MAX_HEIGHT_M = 1.2  # What hangs so high over the floor is nothing to find one's way by,
+MIN_SIDE_M = 0.4  # and what is smaller is no goal.
 PULL_M = 0.2  # A way is straightened where that leaves so much room.
 
 
@@ -44,7 +44,7 @@ class Tour:
         return self.targets[min(later)] if later else ""
 
 
-class Tourist:
+class TourPlanner:
     """Someone who knows a scene; makes tour after tour."""
 
     def __init__(self, scene: VlnScene):
@@ -68,7 +68,7 @@ class Tourist:
             landmark, places = self._goals[number]
             goal = int(rng.choice(places))
             path = shortest_path(self._graph, here, goal, self._weights)
-            if path is None or path.length_m < LEAST_LEG_M:
+            if path is None or path.length_m < MIN_LEG_M:
                 continue
             way = self._straightened(path.feet)
             facing = self._facing(way[-1], landmark)
@@ -161,8 +161,8 @@ def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
     """Return what one can go to, with the places before each that ways lead to."""
     main = set(scene.main_places.tolist())
     found = []
-    for landmark in standing(scene):
-        if landmark.size_m.max() < LEAST_SIDE_M:
+    for landmark in floor_landmarks(scene):
+        if landmark.size_m.max() < MIN_SIDE_M:
             continue
         places = sorted({scene.graph.nearest(goal) for goal in scene.goals_at(landmark)} & main)
         if places:
@@ -170,16 +170,16 @@ def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
     return found
 
 
-def standing(scene: VlnScene) -> list[Landmark]:
+def floor_landmarks(scene: VlnScene) -> list[Landmark]:
     """Return the landmarks that a person would find the way by: plain in name, not hung up high."""
     floor = scene.to_room_m(scene.graph.feet[scene.main_places])
     found = []
-    for one in told_apart(scene.landmarks):
+    for one in unambiguous_landmarks(scene.landmarks):
         under = floor[(floor[:, 2] < one.high_m[2]) & (floor[:, 2] > one.low_m[2] - 2.5)]
         if not len(under):
             continue
         nearest = np.hypot(*(under[:, :2] - one.center_m[:2]).T).argmin()
-        if one.low_m[2] - under[nearest, 2] <= HUNG_M:
+        if one.low_m[2] - under[nearest, 2] <= MAX_HEIGHT_M:
             found.append(one)
     return found
 

@@ -25,7 +25,7 @@ DECISION_S = 0.5  # and between an agent's decisions: a metre at most.
 ASIDE_M, HIGH_M = 0.4, 0.75  # A place of the floor is so near to where feet were said to be.
 
 
-def checked_at(text: str) -> At:
+def parse_at(text: str) -> At:
     """Return ``feet`` or ``eye``. Raises UsageError: it is neither."""
     if text not in ("feet", "eye"):
         raise UsageError(f"--at is feet or eye, not {text!r}")
@@ -65,10 +65,10 @@ def recorded_tours(
         [replace(one, tour_id=f"{scene.scene_id}_r{number:03d}", image="") for one in tour]
         for number, tour in enumerate(tours)
     ]
-    return [on_floor(scene, tour) for tour in named]
+    return [snap_to_floor(scene, tour) for tour in named]
 
 
-def on_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[StreamFrame]:
+def snap_to_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[StreamFrame]:
     """Return the frames whose feet are at a place where one can stand, set upon it.
 
     Who flies, swims or stands on a table is left out.
@@ -85,7 +85,7 @@ def on_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[StreamFrame
     ]
 
 
-def streams_of(paths: Sequence[str], scene_ids: Sequence[str]) -> dict[str, tuple[str, ...]]:
+def assign_streams(paths: Sequence[str], scene_ids: Sequence[str]) -> dict[str, tuple[str, ...]]:
     """Return the streams of each scene that has some.
 
     Raises:

@@ -19,8 +19,8 @@ from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
 )
-from world2minecraft.navigation.language.parsing import told_in
-from world2minecraft.navigation.language.rewriting import Ask, Rewriting, rewritten
+from world2minecraft.navigation.language.parsing import parse_instruction
+from world2minecraft.navigation.language.rewriting import Ask, Rewriting, rewrite
 from world2minecraft.navigation.records import (
     ABOUT,
     EPISODES,
@@ -66,7 +66,7 @@ def write_set(folder: str | Path, made: NavigationSet) -> None:
     write_items(place / ITEMS, made.items)
 
 
-def asked_by(made: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
+def select_instructions(made: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
     """Return a set whose items and episodes use the words of the first source that has some.
 
     The items of a walk use the words of several people in turn.
@@ -80,20 +80,20 @@ def asked_by(made: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet
     items = []
     for item in made.items:
         own = words.get(item.trajectory_id, ())
-        chosen = _chosen(own, item.instruction, order, turns[item.trajectory_id])
+        chosen = _choose(own, item.instruction, order, turns[item.trajectory_id])
         turns[item.trajectory_id] += 1
         items.append(replace(item, instruction=chosen))
     episodes = [
         replace(
             one,
-            instruction=_chosen(words.get(one.trajectory_id, ()), one.instruction, order, 0),
+            instruction=_choose(words.get(one.trajectory_id, ()), one.instruction, order, 0),
         )
         for one in made.episodes
     ]
     return replace(made, items=items, episodes=episodes)
 
 
-def annotated(made: NavigationSet, file: str | Path) -> NavigationSet:
+def add_annotations(made: NavigationSet, file: str | Path) -> NavigationSet:
     """Return a set whose walks have what people wrote of them too, and the things it names.
 
     Raises: as ``read_annotations`` and ``with_annotations``.
@@ -101,16 +101,16 @@ def annotated(made: NavigationSet, file: str | Path) -> NavigationSet:
     scene_of, told = {one.trajectory_id: one.scene_id for one in made.trajectories}, []
     for walk, one in read_annotations(file):
         names = made.names.get(scene_of.get(walk, ""), ())
-        told.append((walk, replace(one, landmarks=told_in(one.text, names).landmarks)))
+        told.append((walk, replace(one, landmarks=parse_instruction(one.text, names).landmarks)))
     return replace(made, trajectories=with_annotations(made.trajectories, told, str(file)))
 
 
 def annotate_set(folder: str | Path, file: str | Path) -> None:
-    """Add what people wrote to a set on disk, and ask by it. Raises as ``annotated``."""
-    write_set(folder, asked_by(annotated(read_set(folder), file)))
+    """Add what people wrote to a set on disk, and ask by it. Raises as ``add_annotations``."""
+    write_set(folder, select_instructions(add_annotations(read_set(folder), file)))
 
 
-def rewritten_set(
+def reword_set(
     made: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = silent
 ) -> tuple[NavigationSet, Counter[str]]:
     """Return a set with the program's words, as items use them, said again by a model.
@@ -139,7 +139,7 @@ def rewritten_set(
     progress("words", 0, len(asked))
     added: dict[str, list[Instruction]] = {}
     outcomes, failures = Counter[str](), list[ServerError]()
-    again = partial(_again, made=made, ask=ask, model=model)
+    again = partial(_reword_one, made=made, ask=ask, model=model)
     with ThreadPoolExecutor(max(1, jobs)) as pool:
         for number, ((walk, _), (told, error)) in enumerate(
             zip(asked, pool.map(again, asked), strict=True), 1
@@ -158,12 +158,12 @@ def rewritten_set(
     return replace(made, trajectories=trajectories), outcomes
 
 
-def _again(
+def _reword_one(
     one: tuple[Trajectory, Instruction], made: NavigationSet, ask: Ask, model: str
 ) -> tuple[Rewriting, ServerError | None]:
     walk, words = one
     try:
-        return rewritten(words, made.names.get(walk.scene_id, ()), ask, model), None
+        return rewrite(words, made.names.get(walk.scene_id, ()), ask, model), None
     except BudgetError:
         return Rewriting(None, NO_BUDGET), None
     except ServerError as error:
@@ -177,7 +177,7 @@ def _levels_in_use(made: NavigationSet) -> dict[str, set[str]]:
     return levels
 
 
-def _chosen(
+def _choose(
     words: Sequence[Instruction], now: Instruction, order: Sequence[str], turn: int
 ) -> Instruction:
     """Return the words to use in place of those of now: of their level where there are such."""

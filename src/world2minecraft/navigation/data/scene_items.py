@@ -10,9 +10,15 @@ import numpy as np
 
 from world2minecraft.core.types import Camera
 from world2minecraft.navigation.data.distractors import DistractorSampler, RankBalancer
-from world2minecraft.navigation.data.keyframes import fault_of_pictures
-from world2minecraft.navigation.data.pictures import Album, Pictured, Shot, shot_of, vln_camera
-from world2minecraft.navigation.data.planned_walks import Tourist
+from world2minecraft.navigation.data.keyframes import picture_fault
+from world2minecraft.navigation.data.pictures import (
+    EncodedPicture,
+    PictureStore,
+    StoredPicture,
+    encode_picture,
+    vln_camera,
+)
+from world2minecraft.navigation.data.planned_walks import TourPlanner
 from world2minecraft.navigation.data.splits import split_of_tour
 from world2minecraft.navigation.data.tasks import (
     GRADE_SHARES,
@@ -22,7 +28,7 @@ from world2minecraft.navigation.data.tasks import (
     view_question,
     view_steps,
 )
-from world2minecraft.navigation.data.trajectories import Candidate, Maker
+from world2minecraft.navigation.data.trajectories import Candidate, TrajectoryBuilder
 from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.oracle import ORACLE_VERSION, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
@@ -44,17 +50,17 @@ from world2minecraft.navigation.walk_discretization import (
 )
 from world2minecraft.navigation.walk_stream import StreamFrame
 
-Tick = Callable[[int], None]
+WalkCallback = Callable[[int], None]
 """Told how many walks more there are."""
 
-MADE_BY = f"{DISCRETIZATION_VERSION}+{ORACLE_VERSION}"
-LOOK_PX = (64, 36)  # Of pictures that are only to tell how like they are.
-MOST_RECORDED = 100_000  # Walks of one scene.
-MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
+WALK_VERSION = f"{DISCRETIZATION_VERSION}+{ORACLE_VERSION}"
+PREVIEW_PX = (64, 36)  # Of pictures that are only to tell how like they are.
+MAX_RECORDED_WALKS = 100_000  # Walks of one scene.
+MAX_TOURS = 60  # A scene that gives too little in so many gives no more.
 
 
 @dataclass(frozen=True)
-class WorkRule:
+class SceneRule:
     """How a scene is worked. ``levels`` are the shares of goal, route and landmark."""
 
     trajectories: int = 24
@@ -67,7 +73,7 @@ class WorkRule:
 
 
 @dataclass
-class SceneWork:
+class SceneItems:
     """What came of a scene. Questions and pictures are by the trajectory's id."""
 
     scene_id: str
@@ -76,7 +82,7 @@ class SceneWork:
     names: tuple[str, ...] = ()  # of its landmarks
     trajectories: list[Trajectory] = field(default_factory=list)
     spoken: dict[str, Instruction] = field(default_factory=dict)  # the one that items ask by
-    pictures: dict[str, list[Pictured]] = field(default_factory=dict)
+    pictures: dict[str, list[StoredPicture]] = field(default_factory=dict)
     views: list[ViewQuestion] = field(default_factory=list)
     actions: dict[str, list[int]] = field(default_factory=dict)
     episodes: list[Episode] = field(default_factory=list)
@@ -84,12 +90,12 @@ class SceneWork:
     tours: int = 0
 
 
-def scene_walker(scene: VlnScene, move_set: MoveSet) -> StepFunction:
+def scene_step_function(scene: VlnScene, move_set: MoveSet) -> StepFunction:
     """Return the physics of a scene as discretising wants it."""
     return partial(apply_move, scene, move_set=move_set)
 
 
-def scene_guide(scene: VlnScene, move_set: MoveSet) -> PathPlanner:
+def scene_path_planner(scene: VlnScene, move_set: MoveSet) -> PathPlanner:
     """Return the oracle as discretising wants it."""
 
     def moves(stance: Stance, end: tuple[float, float, float]) -> tuple[Move, ...]:
@@ -99,15 +105,15 @@ def scene_guide(scene: VlnScene, move_set: MoveSet) -> PathPlanner:
     return moves
 
 
-def work_scene(
+def build_scene_items(
     scene: VlnScene,
     folder: Path,
     composition: str,
     scene_split: str,
-    rule: WorkRule,
-    tick: Tick = lambda _: None,
+    rule: SceneRule,
+    tick: WalkCallback = lambda _: None,
     recorded: Sequence[Sequence[StreamFrame]] = (),
-) -> SceneWork:
+) -> SceneItems:
     """Walk a scene until it has given as many trajectories as the rule asks for.
 
     Args:
@@ -123,12 +129,14 @@ def work_scene(
         OutputError: a picture cannot be written.
     """
     move_set = MOVE_SETS[rule.move_set]
-    walker = scene_walker(scene, move_set)
-    maker = Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed)
+    walker = scene_step_function(scene, move_set)
+    maker = TrajectoryBuilder(
+        scene, move_set, walker, scene_path_planner(scene, move_set), rule.seed
+    )
     names = tuple(sorted(one.name for one in scene.landmarks))
-    work = SceneWork(scene.scene_id, composition, scene.metres_per_block, names)
-    crew = _Crew(scene, folder, scene_split, rule, walker, work)
-    most = MOST_RECORDED if recorded else rule.trajectories
+    work = SceneItems(scene.scene_id, composition, scene.metres_per_block, names)
+    crew = _TrajectoryRecorder(scene, folder, scene_split, rule, walker, work)
+    most = MAX_RECORDED_WALKS if recorded else rule.trajectories
     for frames, target_at, rng in _recorded(recorded, rule) if recorded else _tours(scene, rule):
         work.tours += 1
         for candidate in maker.candidates(frames, target_at):
@@ -141,27 +149,27 @@ def work_scene(
     return work
 
 
-Toured = tuple[Sequence[StreamFrame], Callable[[float], str] | None, np.random.Generator]
+TourInput = tuple[Sequence[StreamFrame], Callable[[float], str] | None, np.random.Generator]
 """Frames, what was being gone to at a time, and the tour's chances."""
 
 
-def _tours(scene: VlnScene, rule: WorkRule) -> Iterator[Toured]:
+def _tours(scene: VlnScene, rule: SceneRule) -> Iterator[TourInput]:
     """Tour a scene again and again."""
-    tourist = Tourist(scene)
-    for number in range(MOST_TOURS if tourist.has_goals else 0):
+    tourist = TourPlanner(scene)
+    for number in range(MAX_TOURS if tourist.has_goals else 0):
         tour_id = f"{scene.scene_id}_t{number:02d}"
         rng = np.random.default_rng([rule.seed, *tour_id.encode()])
         tour = tourist.tour(tour_id, rng)
         yield tour.frames, tour.target_at, rng
 
 
-def _recorded(tours: Sequence[Sequence[StreamFrame]], rule: WorkRule) -> Iterator[Toured]:
+def _recorded(tours: Sequence[Sequence[StreamFrame]], rule: SceneRule) -> Iterator[TourInput]:
     for frames in tours:
         if frames:
             yield frames, None, np.random.default_rng([rule.seed, *frames[0].tour_id.encode()])
 
 
-class _Crew:
+class _TrajectoryRecorder:
     """Takes the pictures of candidates and makes trajectories of those that show something."""
 
     def __init__(
@@ -169,27 +177,29 @@ class _Crew:
         scene: VlnScene,
         folder: Path,
         scene_split: str,
-        rule: WorkRule,
+        rule: SceneRule,
         walker: StepFunction,
-        work: SceneWork,
+        work: SceneItems,
     ):
         self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work
-        kept, small = vln_camera(*rule.size_px), vln_camera(*LOOK_PX)
-        self._album = Album(folder, partial(_taken, scene, kept), partial(_taken, scene, small))
+        kept, small = vln_camera(*rule.size_px), vln_camera(*PREVIEW_PX)
+        self._album = PictureStore(
+            folder, partial(_render, scene, kept), partial(_render, scene, small)
+        )
         self._ranks = RankBalancer(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
         self._scout = DistractorSampler(walker, scene.metres_per_block)
 
     def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
         """Add a candidate with its questions, or count why it is none; return how many it is."""
         shots = self._album.take([mark.stance for mark in candidate.marks])
-        fault = fault_of_pictures([one.mean for one in shots], [one.dhash for one in shots])
+        fault = picture_fault([one.mean for one in shots], [one.dhash for one in shots])
         if fault:
             self._work.refused[fault] += 1
             return 0
         split = split_of_tour(candidate.tour_id, self._split, self._rule.seed)
         pictures = self._written(candidate, shots)
         trajectory = _trajectory(self._scene, candidate, pictures, split)
-        spoken = _spoken(candidate.instructions, self._rule.levels, rng)
+        spoken = _choose_instruction(candidate.instructions, self._rule.levels, rng)
         work, name = self._work, candidate.trajectory_id
         work.trajectories.append(trajectory)
         work.pictures[name], work.spoken[name] = pictures, spoken
@@ -199,7 +209,9 @@ class _Crew:
         work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
         return 1
 
-    def _written(self, candidate: Candidate, shots: Sequence[Shot]) -> list[Pictured]:
+    def _written(
+        self, candidate: Candidate, shots: Sequence[EncodedPicture]
+    ) -> list[StoredPicture]:
         folder = f"images/{self._scene.scene_id}/{candidate.trajectory_id}"
         return [
             self._album.write(f"{folder}/{n:03d}.jpg", mark.stance, shot)
@@ -209,7 +221,7 @@ class _Crew:
     def _views(
         self,
         candidate: Candidate,
-        pictures: Sequence[Pictured],
+        pictures: Sequence[StoredPicture],
         spoken: Instruction,
         rng: np.random.Generator,
     ) -> list[ViewQuestion]:
@@ -228,15 +240,15 @@ class _Crew:
         ]  # fmt: skip
 
 
-def _taken(scene: VlnScene, camera: Camera, stances: Sequence[Stance]) -> list[Shot]:
+def _render(scene: VlnScene, camera: Camera, stances: Sequence[Stance]) -> list[EncodedPicture]:
     return [
-        shot_of(np.asarray(scene.picture(stance, camera, outputs=("colour",)).colour))
+        encode_picture(np.asarray(scene.picture(stance, camera, outputs=("colour",)).colour))
         for stance in stances
     ]
 
 
 def _trajectory(
-    scene: VlnScene, candidate: Candidate, pictures: Sequence[Pictured], split: str
+    scene: VlnScene, candidate: Candidate, pictures: Sequence[StoredPicture], split: str
 ) -> Trajectory:
     keyframes = tuple(
         Keyframe(one.image, mark.stance, mark.action, mark.chunk, one.sha256)
@@ -248,7 +260,7 @@ def _trajectory(
     )  # fmt: skip
 
 
-def _spoken(
+def _choose_instruction(
     instructions: Sequence[Instruction],
     levels: tuple[float, float, float],
     rng: np.random.Generator,
@@ -259,7 +271,7 @@ def _spoken(
 
 
 def _episode(
-    scene: VlnScene, candidate: Candidate, spoken: Instruction, split: str, rule: WorkRule
+    scene: VlnScene, candidate: Candidate, spoken: Instruction, split: str, rule: SceneRule
 ) -> Episode:
     """Return the episode: to the end of the way, or anywhere before what alone is named."""
     end = candidate.walk.stances[-1].feet
@@ -269,5 +281,5 @@ def _episode(
     return Episode(
         candidate.trajectory_id, scene.path, scene.scene_id, candidate.walk.stances[0], goals,
         name, spoken, rule.move_set, candidate.walk.moves, candidate.walk.stances,
-        candidate.trajectory_id, split, oracle_version=MADE_BY,
+        candidate.trajectory_id, split, oracle_version=WALK_VERSION,
     )  # fmt: skip

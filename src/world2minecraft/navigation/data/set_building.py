@@ -25,18 +25,18 @@ from world2minecraft.navigation.data.item_building import (
     build_items,
     cut_to_paper_size,
 )
-from world2minecraft.navigation.data.recorded_walks import At, recorded_tours, streams_of
+from world2minecraft.navigation.data.recorded_walks import At, assign_streams, recorded_tours
 from world2minecraft.navigation.data.scene_items import (
-    MADE_BY,
-    SceneWork,
-    Tick,
-    WorkRule,
-    work_scene,
+    WALK_VERSION,
+    SceneItems,
+    SceneRule,
+    WalkCallback,
+    build_scene_items,
 )
 from world2minecraft.navigation.data.splits import (
     UNSEEN_SHARE,
     Leaks,
-    leaks_of,
+    find_leaks,
     paper_splits,
     scene_splits,
     without_shared_pictures,
@@ -67,14 +67,14 @@ class SceneJob:
     folder: str  # of the set
     composition: str
     split: str
-    rule: WorkRule
+    rule: SceneRule
     streams: tuple[str, ...] = ()
     at: At = "eye"  # what streams tell that do not say it
 
 
 def run_scene_jobs(
     jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = silent
-) -> list[SceneWork]:
+) -> list[SceneItems]:
     """Return what comes of scenes, in their order. The largest ones are begun first.
 
     Args:
@@ -88,7 +88,7 @@ def run_scene_jobs(
     """
     first = sorted(range(len(jobs)), key=lambda n: (-jobs[n].rule.trajectories, n))
     wanted = sum(job.rule.trajectories for job in jobs)
-    walks, works = _WalkCounter(wanted, len(jobs), progress), dict[int, SceneWork]()
+    walks, works = _WalkCounter(wanted, len(jobs), progress), dict[int, SceneItems]()
     with opened_engine("pool", min(workers, len(jobs))) as engine:
         for place, work in engine.run(_run_job, [jobs[n] for n in first], walks.add):
             works[first[place]] = work
@@ -97,11 +97,13 @@ def run_scene_jobs(
     return [works[n] for n in range(len(jobs))]
 
 
-def _run_job(job: SceneJob, tick: Tick) -> SceneWork:
+def _run_job(job: SceneJob, tick: WalkCallback) -> SceneItems:
     """Work a scene: what processes are sent to do."""
     scene = open_scene(job.path)
     recorded = recorded_tours(scene, job.streams, job.at)
-    return work_scene(scene, Path(job.folder), job.composition, job.split, job.rule, tick, recorded)
+    return build_scene_items(
+        scene, Path(job.folder), job.composition, job.split, job.rule, tick, recorded
+    )
 
 
 class _WalkCounter:
@@ -146,7 +148,7 @@ class BuildRule:
     unseen_share: float = UNSEEN_SHARE
     streams: tuple[str, ...] = ()
     at: At = "eye"
-    work: WorkRule = field(default_factory=WorkRule)
+    work: SceneRule = field(default_factory=SceneRule)
 
     def __post_init__(self):
         if self.composition not in COMPOSITIONS:
@@ -169,7 +171,7 @@ class BuiltSet:
     """What came of building."""
 
     items: list[Item]
-    works: list[SceneWork]
+    works: list[SceneItems]
     leaks: Leaks
     left_out: list[str]  # scenes that are not of the composition
 
@@ -214,7 +216,7 @@ def build_navigation_set(
     unseen = 0.0 if how.paper_split else how.unseen_share
     named = {scene_of[path]: kind for path, kind in wanted.items()}
     splits, walks = scene_splits(named, how.work.seed, unseen), how.walks_of(named)
-    streams = streams_of(how.streams, list(named))
+    streams = assign_streams(how.streams, list(named))
     jobs = [
         SceneJob(
             path, str(out), kind, splits[scene_of[path]],
@@ -234,10 +236,10 @@ def build_navigation_set(
             "ones, or have some made: --rooms 3"
         )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
-    return BuiltSet(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
+    return BuiltSet(items, works, find_leaks(items), [path for path in kinds if path not in wanted])
 
 
-def _split_as_the_paper(works: Sequence[SceneWork], seed: int) -> None:
+def _split_as_the_paper(works: Sequence[SceneItems], seed: int) -> None:
     """Put walks and episodes of each composition into the paper's splits."""
     for kind in {work.composition for work in works}:
         own = [work for work in works if work.composition == kind]
@@ -262,7 +264,7 @@ def _names(paths: Sequence[str]) -> dict[str, str]:
 def _write(
     out: Path,
     how: BuildRule,
-    works: Sequence[SceneWork],
+    works: Sequence[SceneItems],
     items: Sequence[Item],
     splits: Mapping[str, str],
     paths: Mapping[str, str],
@@ -273,7 +275,7 @@ def _write(
     about: dict[str, Any] = {
         "format": "minecraftvln-1",
         "version": __version__,
-        "oracle_version": MADE_BY,
+        "oracle_version": WALK_VERSION,
         "composition": how.composition,
         "rule": asdict(how.work),
         "streams": list(how.streams),

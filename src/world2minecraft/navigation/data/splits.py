@@ -110,7 +110,7 @@ class Leaks:
         return not (self.images or self.scenes or self.trajectories)
 
 
-def leaks_of(items: Sequence[Item]) -> Leaks:
+def find_leaks(items: Sequence[Item]) -> Leaks:
     """Return what the items of train share with those that are scored on."""
     train = [item for item in items if item.split == "train"]
     held = [item for item in items if item.split != "train"]

@@ -79,7 +79,7 @@ class SetStatistics:
     scenes: dict[str, int]  # how many, by part
 
 
-def statistics_of(items: Sequence[Item]) -> SetStatistics:
+def compute_statistics(items: Sequence[Item]) -> SetStatistics:
     """Return the figures of items."""
     characters, words, splits = {}, {}, {}
     for task in TASKS:
@@ -155,18 +155,18 @@ def _splits(statistics: SetStatistics) -> list[str]:
 def _balance(statistics: SetStatistics) -> list[str]:
     lines = []
     for task in TASKS[::-1]:
-        told = _counted(statistics.letters[task])
+        told = _counts_text(statistics.letters[task])
         p = statistics.letter_p[task]
         lines.append(f"{_TITLES[task] + ' answers':28}{told}  (even by chance: p = {p:.2f})")
-    lines.append(f"{'right actions':28}{_counted(statistics.actions)}")
-    lines.append(f"{'wrong pictures':28}{_counted(statistics.kinds)}")
-    lines.append(f"{'grades':28}{_counted(statistics.grades)}")
-    lines.append(f"{'nearer than the right one':28}{_counted(statistics.ranks)}")
-    lines.append(f"{'levels of instructions':28}{_counted(statistics.levels)}")
+    lines.append(f"{'right actions':28}{_counts_text(statistics.actions)}")
+    lines.append(f"{'wrong pictures':28}{_counts_text(statistics.kinds)}")
+    lines.append(f"{'grades':28}{_counts_text(statistics.grades)}")
+    lines.append(f"{'nearer than the right one':28}{_counts_text(statistics.ranks)}")
+    lines.append(f"{'levels of instructions':28}{_counts_text(statistics.levels)}")
     return lines
 
 
-def _counted(counts: Mapping[str, int]) -> str:
+def _counts_text(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{name or '-'} {counts[name]:,}" for name in sorted(counts)) or "none"
 
 
@@ -179,7 +179,9 @@ def _leaks(leaks: Leaks) -> list[str]:
     return [f"{word:28}{told}"]
 
 
-def figures(statistics: SetStatistics, leaks: Leaks, rows: Sequence[BaselineRow]) -> dict[str, Any]:
+def statistics_json(
+    statistics: SetStatistics, leaks: Leaks, rows: Sequence[BaselineRow]
+) -> dict[str, Any]:
     """Return every figure as JSON has it."""
     named = {
         name: {f"{task} {part}": asdict(own) for (task, part), own in table.items()}

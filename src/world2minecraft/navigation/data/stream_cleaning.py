@@ -13,7 +13,7 @@ from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
 
 @dataclass(frozen=True)
-class CleanRule:
+class SegmentationRule:
     """When a walk ends. Guesses, checked on walks of ours: a sprint is 5.6 m/s, a blink 0.1 s."""
 
     gap_s: float = 1.0  # Longer between two frames, and something is missing,
@@ -27,8 +27,8 @@ class CleanRule:
     pitch_deg: float = 60.0  # Who looks at the feet or the sky sees no way.
 
 
-def segments_of(
-    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: CleanRule | None = None
+def split_into_walks(
+    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule | None = None
 ) -> list[list[StreamFrame]]:
     """Return the walks of a stream, in its order; frames that look up or down are dropped.
 
@@ -37,7 +37,7 @@ def segments_of(
         blocks_per_metre: of the world.
         rule: when a walk ends.
     """
-    how = rule or CleanRule()
+    how = rule or SegmentationRule()
     level = [frame for frame in frames if abs(frame.stance.pitch_deg) <= how.pitch_deg]
     segments = []
     for run in _unbroken(level, blocks_per_metre, how):
@@ -46,7 +46,7 @@ def segments_of(
 
 
 def _unbroken(
-    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: CleanRule
+    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
 ) -> list[list[StreamFrame]]:
     """Cut where the place, the time, the tour or the scene jumps."""
     if not frames:
@@ -69,7 +69,7 @@ def _unbroken(
 
 
 def _between_stops(
-    run: list[StreamFrame], blocks_per_metre: float, rule: CleanRule
+    run: list[StreamFrame], blocks_per_metre: float, rule: SegmentationRule
 ) -> list[list[StreamFrame]]:
     """Cut where one stood still or looked around: a walk ends as that begins."""
     places = feet_m(run, blocks_per_metre)[:, [0, 2]]
@@ -90,7 +90,7 @@ def _between_stops(
 
 
 def _stop_from(
-    first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray, rule: CleanRule
+    first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray, rule: SegmentationRule
 ) -> int | None:
     """Return the last frame of the stop that begins at a frame; None where none does."""
     still = _stay(first, places, rule.still_m)

@@ -27,13 +27,13 @@ from world2minecraft.navigation.data.distractors import (
     RankBalancer,
     is_valid_choice,
 )
-from world2minecraft.navigation.data.keyframes import ACTIONS, Mark
+from world2minecraft.navigation.data.keyframes import ACTIONS, KeyframeMark
 from world2minecraft.navigation.data.pictures import (
-    Album,
-    Pictured,
-    are_apart,
-    shows_something,
-    unlike,
+    PictureStore,
+    StoredPicture,
+    has_detail,
+    picture_difference,
+    show_different_views,
 )
 from world2minecraft.navigation.values import LETTERS, Instruction, Item, Move, Option, Trajectory
 
@@ -44,7 +44,10 @@ from world2minecraft.navigation.values import LETTERS, Instruction, Item, Move, 
 
 
 def action_steps(
-    marks: Sequence[Mark], clear: Sequence[int], rng: np.random.Generator, balanced: bool = True
+    marks: Sequence[KeyframeMark],
+    clear: Sequence[int],
+    rng: np.random.Generator,
+    balanced: bool = True,
 ) -> list[int]:
     """Return the keyframes to ask about, rising.
 
@@ -65,7 +68,7 @@ def action_steps(
 def action_item(
     trajectory: Trajectory,
     instruction: Instruction,
-    pictures: Sequence[Pictured],
+    pictures: Sequence[StoredPicture],
     step: int,
     letter: str,
     rng: np.random.Generator,
@@ -110,20 +113,20 @@ def action_item(
 
 HISTORY = 3  # Pictures that are shown; the last is the current one.
 # What is taken for a question, and what serves where nothing is; of a grade.
-TAKEN_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
+RENDERED_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
 FOUND_OF = {
     "easy": ("elsewhere", "elsewhere", "other_scene"),
     "medium": ("elsewhere", "temporal", "elsewhere"),
     "hard": ("temporal", "temporal", "elsewhere"),
 }
-MOST_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
-GRADES = tuple(TAKEN_OF)
+MAX_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
+GRADES = tuple(RENDERED_OF)
 GRADE_SHARES = (
     0.1,
     0.45,
     0.45,
 )  # In easy ones the nearest is mostly right.
-NEAR_STEPS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
+TEMPORAL_OFFSETS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,7 @@ class ViewQuestion:
     slots: tuple[DistractorSlot, ...]
 
 
-def view_steps(clear: Sequence[int], pictures: Sequence[Pictured]) -> list[int]:
+def view_steps(clear: Sequence[int], pictures: Sequence[StoredPicture]) -> list[int]:
     """Return the steps that have three pictures up to them and one after, of those that are clear.
 
     Where one looks at a bare wall, or would next, nothing is asked.
@@ -146,16 +149,16 @@ def view_steps(clear: Sequence[int], pictures: Sequence[Pictured]) -> list[int]:
         pictures: of the keyframes.
     """
     fit = [step for step in clear if HISTORY - 1 <= step < len(pictures) - 1]
-    return [step for step in fit if all(map(shows_something, pictures[step : step + 2]))]
+    return [step for step in fit if all(map(has_detail, pictures[step : step + 2]))]
 
 
 def view_question(
     trajectory_id: str,
-    marks: Sequence[Mark],
-    pictures: Sequence[Pictured],
+    marks: Sequence[KeyframeMark],
+    pictures: Sequence[StoredPicture],
     step: int,
     grade: str,
-    album: Album,
+    album: PictureStore,
     scout: DistractorSampler,
     ranks: RankBalancer,
     rng: np.random.Generator,
@@ -176,13 +179,13 @@ def view_question(
     count, right = ranks.wanted(), pictures[step + 1]
     places = [
         (kind, stance)
-        for kind in TAKEN_OF[grade]
+        for kind in RENDERED_OF[grade]
         for stance in scout.places(kind, marks, step)
-        if are_apart(stance, right.stance, scout.metres_per_block)
+        if show_different_views(stance, right.stance, scout.metres_per_block)
     ]
     shuffled = [places[n] for n in rng.permutation(len(places))]
     plan = [DistractorSlot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
-    slots = DistractorPicker(album, pictures[step], right).filled(plan, shuffled, MOST_FAR[grade])
+    slots = DistractorPicker(album, pictures[step], right).filled(plan, shuffled, MAX_FAR[grade])
     if grade != "easy":  # Where no such picture could be taken another will do.
         slots = [slot if slot.picture else replace(slot, nearer=False) for slot in slots]
     ranks.came(sum(slot.nearer for slot in slots))
@@ -193,9 +196,9 @@ def view_item(
     question: ViewQuestion,
     trajectory: Trajectory,
     instruction: Instruction,
-    pictures: Sequence[Pictured],
-    elsewhere: Iterable[Pictured],
-    other_scene: Iterable[Pictured],
+    pictures: Sequence[StoredPicture],
+    elsewhere: Iterable[StoredPicture],
+    other_scene: Iterable[StoredPicture],
     letter: str,
     rng: np.random.Generator,
     *,
@@ -217,13 +220,13 @@ def view_item(
         oracle_version: of what made the moves.
     """
     step, now, right = question.step, pictures[question.step], pictures[question.step + 1]
-    near = [n for n in (step + away for away in NEAR_STEPS) if 0 <= n < len(pictures)]
+    near = [n for n in (step + away for away in TEMPORAL_OFFSETS) if 0 <= n < len(pictures)]
     supply = {
         "temporal": [pictures[near[n]] for n in rng.permutation(len(near))],
         "elsewhere": list(elsewhere),
         "other_scene": list(other_scene),
     }
-    wrong = _wrong(question, supply, now, right, trajectory.metres_per_block)
+    wrong = _choose_wrong(question, supply, now, right, trajectory.metres_per_block)
     if len(wrong) < CHOICES - 1:
         return None
     mixed = [wrong[n] for n in rng.permutation(len(wrong))]
@@ -235,7 +238,7 @@ def view_item(
     )
     history = pictures[step - HISTORY + 1 : step + 1]
     shown = [*history, *(one for _, one in mixed)]
-    rank = sum(unlike(now, one) < unlike(now, right) for _, one in wrong)
+    rank = sum(picture_difference(now, one) < picture_difference(now, right) for _, one in wrong)
     return Item(
         f"{trajectory.trajectory_id}_v{step:02d}", "next_view", trajectory.scene_id,
         trajectory.trajectory_id, step, instruction, tuple(one.image for one in history[:-1]),
@@ -249,16 +252,16 @@ def view_item(
     )  # fmt: skip
 
 
-def _wrong(
+def _choose_wrong(
     question: ViewQuestion,
-    supply: Mapping[str, Sequence[Pictured]],
-    now: Pictured,
-    right: Pictured,
+    supply: Mapping[str, Sequence[StoredPicture]],
+    now: StoredPicture,
+    right: StoredPicture,
     metres_per_block: float,
-) -> list[tuple[str, Pictured]]:
+) -> list[tuple[str, StoredPicture]]:
     """Return a picture of each kind; where one has none left, one of an easier kind."""
-    chosen: list[tuple[str, Pictured]] = []
-    limit = unlike(now, right)
+    chosen: list[tuple[str, StoredPicture]] = []
+    limit = picture_difference(now, right)
     for slot in question.slots:
         others = [right, *(one for _, one in chosen)]
         if slot.picture is not None and is_valid_choice(slot.picture, now, others):
@@ -268,9 +271,10 @@ def _wrong(
             fit = [
                 one
                 for one in supply.get(kind, ())
-                if kind == "other_scene" or are_apart(one.stance, right.stance, metres_per_block)
+                if kind == "other_scene"
+                or show_different_views(one.stance, right.stance, metres_per_block)
             ]
-            fit.sort(key=lambda one: (unlike(now, one) < limit) != slot.nearer)
+            fit.sort(key=lambda one: (picture_difference(now, one) < limit) != slot.nearer)
             found = next((one for one in fit if is_valid_choice(one, now, others)), None)
             if found is not None:
                 chosen.append((kind, found))

@@ -5,7 +5,7 @@
 ``steps`` tell what a recipe will do before it runs, ``contracts`` holds the loaders' rules.
 """
 
-from world2minecraft.navigation.exporters.exporting import FORMATS, Handoff, export_set
-from world2minecraft.navigation.exporters.options import HandoffRule
+from world2minecraft.navigation.exporters.options import ExportOptions
+from world2minecraft.navigation.exporters.set_export import FORMATS, ExportResult, export_set
 
-__all__ = ["FORMATS", "Handoff", "HandoffRule", "export_set"]
+__all__ = ["FORMATS", "ExportResult", "ExportOptions", "export_set"]

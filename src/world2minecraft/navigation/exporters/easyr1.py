@@ -20,16 +20,22 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.navigation.exporters.loader_checks import check_easyr1, parquet_modules
-from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written, held_out
-from world2minecraft.navigation.exporters.pictures import Pictures
-from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.options import (
+    TRAIN_SPLIT,
+    ExportedFile,
+    ExportOptions,
+    ItemGroup,
+    validation_group,
+)
+from world2minecraft.navigation.exporters.pictures import SetPictures
+from world2minecraft.navigation.exporters.recipes import read_recipe, render_recipe
 from world2minecraft.navigation.exporters.training_costs import (
     GRPO_BATCH,
     GRPO_EPOCHS,
     GRPO_ROLLOUTS,
     GrpoPlan,
+    check_longest,
     grpo_plan,
-    longest,
     row_tokens,
 )
 from world2minecraft.navigation.prompts import question_of
@@ -40,7 +46,7 @@ GPUS = 8  # The paper's node.
 ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memory at once.
 
 
-def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+def max_prompt_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
     """Return the most tokens that a prompt of a part can take.
 
     Raises:
@@ -48,24 +54,24 @@ def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
         InputError: a picture is not as it was.
     """
     parquet_modules("writing parquet")
-    form = verbatim("mc.jinja")
+    form = read_recipe("mc.jinja")
     lengths = (
         (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, form))
         for item in part.items
     )
-    return longest(lengths, PROMPT_TOKENS, "a prompt")
+    return check_longest(lengths, PROMPT_TOKENS, "a prompt")
 
 
 def write_easyr1(
     root: Path,
-    parts: Sequence[Part],
-    pictures: Pictures,
-    rule: HandoffRule,
+    parts: Sequence[ItemGroup],
+    pictures: SetPictures,
+    rule: ExportOptions,
     tokens: Sequence[int],
-) -> list[Written]:
+) -> list[ExportedFile]:
     """Write the parts for EasyR1 and return what was written.
 
-    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
+    ``tokens`` are those of ``max_prompt_tokens``, by part. Raises OutputError.
     """
     written = []
     for part, most in zip(parts, tokens, strict=True):
@@ -73,19 +79,19 @@ def write_easyr1(
         if rule.image_style == "paths":
             for name in (name for item in part.items for name in item.images):
                 pictures.copy(name, root)
-        recipe = Written(part.name, len(part.items))
-        if part.split == TRAIN:
-            recipe = _write_recipe(root, part, held_out(parts, part), rule)
+        recipe = ExportedFile(part.name, len(part.items))
+        if part.split == TRAIN_SPLIT:
+            recipe = _write_recipe(root, part, validation_group(parts, part), rule)
         written.append(
-            Written(part.name, recipe.rows, recipe.command, recipe.steps, most, recipe.notes)
+            ExportedFile(part.name, recipe.rows, recipe.command, recipe.steps, most, recipe.notes)
         )
-    write_text(root / "mc.jinja", verbatim("mc.jinja"))
+    write_text(root / "mc.jinja", read_recipe("mc.jinja"))
     write_text(root / "reward.py", _reward())
     check_easyr1(root, "." if rule.image_style == "paths" else None)
     return written
 
 
-def _parquet(part: Part, pictures: Pictures, rule: HandoffRule) -> bytes:
+def _parquet(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> bytes:
     pa, pq = parquet_modules("writing parquet")
     embedded = rule.image_style == "embedded"
     kind = pa.struct({"bytes": pa.binary(), "path": pa.string()}) if embedded else pa.string()
@@ -103,7 +109,7 @@ def _parquet(part: Part, pictures: Pictures, rule: HandoffRule) -> bytes:
     return buffer.getvalue()
 
 
-def _row(item: Item, pictures: Pictures | None) -> dict[str, Any]:
+def _row(item: Item, pictures: SetPictures | None) -> dict[str, Any]:
     asked = question_of(item)
     images: list[Any] = list(asked.images)
     if pictures is not None:
@@ -111,13 +117,17 @@ def _row(item: Item, pictures: Pictures | None) -> dict[str, Any]:
     return {"content": asked.text, "answer": asked.answer, "images": images, "id": item.item_id}
 
 
-def _write_recipe(root: Path, part: Part, val: Part | None, rule: HandoffRule) -> Written:
+def _write_recipe(
+    root: Path, part: ItemGroup, val: ItemGroup | None, rule: ExportOptions
+) -> ExportedFile:
     rows, gpus, file = len(part.items), rule.gpus or GPUS, f"{part.stem}_grpo.yaml"
     try:
         plan = grpo_plan(rows, gpus)
     except UsageError as error:  # The other parts may well do.
-        return Written(part.name, rows, notes=(f"{part.name}: has no recipe, because {error}",))
-    text = rendered(
+        return ExportedFile(
+            part.name, rows, notes=(f"{part.name}: has no recipe, because {error}",)
+        )
+    text = render_recipe(
         "easyr1_grpo.yaml",
         file=file,
         name=part.stem,
@@ -140,10 +150,10 @@ def _write_recipe(root: Path, part: Part, val: Part | None, rule: HandoffRule) -
     )
     write_text(root / file, text)
     command = f"python3 -m verl.trainer.main config={file}"
-    return Written(part.name, rows, command, plan.steps, notes=_notes(part, val, plan))
+    return ExportedFile(part.name, rows, command, plan.steps, notes=_notes(part, val, plan))
 
 
-def _notes(part: Part, val: Part | None, plan: GrpoPlan) -> tuple[str, ...]:
+def _notes(part: ItemGroup, val: ItemGroup | None, plan: GrpoPlan) -> tuple[str, ...]:
     notes = []
     if plan.batch < GRPO_BATCH:
         notes.append(

@@ -20,14 +20,19 @@ from typing import Any
 
 from world2minecraft.core.files import write_json, write_text
 from world2minecraft.navigation.exporters.loader_checks import check_llamafactory
-from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written
-from world2minecraft.navigation.exporters.pictures import Pictures
-from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.options import (
+    TRAIN_SPLIT,
+    ExportedFile,
+    ExportOptions,
+    ItemGroup,
+)
+from world2minecraft.navigation.exporters.pictures import SetPictures
+from world2minecraft.navigation.exporters.recipes import read_recipe, render_recipe
 from world2minecraft.navigation.exporters.training_costs import (
     SFT_ACCUMULATED,
     SFT_BATCH,
     SFT_EPOCHS,
-    longest,
+    check_longest,
     row_tokens,
     sft_steps,
 )
@@ -44,7 +49,7 @@ TAGS = {
 }
 
 
-def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+def max_row_tokens(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> int:
     """Return the most tokens that a row of a part can take.
 
     Raises:
@@ -54,29 +59,33 @@ def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
         (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE))
         for item in part.items
     )
-    return longest(lengths, CUTOFF, "cutoff_len")
+    return check_longest(lengths, CUTOFF, "cutoff_len")
 
 
 def write_llamafactory(
     root: Path,
-    parts: Sequence[Part],
-    pictures: Pictures,
-    rule: HandoffRule,
+    parts: Sequence[ItemGroup],
+    pictures: SetPictures,
+    rule: ExportOptions,
     tokens: Sequence[int],
-) -> list[Written]:
+) -> list[ExportedFile]:
     """Write the parts for LLaMA-Factory and return what was written.
 
-    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
+    ``tokens`` are those of ``max_row_tokens``, by part. Raises OutputError.
     """
     written = []
     for part, most in zip(parts, tokens, strict=True):
         _write_rows(root, part, pictures)
-        recipe = _write_recipe(root, part, rule) if part.split == TRAIN else Written("", 0)
+        recipe = (
+            _write_recipe(root, part, rule) if part.split == TRAIN_SPLIT else ExportedFile("", 0)
+        )
         written.append(
-            Written(part.name, len(part.items), recipe.command, recipe.steps, most, recipe.notes)
+            ExportedFile(
+                part.name, len(part.items), recipe.command, recipe.steps, most, recipe.notes
+            )
         )
     write_json(root / "dataset_info.json", {part.name: _entry(part) for part in parts})
-    write_text(root / "ds_z3.json", verbatim("ds_z3.json"))
+    write_text(root / "ds_z3.json", read_recipe("ds_z3.json"))
     check_llamafactory(root)
     return written
 
@@ -94,7 +103,7 @@ def row_of(item: Item) -> dict[str, Any]:
     }
 
 
-def rows_left_out(part: Part, rule: HandoffRule) -> tuple[str, ...]:
+def rows_left_out(part: ItemGroup, rule: ExportOptions) -> tuple[str, ...]:
     """Return a note where ``max_samples`` leaves rows of a part out."""
     left_out = len(part.items) - rule.max_samples
     if not rule.max_samples or left_out <= 0:
@@ -105,7 +114,7 @@ def rows_left_out(part: Part, rule: HandoffRule) -> tuple[str, ...]:
     )
 
 
-def _write_rows(root: Path, part: Part, pictures: Pictures) -> None:
+def _write_rows(root: Path, part: ItemGroup, pictures: SetPictures) -> None:
     rows = []
     for item in part.items:
         rows.append(json.dumps(row_of(item), ensure_ascii=False))
@@ -114,7 +123,7 @@ def _write_rows(root: Path, part: Part, pictures: Pictures) -> None:
     write_text(root / f"{part.name}.json", "[\n" + ",\n".join(rows) + "\n]\n")
 
 
-def _entry(part: Part) -> dict[str, Any]:
+def _entry(part: ItemGroup) -> dict[str, Any]:
     return {
         "file_name": f"{part.name}.json",
         "formatting": "sharegpt",
@@ -123,11 +132,11 @@ def _entry(part: Part) -> dict[str, Any]:
     }
 
 
-def _write_recipe(root: Path, part: Part, rule: HandoffRule) -> Written:
+def _write_recipe(root: Path, part: ItemGroup, rule: ExportOptions) -> ExportedFile:
     rows, gpus, file = len(part.items), rule.gpus or 1, f"{part.stem}_sft.yaml"
     steps = sft_steps(rows, rule.max_samples, gpus)
     used = min(rows, rule.max_samples) if rule.max_samples else rows
-    text = rendered(
+    text = render_recipe(
         "llamafactory_sft.yaml",
         file=file,
         rows=rows,
@@ -146,4 +155,4 @@ def _write_recipe(root: Path, part: Part, rule: HandoffRule) -> Written:
     )
     write_text(root / file, text)
     command = f"llamafactory-cli train {file}"
-    return Written(part.name, rows, command, steps, notes=rows_left_out(part, rule))
+    return ExportedFile(part.name, rows, command, steps, notes=rows_left_out(part, rule))

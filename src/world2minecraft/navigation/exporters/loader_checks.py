@@ -22,7 +22,7 @@ _TURNS = ("user", "assistant")
 Check = Callable[..., None]
 
 
-def _told(check: Check) -> Check:
+def _report_bad_rows(check: Check) -> Check:
     """Have a check name the folder, too, where a row lacks a column or holds another kind."""
 
     @wraps(check)
@@ -36,7 +36,7 @@ def _told(check: Check) -> Check:
     return checked
 
 
-@_told
+@_report_bad_rows
 def check_llamafactory(root: Path) -> None:
     """Check a folder by LLaMA-Factory's converter: turns that alternate, a picture for each mark.
 
@@ -57,7 +57,7 @@ def check_llamafactory(root: Path) -> None:
             _check_pictures(rows_path, number, text.count(IMAGE), row["images"], root)
 
 
-@_told
+@_report_bad_rows
 def check_easyr1(root: Path, image_dir: str | None) -> None:
     """Check a folder by EasyR1's loader: columns, a picture for each mark, a prompt to set it in.
 
@@ -86,7 +86,7 @@ def check_easyr1(root: Path, image_dir: str | None) -> None:
             _check_pictures(path, number, marks, names, root / image_dir if image_dir else None)
 
 
-@_told
+@_report_bad_rows
 def check_trl(root: Path) -> None:
     """Check a folder by what TRL asks: typed parts, a picture for each image part.
 

@@ -19,7 +19,7 @@ IMAGE_STYLES = ("paths", "embedded")
 
 
 @dataclass(frozen=True)
-class HandoffRule:
+class ExportOptions:
     """The choices of an export.
 
     tasks, compositions: those wanted; what a set does not hold is passed over. model: a name on
@@ -62,7 +62,7 @@ class HandoffRule:
 
 
 @dataclass(frozen=True)
-class Written:
+class ExportedFile:
     """One file of rows, and what the recipe beside it will do with them.
 
     ``tokens`` are the most that a row can take; ``steps`` of the optimizer, 0 where nothing
@@ -77,11 +77,11 @@ class Written:
     notes: tuple[str, ...] = ()
 
 
-TRAIN, HELD_OUT = "train", ("val_unseen", "val_seen")
+TRAIN_SPLIT, VALIDATION_SPLITS = "train", ("val_unseen", "val_seen")
 
 
 @dataclass(frozen=True)
-class Part:
+class ItemGroup:
     """The items of one task, composition and split, in the order of the rows."""
 
     task: str
@@ -100,7 +100,7 @@ class Part:
         return f"mcvln_{self.stem}_{self.split}"
 
 
-def parts_of(items: Iterable[Item], rule: HandoffRule) -> list[Part]:
+def group_items(items: Iterable[Item], rule: ExportOptions) -> list[ItemGroup]:
     """Return the parts that hold an item; ``combined`` only where there are both others.
 
     Raises:
@@ -122,7 +122,9 @@ def parts_of(items: Iterable[Item], rule: HandoffRule) -> list[Part]:
                     and composition in (item.composition, "combined")
                 ]
                 if chosen:
-                    parts.append(Part(task, composition, split, shuffled(chosen, rule.seed)))
+                    parts.append(
+                        ItemGroup(task, composition, split, shuffle_items(chosen, rule.seed))
+                    )
     if not parts:
         held = sorted({f"{item.composition} {item.task}" for item in every})
         raise UsageError(
@@ -132,13 +134,13 @@ def parts_of(items: Iterable[Item], rule: HandoffRule) -> list[Part]:
     return parts
 
 
-def held_out(parts: Sequence[Part], train: Part) -> Part | None:
+def validation_group(parts: Sequence[ItemGroup], train: ItemGroup) -> ItemGroup | None:
     """Return what a training part is to be validated on: scenes not seen, else ways not seen."""
     beside = {part.split: part for part in parts if part.stem == train.stem}
-    return next((beside[split] for split in HELD_OUT if split in beside), None)
+    return next((beside[split] for split in VALIDATION_SPLITS if split in beside), None)
 
 
-def shuffled(items: Iterable[Item], seed: int) -> tuple[Item, ...]:
+def shuffle_items(items: Iterable[Item], seed: int) -> tuple[Item, ...]:
     """Return items in an order that depends on the seed and their ids alone."""
 
     def key(item: Item) -> bytes:

@@ -18,7 +18,7 @@ MAX_PIXELS = 64 << 20
 FORMATS = ("JPEG", "PNG", "WEBP")
 
 
-class Pictures:
+class SetPictures:
     """The pictures under the folder of a set."""
 
     def __init__(self, folder: Path):

@@ -20,14 +20,14 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.files import write_json
-from world2minecraft.navigation.exporters.options import Written
+from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.values import SPLITS, Keyframe, Trajectory
 
 EYE_M = 1.5  # What R2R says is the height of a camera; its evaluation does not read it.
 _Place = tuple[float, float, float]
 
 
-def write_r2r(root: Path, trajectories: Sequence[Trajectory]) -> list[Written]:
+def write_r2r(root: Path, trajectories: Sequence[Trajectory]) -> list[ExportedFile]:
     """Write trajectories as R2R writes its paths and return what was written.
 
     Raises:
@@ -43,7 +43,7 @@ def write_r2r(root: Path, trajectories: Sequence[Trajectory]) -> list[Written]:
     for split, rows in entries.items():
         if rows:
             write_json(root / f"R2R_{split}.json", rows)
-            written.append(Written(f"R2R_{split}", len(rows)))
+            written.append(ExportedFile(f"R2R_{split}", len(rows)))
     for scene in graph.scenes:
         write_json(root / "connectivity" / f"{scene}_connectivity.json", graph.connectivity(scene))
     write_json(root / "viewpoints.json", graph.viewpoints())

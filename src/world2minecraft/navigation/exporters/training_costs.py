@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.pictures import SetPictures
 from world2minecraft.navigation.prompts import IMAGE, Question
 from world2minecraft.navigation.values import Item
 
@@ -70,8 +70,8 @@ def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
 
 
 PIXELS_A_TOKEN_SIDE = 28
-LEAST_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
-MOST_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
+MIN_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
+MAX_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
 CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the model's own template.
 
 
@@ -93,17 +93,17 @@ def image_tokens(width_px: int, height_px: int, max_pixels: int) -> int:
     side = PIXELS_A_TOKEN_SIDE
     rows, columns = (max(1, round(length / side)) for length in (height_px, width_px))
     pixels = width_px * height_px
-    if rows * columns * side * side > MOST_PIXELS:
-        factor = math.sqrt(pixels / MOST_PIXELS)
+    if rows * columns * side * side > MAX_PIXELS:
+        factor = math.sqrt(pixels / MAX_PIXELS)
         rows, columns = (max(1, int(n / factor / side)) for n in (height_px, width_px))
-    elif rows * columns * side * side < LEAST_PIXELS:
-        factor = math.sqrt(LEAST_PIXELS / pixels)
+    elif rows * columns * side * side < MIN_PIXELS:
+        factor = math.sqrt(MIN_PIXELS / pixels)
         rows, columns = (math.ceil(n * factor / side) for n in (height_px, width_px))
     return rows * columns
 
 
 def row_tokens(
-    item: Item, question: Question, pictures: Pictures, max_pixels: int, more_text: str = ""
+    item: Item, question: Question, pictures: SetPictures, max_pixels: int, more_text: str = ""
 ) -> int:
     """Return the most tokens that an item's row can take. Raises what ``Pictures.size`` raises."""
     sizes = (pictures.size(name, item.sha256.get(name, "")) for name in question.images)
@@ -112,7 +112,7 @@ def row_tokens(
     return shown + len(text.encode()) + CHAT_TOKENS
 
 
-def longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) -> int:
+def check_longest(lengths: Iterable[tuple[Item, int]], limit: int, what: str) -> int:
     """Return the greatest length.
 
     Raises:

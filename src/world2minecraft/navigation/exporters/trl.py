@@ -19,9 +19,14 @@ from world2minecraft.core.files import write_text
 from world2minecraft.navigation.exporters.easyr1 import GPUS, RESPONSE_TOKENS
 from world2minecraft.navigation.exporters.llamafactory import rows_left_out
 from world2minecraft.navigation.exporters.loader_checks import check_trl
-from world2minecraft.navigation.exporters.options import TRAIN, HandoffRule, Part, Written
-from world2minecraft.navigation.exporters.pictures import Pictures
-from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.options import (
+    TRAIN_SPLIT,
+    ExportedFile,
+    ExportOptions,
+    ItemGroup,
+)
+from world2minecraft.navigation.exporters.pictures import SetPictures
+from world2minecraft.navigation.exporters.recipes import read_recipe, render_recipe
 from world2minecraft.navigation.exporters.training_costs import (
     GRPO_BATCH,
     GRPO_EPOCHS,
@@ -37,11 +42,11 @@ from world2minecraft.navigation.values import Item
 
 def write_trl(
     root: Path,
-    parts: Sequence[Part],
-    pictures: Pictures,
-    rule: HandoffRule,
+    parts: Sequence[ItemGroup],
+    pictures: SetPictures,
+    rule: ExportOptions,
     tokens: Sequence[int],
-) -> list[Written]:
+) -> list[ExportedFile]:
     """Write the parts for TRL and return what was written.
 
     ``tokens`` are those of ``llamafactory.most_tokens``, by part: the rows say the same. Raises
@@ -53,12 +58,12 @@ def write_trl(
         write_text(root / f"{part.name}.jsonl", "".join(lines))
         for name in (name for item in part.items for name in item.images):
             pictures.copy(name, root)
-        is_train = part.split == TRAIN
+        is_train = part.split == TRAIN_SPLIT
         steps = sft_steps(len(part.items), rule.max_samples, 1) if is_train else 0
         command = f"python sft.py {part.name}.jsonl" if is_train else ""
         notes = rows_left_out(part, rule) if is_train else ()
-        written.append(Written(part.name, len(part.items), command, steps, most, notes))
-    _write_scripts(root, next((p for p in parts if p.split == TRAIN), parts[0]), rule)
+        written.append(ExportedFile(part.name, len(part.items), command, steps, most, notes))
+    _write_scripts(root, next((p for p in parts if p.split == TRAIN_SPLIT), parts[0]), rule)
     check_trl(root)
     return written
 
@@ -84,14 +89,14 @@ def row_of(item: Item) -> dict[str, Any]:
     }
 
 
-def _write_scripts(root: Path, example: Part, rule: HandoffRule) -> None:
+def _write_scripts(root: Path, example: ItemGroup, rule: ExportOptions) -> None:
     gpus = rule.gpus or GPUS
     common = {
         "example": f"{example.name}.jsonl",
         "model": rule.model,
         "max_pixels": rule.max_pixels,
     }
-    sft = rendered(
+    sft = render_recipe(
         "trl_sft.py",
         **common,
         max_samples=rule.max_samples,
@@ -99,7 +104,7 @@ def _write_scripts(root: Path, example: Part, rule: HandoffRule) -> None:
         batch=SFT_BATCH,
         accumulated=SFT_ACCUMULATED,
     )
-    grpo = rendered(
+    grpo = render_recipe(
         "trl_grpo.py",
         **common,
         gpus=gpus,
@@ -108,7 +113,7 @@ def _write_scripts(root: Path, example: Part, rule: HandoffRule) -> None:
         rollouts=GRPO_ROLLOUTS,
         response_tokens=RESPONSE_TOKENS,
         letter_alone=LETTER_ALONE,
-        form=verbatim("mc.jinja").strip().splitlines()[-1],
+        form=read_recipe("mc.jinja").strip().splitlines()[-1],
     )
     write_text(root / "sft.py", sft)
     write_text(root / "grpo.py", grpo)

@@ -18,8 +18,8 @@ import numpy as np
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, write_bytes, write_json
-from world2minecraft.navigation.exporters.options import Written
-from world2minecraft.navigation.records import (resolve_scene_path)
+from world2minecraft.navigation.exporters.options import ExportedFile
+from world2minecraft.navigation.records import resolve_scene_path
 from world2minecraft.navigation.values import SPLITS, Episode, Move, Stance
 
 # World blocks to the metres of Habitat: y up, x east, z south, where our exported stages stand.
@@ -86,7 +86,7 @@ SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as 
 
 def write_vlnce(
     root: Path, episodes: Sequence[Episode], set_folder: Path, metres_per_block: dict[str, float]
-) -> list[Written]:
+) -> list[ExportedFile]:
     """Write episodes for VLN-CE and return what was written.
 
     Args:
@@ -122,7 +122,7 @@ def write_vlnce(
         whole = {"episodes": entries, "instruction_vocab": {"word_list": words}}
         write_bytes(root / split / f"{split}.json.gz", _gzip(whole))
         write_bytes(root / split / f"{split}_gt.json.gz", _gzip(truths))
-        written.append(Written(split, len(chosen)))
+        written.append(ExportedFile(split, len(chosen)))
     write_json(root / "names.json", {"episodes": ids, "trajectories": ways})
     return written
 
@@ -163,7 +163,7 @@ def _entry(
             "instruction_text": text,
             "instruction_tokens": tokens + [0] * (TOKENS - len(tokens)),
         },
-        "reference_path": sparse(way_m),
+        "reference_path": subsample_path(way_m),
     }
 
 
@@ -176,7 +176,7 @@ def _truth(episode: Episode, frame: np.ndarray) -> dict[str, Any]:
     }
 
 
-def sparse(way_m: list[list[float]]) -> list[list[float]]:
+def subsample_path(way_m: list[list[float]]) -> list[list[float]]:
     """Return points of a way about ``SPARSE_M`` apart, its first and its last among them."""
     kept = [way_m[0]]
     for place in way_m[1:-1]:

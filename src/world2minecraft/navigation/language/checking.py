@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from world2minecraft.navigation.language.human_instructions import MAX_TEXT
-from world2minecraft.navigation.language.parsing import told_in
+from world2minecraft.navigation.language.parsing import parse_instruction
 from world2minecraft.navigation.values import Instruction, Trajectory
 
 PAPER_CHARACTERS = (15, 334)  # The shortest and the longest instruction of the paper's set.
@@ -23,14 +23,14 @@ class Finding(NamedTuple):
     text: str
 
 
-class Spoken(NamedTuple):
+class Mention(NamedTuple):
     """What words of a text mean: one name, or the names of several things."""
 
     phrase: str
     names: tuple[str, ...]
 
 
-def goal_of(trajectory: Trajectory) -> str:
+def goal_name(trajectory: Trajectory) -> str:
     """Return the name of what a walk ends at, as its instructions have it; empty for none."""
     for level in ("goal", "landmark"):
         for one in trajectory.instructions:
@@ -39,21 +39,23 @@ def goal_of(trajectory: Trajectory) -> str:
     return ""
 
 
-def names_of(trajectories: Iterable[Trajectory], scene_id: str) -> tuple[str, ...]:
+def landmark_names_of(trajectories: Iterable[Trajectory], scene_id: str) -> tuple[str, ...]:
     """Return what things of a scene are called in the instructions of its walks, sorted."""
     own = [one for one in trajectories if one.scene_id == scene_id]
     told = {name for one in own for words in one.instructions for name in words.landmarks}
     return tuple(sorted(told))
 
 
-def findings(text: str, level: str, trajectory: Trajectory, names: Sequence[str]) -> list[Finding]:
+def check_instruction(
+    text: str, level: str, trajectory: Trajectory, names: Sequence[str]
+) -> list[Finding]:
     """Return what is to be said of an instruction, what is wrong first.
 
     Args:
         text: what was written.
         level: goal, route or landmark.
         trajectory: the walk, with what is told of it already.
-        names: what things of its scene are called, see ``names_of``.
+        names: what things of its scene are called, see ``landmark_names_of``.
 
     Raises:
         UsageError: there is no such level.
@@ -64,20 +66,20 @@ def findings(text: str, level: str, trajectory: Trajectory, names: Sequence[str]
         return [Finding(True, "write something: an instruction has words")]
     if len(plain) > MAX_TEXT:
         return [Finding(True, f"{len(plain):,} characters; at most {MAX_TEXT:,} are kept")]
-    spoken = spoken_in(plain, names)
-    found = [] if level == "route" else _of_goal(spoken, goal_of(trajectory))
-    found += _of_things(spoken, goal_of(trajectory), level)
+    spoken = find_mentions(plain, names)
+    found = [] if level == "route" else _of_goal(spoken, goal_name(trajectory))
+    found += _of_things(spoken, goal_name(trajectory), level)
     found += [] if level == "goal" else _of_turns(plain, trajectory, names)
     return sorted([*found, *_of_length(plain)], key=lambda one: not one.is_wrong)
 
 
-def spoken_in(text: str, names: Iterable[str]) -> list[Spoken]:
+def find_mentions(text: str, names: Iterable[str]) -> list[Mention]:
     """Return the things that a text speaks of, in its order; the longest phrase counts.
 
     A thing may be called by its name or by the end of it: "piano" is an upright piano.
 
     Example:
-        >>> spoken_in("Pass the red chair, stop at the chair.", ["red chair", "blue chair"])
+        >>> find_mentions("Pass the red chair, stop at the chair.", ["red chair", "blue chair"])
         [Spoken(phrase='red chair', names=('red chair',)), \
 Spoken(phrase='chair', names=('blue chair', 'red chair'))]
     """
@@ -92,16 +94,16 @@ Spoken(phrase='chair', names=('blue chair', 'red chair'))]
     longest_first = sorted(meant, key=lambda phrase: (-len(phrase), phrase))
     pattern = re.compile(rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)")
     told = [match.group(1) for match in pattern.finditer(text.lower())]
-    return [Spoken(phrase, tuple(sorted(meant[phrase]))) for phrase in told]
+    return [Mention(phrase, tuple(sorted(meant[phrase]))) for phrase in told]
 
 
-def _of_goal(spoken: Sequence[Spoken], goal: str) -> list[Finding]:
+def _of_goal(spoken: Sequence[Mention], goal: str) -> list[Finding]:
     if not goal or any(one.names == (goal,) for one in spoken):
         return []
     return [Finding(True, f"it does not name where the walk ends: the {goal}")]
 
 
-def _of_things(spoken: Sequence[Spoken], goal: str, level: str) -> list[Finding]:
+def _of_things(spoken: Sequence[Mention], goal: str, level: str) -> list[Finding]:
     found = []
     for one in dict.fromkeys(spoken):
         if len(one.names) > 1:
@@ -121,10 +123,10 @@ def _of_turns(text: str, trajectory: Trajectory, names: Sequence[str]) -> list[F
     routes = [one.text for one in trajectory.instructions if one.level == "route"]
     if not routes:
         return []
-    walked, told = told_in(routes[0], names).turns, told_in(text, names).turns
+    walked, told = parse_instruction(routes[0], names).turns, parse_instruction(text, names).turns
     if walked == told:
         return []
-    return [Finding(False, f"the walk turns {_said(walked)}; this says {_said(told)}")]
+    return [Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(told)}")]
 
 
 def _of_length(text: str) -> list[Finding]:
@@ -134,5 +136,5 @@ def _of_length(text: str) -> list[Finding]:
     return [Finding(False, f"{len(text)} characters; the paper's have {least} to {most}")]
 
 
-def _said(turns: Sequence[str]) -> str:
+def _turns_text(turns: Sequence[str]) -> str:
     return ", ".join(turns) or "nowhere"

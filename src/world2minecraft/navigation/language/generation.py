@@ -13,16 +13,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.navigation.language.route_events import TURN_DEG, Stretch, Way, side_of_turn
+from world2minecraft.navigation.language.route_events import (
+    TURN_DEG,
+    Route,
+    RouteSegment,
+    side_of_turn,
+)
 from world2minecraft.navigation.values import LEVELS, Instruction
 
 _NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 SLIGHT_DEG, SHARP_DEG = 55.0, 125.0
 STEPS_M = (0.9, 2.3)  # Less is a step, up to here are a few steps; farther is told in metres.
-MOST_PASSED = 2
+MAX_PASSED = 2
 
 
-def instructions_of(way: Way, rng: np.random.Generator) -> list[Instruction]:
+def generate_instructions(way: Route, rng: np.random.Generator) -> list[Instruction]:
     """Return what can be told of a way: a route always, the others where there are landmarks.
 
     Args:
@@ -37,11 +42,11 @@ def instructions_of(way: Way, rng: np.random.Generator) -> list[Instruction]:
     ]
 
 
-Told = tuple[str, tuple[str, ...]]
+TextAndLandmarks = tuple[str, tuple[str, ...]]
 """A text and the landmarks that it names, in order."""
 
 
-def goal_text(way: Way, rng: np.random.Generator) -> Told:
+def goal_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
     """Return an instruction that names the end alone; empty where nothing stands there."""
     if not way.stop:
         return "", ()
@@ -51,14 +56,14 @@ def goal_text(way: Way, rng: np.random.Generator) -> Told:
     return choices[rng.integers(len(choices))], (way.stop,)
 
 
-def route_text(way: Way, rng: np.random.Generator) -> Told:
+def route_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
     """Return an instruction of turns and distances alone."""
     parts = [[*_turn(one.turn_deg), _distance(one.length_m, rng)] for one in way.stretches]
     parts[-1] += [*_turn(way.last_turn_deg), "stop"]
     return _sentences(parts, rng), ()
 
 
-def landmark_text(way: Way, rng: np.random.Generator) -> Told:
+def landmark_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
     """Return a route that is told by what one sees; empty where nothing is told of."""
     parts, names = [], []
     for number, one in enumerate(way.stretches):
@@ -99,11 +104,11 @@ def _distance(length_m: float, rng: np.random.Generator) -> str:
     return f"{verb} about {word} metres"
 
 
-def _stretch(one: Stretch, stop: str, rng: np.random.Generator) -> tuple[list[str], list[str]]:
+def _stretch(one: RouteSegment, stop: str, rng: np.random.Generator) -> tuple[list[str], list[str]]:
     """Return the clauses of a stretch and the landmarks that they name."""
     turn = _turn(one.turn_deg, one.at)
     names = [one.at] if one.at and turn else []
-    passing = one.passing[:MOST_PASSED]
+    passing = one.passing[:MAX_PASSED]
     into = _room(one.into)
     if passing:
         walk = f"{('walk', 'go')[rng.integers(2)]} past {_sides(passing)}"
@@ -136,7 +141,7 @@ def _room(name: str) -> str:
     return f"into the {name}" if plain else "into the next room"
 
 
-def _stop(way: Way, named: bool) -> list[str]:
+def _stop(way: Route, named: bool) -> list[str]:
     """Return the clauses of the end; ``named``: the last words were of what one stops at."""
     turn = _turn(way.last_turn_deg)
     thing = "it" if named else f"the {way.stop}"

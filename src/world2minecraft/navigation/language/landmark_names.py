@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.navigation.landmarks import BESIDE_M, Landmark
 
 
-def told_apart(landmarks: Sequence[Landmark]) -> list[Landmark]:
+def unambiguous_landmarks(landmarks: Sequence[Landmark]) -> list[Landmark]:
     """Return the landmarks that a name is plain for: nothing else answers to it.
 
     "the table" is not plain where a coffee table stands too; "the coffee table" is.
@@ -15,10 +15,12 @@ def told_apart(landmarks: Sequence[Landmark]) -> list[Landmark]:
     Args:
         landmarks: all of a scene.
     """
-    return [one for one in landmarks if one.is_told and meant(one.name, landmarks) == [one]]
+    return [
+        one for one in landmarks if one.is_told and matching_landmarks(one.name, landmarks) == [one]
+    ]
 
 
-def meant(phrase: str, landmarks: Sequence[Landmark]) -> list[Landmark]:
+def matching_landmarks(phrase: str, landmarks: Sequence[Landmark]) -> list[Landmark]:
     """Return the landmarks that a phrase may mean: by their own name, colour or noun's end.
 
     Args:
@@ -26,10 +28,10 @@ def meant(phrase: str, landmarks: Sequence[Landmark]) -> list[Landmark]:
         landmarks: all of a scene.
     """
     said, _, beside = phrase.partition(" beside the ")
-    found = [one for one in landmarks if one.name == phrase or _answers(said.split(), one)]
+    found = [one for one in landmarks if one.name == phrase or _matches_noun(said.split(), one)]
     if not beside:
         return found
-    anchors = meant(beside, landmarks)
+    anchors = matching_landmarks(beside, landmarks)
     return [one for one in found if any(_is_beside(one, other) for other in anchors)]
 
 
@@ -38,7 +40,7 @@ def _is_beside(one: Landmark, other: Landmark) -> bool:
     return one is not other and float(np.linalg.norm(gap)) <= BESIDE_M
 
 
-def _answers(words: Sequence[str], landmark: Landmark) -> bool:
+def _matches_noun(words: Sequence[str], landmark: Landmark) -> bool:
     noun = landmark.noun.split()
     for split in range(len(words)):
         said, colour = list(words[split:]), " ".join(words[:split])

@@ -24,14 +24,14 @@ _AROUND = re.compile(
 )
 
 
-class Told(NamedTuple):
+class ParsedInstruction(NamedTuple):
     """What a text tells."""
 
     turns: tuple[str, ...]  # left, right, around
     landmarks: tuple[str, ...]  # their names; the same twice in a row counts once
 
 
-def told_in(text: str, names: Iterable[str]) -> Told:
+def parse_instruction(text: str, names: Iterable[str]) -> ParsedInstruction:
     """Return the turns and the landmarks of an instruction.
 
     Args:
@@ -39,11 +39,11 @@ def told_in(text: str, names: Iterable[str]) -> Told:
         names: all that landmarks of the scene are called; longer names are looked for first.
 
     Example:
-        >>> told_in("Take a left at the sofa, the bed is on your right.", ["bed", "sofa"])
+        >>> parse_instruction("Take a left at the sofa, the bed is on your right.", ["bed", "sofa"])
         Told(turns=('left',), landmarks=('sofa', 'bed'))
     """
     landmarks, rest = _landmarks(text, names)
-    return Told(_turns(rest), landmarks)
+    return ParsedInstruction(_turns(rest), landmarks)
 
 
 def _landmarks(text: str, names: Iterable[str]) -> tuple[tuple[str, ...], str]:

@@ -8,14 +8,14 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
-from world2minecraft.navigation.language.parsing import told_in
+from world2minecraft.navigation.language.parsing import parse_instruction
 from world2minecraft.navigation.prompts import find_reserved_token
 from world2minecraft.navigation.values import Instruction
 
 Ask = Callable[[str], str]
 """A language model: the prompt in, its reply out."""
 
-MOST_CHARACTERS = 600
+MAX_CHARACTERS = 600
 PROMPT = """\
 Say this walking instruction again in natural English, as a person would say it to a guest.
 Keep every turn and every thing, by exactly these names and in this order, and add none.
@@ -34,7 +34,7 @@ class Rewriting:
     refusal: str = ""
 
 
-def rewritten(
+def rewrite(
     instruction: Instruction, names: Iterable[str], ask: Ask, annotator: str = "model"
 ) -> Rewriting:
     """Ask a model for an instruction in other words.
@@ -47,24 +47,24 @@ def rewritten(
 
     Example:
         >>> told = Instruction("Turn left at the sofa and stop.", landmarks=("sofa",))
-        >>> rewritten(told, ["sofa"], lambda _: "At the sofa go left, then stop.").refusal
+        >>> rewrite(told, ["sofa"], lambda _: "At the sofa go left, then stop.").refusal
         ''
-        >>> rewritten(told, ["sofa"], lambda _: "Go right at the sofa.").refusal
+        >>> rewrite(told, ["sofa"], lambda _: "Go right at the sofa.").refusal
         'other turns'
     """
     known = list(names)
-    expected = told_in(instruction.text, known)
+    expected = parse_instruction(instruction.text, known)
     prompt = PROMPT.format(
         turns=", ".join(expected.turns) or "none",
         things=", ".join(expected.landmarks) or "none",
         text=instruction.text,
     )
     text = _plain(ask(prompt))
-    if not text or len(text) > MOST_CHARACTERS:
+    if not text or len(text) > MAX_CHARACTERS:
         return Rewriting(None, "empty" if not text else "too long")
     if not text.isprintable() or find_reserved_token(text):
         return Rewriting(None, "strange marks")
-    found = told_in(text, known)
+    found = parse_instruction(text, known)
     if found.turns != expected.turns:
         return Rewriting(None, "other turns")
     if found.landmarks != expected.landmarks:
@@ -74,7 +74,7 @@ def rewritten(
 
 def _plain(reply: str) -> str:
     """Return a reply as one line without the quotes that models like to put around it."""
-    text = reply[: 4 * MOST_CHARACTERS].strip()
+    text = reply[: 4 * MAX_CHARACTERS].strip()
     if text.startswith('"'):
         try:
             text = str(json.loads(text))

@@ -27,7 +27,7 @@ FRONT_DEG = 35.0  # and before one's eyes.
 
 
 @dataclass(frozen=True)
-class Stretch:
+class RouteSegment:
     """A turn on the spot, then straight on. Names are those of landmarks; "" for none."""
 
     turn_deg: float
@@ -39,10 +39,10 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Way:
+class Route:
     """Stretches, a last turn, and the landmark that one stands before at the end."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[RouteSegment, ...]
     last_turn_deg: float
     stop: str = ""
     stop_side: str = ""  # "front", "left" or "right" of the walker
@@ -71,7 +71,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class ObservedWalk:
     """A walk as its walker had it: N stances, and what was in the picture at some of them."""
 
     places_m: np.ndarray  # float64 [N, 2], metres of the room
@@ -82,7 +82,7 @@ class Seen:
     )  # the room's name at each stance, "" unknown
 
 
-def way_of(walk: Seen, landmarks: Sequence[Landmark], target: str = "") -> Way:
+def describe_route(walk: ObservedWalk, landmarks: Sequence[Landmark], target: str = "") -> Route:
     """Return what happens on a walk.
 
     Args:
@@ -91,7 +91,7 @@ def way_of(walk: Seen, landmarks: Sequence[Landmark], target: str = "") -> Way:
         target: the landmark that the walk was made to, where that is known. It is the end if one
             stands before it; else the nearest thing in sight is.
     """
-    corners = _merged(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
+    corners = _merge_corners(walk.places_m, list(simplify_path(walk.places_m, CORNER_M)))
     yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.
     stretches, before, used = [], float(yaws[0]), set[str]()
     for first, last in _pairs(corners):
@@ -107,7 +107,7 @@ def way_of(walk: Seen, landmarks: Sequence[Landmark], target: str = "") -> Way:
     stop, side = _stop(walk, landmarks, target)
     places = [walk.places_m[n] for n in corners]
     where = tuple((float(x), float(y)) for x, y in places)
-    return Way(tuple(stretches), last_turn, stop, side, where)
+    return Route(tuple(stretches), last_turn, stop, side, where)
 
 
 def side_of_turn(turn_deg: float) -> str:
@@ -126,7 +126,7 @@ def _pairs(corners: Sequence[int]) -> list[tuple[int, int]]:
     return list(pairwise(corners))
 
 
-def _merged(places: np.ndarray, corners: list[int]) -> list[int]:
+def _merge_corners(places: np.ndarray, corners: list[int]) -> list[int]:
     """Leave out corners at which one hardly turns, or between which one hardly walks."""
     while len(corners) > 2:
         lengths = [float(np.linalg.norm(places[b] - places[a])) for a, b in _pairs(corners)]
@@ -149,18 +149,18 @@ def _heading(begin: np.ndarray, end: np.ndarray) -> float:
 
 
 def _stretch(
-    walk: Seen,
+    walk: ObservedWalk,
     landmarks: Sequence[Landmark],
     first: int,
     last: int,
     turn_deg: float,
     used: set[str],
     target: str,
-) -> Stretch:
+) -> RouteSegment:
     begin, end = walk.places_m[first], walk.places_m[last]
     length = float(np.linalg.norm(end - begin))
-    before = _looked(walk, 0, first)
-    during = _looked(walk, first, last)
+    before = _seen_between(walk, 0, first)
+    during = _seen_between(walk, first, last)
     at = _turn_at(begin, [one for one in landmarks if one.number in before], used)
     fresh = [one for one in landmarks if one.name != at and one.number in during]
     ahead = _ahead(begin, end, [one for one in fresh if one.name not in used - {target}])
@@ -168,13 +168,13 @@ def _stretch(
     into = ""
     if walk.rooms and walk.rooms[last] != walk.rooms[first]:
         into = walk.rooms[last]
-    return Stretch(
+    return RouteSegment(
         turn_deg, length, at if first and abs(turn_deg) >= TURN_DEG else "", ahead,
         tuple(passing), into,
     )  # fmt: skip
 
 
-def _looked(walk: Seen, first: int, last: int) -> frozenset[int]:
+def _seen_between(walk: ObservedWalk, first: int, last: int) -> frozenset[int]:
     """Return what was in the pictures of some stances, the last left out."""
     seen = [look for at, look in walk.looks.items() if first <= at < max(last, first + 1)]
     return frozenset().union(*seen)
@@ -218,7 +218,7 @@ def _passed(
     return [(name, side) for _, name, side in sorted(found)]
 
 
-def _stop(walk: Seen, landmarks: Sequence[Landmark], target: str) -> tuple[str, str]:
+def _stop(walk: ObservedWalk, landmarks: Sequence[Landmark], target: str) -> tuple[str, str]:
     place, yaw = walk.places_m[-1], float(walk.yaws_deg[-1])
     seen = walk.looks.get(len(walk.places_m) - 1, frozenset())
     found = []

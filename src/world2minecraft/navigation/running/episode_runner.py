@@ -12,17 +12,17 @@ from typing import Protocol
 import numpy as np
 
 from world2minecraft.navigation.agents.values import Agent, Decision, Observation, Task
-from world2minecraft.navigation.running.episode_ground import Ground, GroundGuide
+from world2minecraft.navigation.running.simulator import Simulator, SimulatorGuide
 from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
 from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
 
-MOST_SILENT = 3  # Decisions without moves in a row that end a walk.
+MAX_SILENT_DECISIONS = 3  # Decisions without moves in a row that end a walk.
 ENDS = ("stopped", "out of steps", "gave up")
 _DARK = np.zeros((1, 1, 3), np.uint8)  # What the blind are shown.
 
 
 @dataclass(frozen=True, eq=False)
-class Walk:
+class EpisodeWalk:
     """What became of an episode. ``stances`` are T, one more than ``made``, STOP not included."""
 
     episode: Episode
@@ -56,19 +56,19 @@ class Observer(Protocol):
         """Hear where the agent stands, after a move and at the start."""
         ...
 
-    def ended(self, walk: Walk) -> None:
+    def ended(self, walk: EpisodeWalk) -> None:
         """Hear how it went."""
         ...
 
 
 def walk_episode(
-    ground: Ground,
+    ground: Simulator,
     episode: Episode,
     agent: Agent,
     *,
     observers: Sequence[Observer] = (),
     seed: int = 0,
-) -> Walk:
+) -> EpisodeWalk:
     """Walk an episode and return what became of it.
 
     Raises:
@@ -76,7 +76,7 @@ def walk_episode(
     """
     check_reachable(episode, ground.distance_m(episode.start, episode.goals))
     state = _State(ground, episode, agent, observers)
-    guide = GroundGuide(ground, episode) if agent.is_privileged else None
+    guide = SimulatorGuide(ground, episode) if agent.is_privileged else None
     agent.begin(
         Task(
             episode.instruction.text, ground.move_set, ground.step_m, episode.max_steps,
@@ -98,7 +98,7 @@ class _State:
     """A walk under way."""
 
     def __init__(
-        self, ground: Ground, episode: Episode, agent: Agent, observers: Sequence[Observer]
+        self, ground: Simulator, episode: Episode, agent: Agent, observers: Sequence[Observer]
     ):
         self.ground, self.episode, self.agent, self.observers = ground, episode, agent, observers
         self.stances: list[Stance] = [episode.start]
@@ -127,8 +127,8 @@ class _State:
         if self.end is None and self.steps >= self.episode.max_steps:
             self.end = "out of steps"
 
-    def walk(self) -> Walk:
-        return Walk(
+    def walk(self) -> EpisodeWalk:
+        return EpisodeWalk(
             self.episode, self.agent.name, tuple(self.stances), tuple(self.made),
             self.end or "", self.steps, self.decisions, self.counts["invalid"],
             self.counts["failed"], self._score(),
@@ -139,7 +139,7 @@ class _State:
         self.silent += 1
         self.counts[decision.outcome] += 1
         self._tell(decision, None)
-        if self.silent >= MOST_SILENT:
+        if self.silent >= MAX_SILENT_DECISIONS:
             self.end = "gave up"
 
     def _make(self, decision: Decision) -> None:
@@ -173,7 +173,7 @@ class _State:
         return score_episode(walked, reference_m(self.ground, self.episode))
 
 
-def reference_m(ground: Ground, episode: Episode) -> np.ndarray:
+def reference_m(ground: Simulator, episode: Episode) -> np.ndarray:
     """Return the way to walk, float64 [M, 3] metres: the episode's own, or the oracle's."""
     stances = list(episode.reference)
     if not stances:

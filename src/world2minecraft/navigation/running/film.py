@@ -13,11 +13,11 @@ from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.navigation.agents.values import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
-from world2minecraft.navigation.running.episode_ground import Ground
-from world2minecraft.navigation.running.episode_runner import Walk
+from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 from world2minecraft.navigation.running.floor_map import SIDE_PX, PlanMap
+from world2minecraft.navigation.running.simulator import Simulator
 from world2minecraft.navigation.values import Episode, Move, Stance
-from world2minecraft.rendering.output.animation import FrameWriter, moving_picture
+from world2minecraft.rendering.output.animation import FrameWriter, animation_writer
 
 FILM_FILE = "walk.mp4"
 VIEW_PX = (640, 480)
@@ -32,7 +32,7 @@ LINE_PX = 17
 class Film:
     """Writes the film of one episode; an observer."""
 
-    def __init__(self, path: Path, ground: Ground, plan: PlanMap, rate_hz: float = RATE_HZ):
+    def __init__(self, path: Path, ground: Simulator, plan: PlanMap, rate_hz: float = RATE_HZ):
         self.path, self.ground, self.plan, self.rate_hz = path, ground, plan, rate_hz
         self._stack = ExitStack()
         self._write: FrameWriter | None = None
@@ -45,7 +45,7 @@ class Film:
         """Open the film."""
         self._episode, self._agent, self._stances = episode, agent, []
         self._stack = ExitStack()
-        self._write = self._stack.enter_context(moving_picture(self.path, self.rate_hz))
+        self._write = self._stack.enter_context(animation_writer(self.path, self.rate_hz))
 
     def decided(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
@@ -68,7 +68,7 @@ class Film:
         )
         self._send(frame, self.rate_hz * HOLD_S if decision is None else 1)
 
-    def ended(self, walk: Walk) -> None:
+    def ended(self, walk: EpisodeWalk) -> None:
         """Say on the last frame how it went, and close the film."""
         if self._last is not None:
             self._send(with_end(self._last, end_text(walk)), self.rate_hz * HOLD_S)
@@ -102,12 +102,12 @@ def compose(
     frame = Image.new("RGB", SIZE_PX, PAPER)
     seen = Image.fromarray(view)
     if seen.size != VIEW_PX:
-        seen = _fitted(seen)
+        seen = _fit_view(seen)
     frame.paste(seen, (0, BAND_PX))
     frame.paste(plan, (VIEW_PX[0], BAND_PX))
     draw = ImageDraw.Draw(frame)
     big = ImageFont.load_default(19)
-    lines = wrapped(instruction, big, SIZE_PX[0] - 24, 2)
+    lines = wrap_text(instruction, big, SIZE_PX[0] - 24, 2)
     top = (BAND_PX - 23 * len(lines)) / 2
     for number, line in enumerate(lines):
         draw.text((12, top + 23 * number), line, INK, big)
@@ -121,11 +121,11 @@ def with_end(frame: Image.Image, text: str) -> Image.Image:
     draw = ImageDraw.Draw(ended)
     top = SIZE_PX[1] - 40
     draw.rectangle((0, top, VIEW_PX[0] - 1, SIZE_PX[1]), INK)
-    draw.text((12, top + 9), plain(text), PAPER, ImageFont.load_default(18))
+    draw.text((12, top + 9), printable(text), PAPER, ImageFont.load_default(18))
     return ended
 
 
-def end_text(walk: Walk) -> str:
+def end_text(walk: EpisodeWalk) -> str:
     """Return how a walk went, in a line."""
     left = walk.score.ne_m
     where = f"{left:.2f} m from the goal" if np.isfinite(left) else "where no way leads on"
@@ -133,31 +133,33 @@ def end_text(walk: Walk) -> str:
     return f"{how} {where} after {walk.steps} steps, {walk.score.length_m:.1f} m walked"
 
 
-def wrapped(
+def wrap_text(
     text: str, font: "ImageFont.ImageFont | ImageFont.FreeTypeFont", width_px: float, most: int
 ) -> list[str]:
     """Return a text in lines that fit, the last one cut where there are more than ``most``."""
     lines: list[str] = []
     line = ""
-    for word in plain(text).split():
+    for word in printable(text).split():
         tried = f"{line} {word}".strip()
         if font.getlength(tried) <= width_px or not line:
-            line = _cut(tried, font, width_px)
+            line = _truncate(tried, font, width_px)
             continue
         lines.append(line)
-        line = _cut(word, font, width_px)
+        line = _truncate(word, font, width_px)
         if len(lines) == most:
-            lines[-1] = _cut(f"{lines[-1]} ...", font, width_px)
+            lines[-1] = _truncate(f"{lines[-1]} ...", font, width_px)
             return lines
     return [*lines, line] if line else lines
 
 
-def plain(text: str) -> str:
+def printable(text: str) -> str:
     """Return a text in letters that the font has."""
     return "".join(mark if " " <= mark <= "ÿ" else "?" for mark in " ".join(text.split()))
 
 
-def _cut(text: str, font: "ImageFont.ImageFont | ImageFont.FreeTypeFont", width_px: float) -> str:
+def _truncate(
+    text: str, font: "ImageFont.ImageFont | ImageFont.FreeTypeFont", width_px: float
+) -> str:
     text = text[:400]
     while len(text) > 1 and font.getlength(text) > width_px:
         text = text[:-4] + "..." if len(text) > 4 else text[:-1]
@@ -166,7 +168,7 @@ def _cut(text: str, font: "ImageFont.ImageFont | ImageFont.FreeTypeFont", width_
     return text
 
 
-def _fitted(seen: Image.Image) -> Image.Image:
+def _fit_view(seen: Image.Image) -> Image.Image:
     scale = min(VIEW_PX[0] / seen.width, VIEW_PX[1] / seen.height)
     size = (round(seen.width * scale), round(seen.height * scale))
     back = Image.new("RGB", VIEW_PX, INK)
@@ -199,7 +201,7 @@ def _write_caption(draw: ImageDraw.ImageDraw, caption: Sequence[tuple[str, str]]
         told = f"{name}: {text}" if name else text
         colour = BAD if name.isupper() else FAINT if not name else INK
         most = max(1, (bottom - top) // LINE_PX)
-        for line in wrapped(told, font, SIDE_PX - 20, min(most, 4)):
+        for line in wrap_text(told, font, SIDE_PX - 20, min(most, 4)):
             if top + LINE_PX > bottom:
                 return
             draw.text((left, top), line, colour, font)

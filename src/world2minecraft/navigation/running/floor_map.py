@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import Stance
-from world2minecraft.rendering.cutaway import storeys_of
+from world2minecraft.rendering.cutaway import split_storeys
 from world2minecraft.rendering.preview import plan_view
 
 WAY, HERE, GOAL, BEGIN = (235, 90, 20), (200, 20, 30), (20, 130, 60), (40, 80, 200)
@@ -19,7 +19,7 @@ MARGIN_M = 1.0  # Around the floor: walls, and furniture along them.
 FINE = 2  # A plan is drawn so many times larger and then made small.
 
 
-def plan_of(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
+def floor_plans(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
     """Return the plans of a scene, cut to the rooms that one can stand in and what is near them.
 
     A garden as large as the house would leave half of the picture to the house.
@@ -41,7 +41,7 @@ class PlanMap:
     ):
         """Take a volume and the part to draw: least x and z, most x and z, world blocks."""
         self.size_px, self._box = size_px, box
-        self._storeys = storeys_of(volume)
+        self._storeys = split_storeys(volume)
         self._drawn: dict[int, tuple[Image.Image, float, tuple[float, float]]] = {}
 
     def picture(

@@ -14,7 +14,7 @@ from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_f
 from world2minecraft.navigation.values import Episode, Move, Stance
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.running.episode_runner import Walk
+    from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 
 VIEW_WIDTH_PX = 320  # Times the window's scale.
 
@@ -62,7 +62,7 @@ class HumanAgent:
     ) -> None:
         """Hear where one stands."""
 
-    def ended(self, walk: "Walk") -> None:
+    def ended(self, walk: "EpisodeWalk") -> None:
         """Say how the walk went, now and beside the next one."""
         from world2minecraft.navigation.running.film import end_text  # noqa: PLC0415  # Imports agents.
 

@@ -30,7 +30,7 @@ def json_line(value: dict[str, Any]) -> str:
 
 COMPOSITIONS = ("base", "extend", "combined")
 ANSWERS_FILE, RESULT_FILE = "answers.jsonl", "result.json"
-MOST_FAILED = 5  # In a row; each was asked several times.
+MAX_FAILED = 5  # In a row; each was asked several times.
 TRAININGS = ("none", "sft", "rft", "baseline")
 
 
@@ -45,7 +45,7 @@ class Answerer(Protocol):
 
 
 @dataclass(frozen=True)
-class Answered:
+class AnsweredItem:
     """An item with what was said to it."""
 
     item: Item
@@ -59,7 +59,7 @@ class Answered:
 
 def evaluate(
     items: Sequence[Item], answerer: Answerer, *, jobs: int = 1, progress: Progress | None = None
-) -> list[Answered]:
+) -> list[AnsweredItem]:
     """Ask all items, ``jobs`` at a time, and return the answers in the order of the items.
 
     Raises:
@@ -70,13 +70,13 @@ def evaluate(
         raise UsageError("there is no item to ask; is the split right?")
     if jobs < 1:
         raise UsageError(f"--jobs is 1 or more, not {jobs}")
-    found: list[Answered] = []
+    found: list[AnsweredItem] = []
     failed, right = 0, 0
-    for item, answer in _asked(items, answerer.answer, jobs):
-        found.append(Answered(item, answer))
+    for item, answer in _ask_all(items, answerer.answer, jobs):
+        found.append(AnsweredItem(item, answer))
         right += found[-1].is_right
         failed = failed + 1 if answer.outcome == "failed" else 0
-        if failed >= MOST_FAILED:
+        if failed >= MAX_FAILED:
             raise ServerError(
                 f"{failed} items in a row had no answer ({answer.told.get('problem', '')}); "
                 "the same command goes on from here"
@@ -86,7 +86,7 @@ def evaluate(
     return found
 
 
-def _asked(
+def _ask_all(
     items: Sequence[Item], ask: Callable[[Item], Answer], jobs: int
 ) -> Iterator[tuple[Item, Answer]]:
     if jobs == 1:
@@ -99,7 +99,7 @@ def _asked(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def accuracy(found: Sequence[Answered]) -> dict[str, dict[str, Any]]:
+def accuracy(found: Sequence[AnsweredItem]) -> dict[str, dict[str, Any]]:
     """Return accuracy by task, then by composition: share, hits, total, Wilson interval, invalid.
 
     Combined are the two together. What has no item is left out.
@@ -117,7 +117,7 @@ def accuracy(found: Sequence[Answered]) -> dict[str, dict[str, Any]]:
     return table
 
 
-def _cell(own: Sequence[Answered]) -> dict[str, Any]:
+def _cell(own: Sequence[AnsweredItem]) -> dict[str, Any]:
     result = rate(sum(one.is_right for one in own), len(own))
     outcomes = [one.answer.outcome for one in own]
     return {
@@ -132,7 +132,7 @@ def _cell(own: Sequence[Answered]) -> dict[str, Any]:
     }
 
 
-def write_result(folder: str | Path, found: Sequence[Answered], facts: dict[str, Any]) -> None:
+def write_result(folder: str | Path, found: Sequence[AnsweredItem], facts: dict[str, Any]) -> None:
     """Write ``answers.jsonl``, a line an item, and ``result.json``.
 
     ``facts`` are added to the result: who answered, how it was trained, what it cost.
@@ -171,7 +171,7 @@ def write_result(folder: str | Path, found: Sequence[Answered], facts: dict[str,
 CHOICES = (*SPLITS, "test", "all")
 
 
-def picked_items(
+def select_items(
     items: Sequence[Item],
     *,
     split: str = "test",

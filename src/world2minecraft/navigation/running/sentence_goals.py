@@ -19,7 +19,7 @@ YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
 
 
 @dataclass(frozen=True)
-class Wish:
+class GoalRequest:
     """What is wished: the sentence, and the goal where the sentence does not say it."""
 
     instruction: str
@@ -29,7 +29,7 @@ class Wish:
     max_steps: int = 120
 
 
-def episode_of(scene: VlnScene, wish: Wish) -> Episode:
+def episode_of_sentence(scene: VlnScene, wish: GoalRequest) -> Episode:
     """Return the episode of a wish.
 
     Raises:
@@ -41,14 +41,14 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
         raise UsageError(
             f"an instruction has at most {MAX_INSTRUCTION:,} characters, not {count:,}; shorten it"
         )
-    target = named_in(scene, wish.goal or wish.instruction)
+    target = find_named_landmark(scene, wish.goal or wish.instruction)
     goals = scene.goals_at(target)
     if not goals:
         raise InputError(
             scene.path,
             f"nobody can stand before the {target.name}; name another thing, or make room there",
         )
-    start = _looking_in(scene) if wish.start is None else _standing(scene, wish.start)
+    start = _default_start(scene) if wish.start is None else _snap_start(scene, wish.start)
     if scene.distance_m(start.feet, goals) == float("inf"):
         raise InputError(
             scene.path,
@@ -69,7 +69,7 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
     )
 
 
-def named_in(scene: VlnScene, sentence: str) -> Landmark:
+def find_named_landmark(scene: VlnScene, sentence: str) -> Landmark:
     """Return the thing of a scene that a sentence names last; that is where it ends.
 
     The last word of what a thing is called will do, such as piano for an upright piano.
@@ -110,7 +110,7 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
     return {**ends, **nouns, **names}
 
 
-def _looking_in(scene: VlnScene) -> Stance:
+def _default_start(scene: VlnScene) -> Stance:
     """Return the scene's start, looking to the middle of the floor and not at the nearest wall."""
     start = scene.start
     x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
@@ -118,7 +118,7 @@ def _looking_in(scene: VlnScene) -> Stance:
     return replace(start, yaw_deg=wrap_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
 
 
-def _standing(scene: VlnScene, wished: Stance) -> Stance:
+def _snap_start(scene: VlnScene, wished: Stance) -> Stance:
     """Return the place of the rooms' floor nearest to a wished one, looking the wished way."""
     floor = scene.graph.feet[scene.main_places]
     away = ((floor - np.array(wished.feet)) ** 2).sum(axis=1)

@@ -103,7 +103,7 @@ def paired_table(results: Sequence[dict[str, Any]]) -> Table:
     return rows
 
 
-def text_of(table: Table) -> str:
+def format_text(table: Table) -> str:
     """Return a table as text, columns under each other.
 
     Raises:
@@ -122,7 +122,7 @@ def text_of(table: Table) -> str:
     return "\n".join(lines)
 
 
-def markdown_of(table: Table) -> str:
+def format_markdown(table: Table) -> str:
     """Return a table as Markdown."""
     safe = [[cell.replace("|", "\\|") for cell in row] for row in table]
     rule = ["---"] + ["---:"] * (len(table[0]) - 1)

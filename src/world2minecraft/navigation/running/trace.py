@@ -18,7 +18,7 @@ from world2minecraft.core.files import json_rows, read_bytes, write_bytes
 from world2minecraft.navigation.agents.values import Decision, Observation
 from world2minecraft.navigation.agents.vlm_agent import encode_jpeg
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
-from world2minecraft.navigation.running.episode_runner import Walk
+from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 from world2minecraft.navigation.values import Episode, Move, Stance
 
 TRACE_FILE, VIEWS_FOLDER = "trace.jsonl", "views"
@@ -87,7 +87,7 @@ class TraceWriter:
     ) -> None:
         """Write nothing: decisions tell it."""
 
-    def ended(self, walk: Walk) -> None:
+    def ended(self, walk: EpisodeWalk) -> None:
         """Write the score and close the file."""
         self._line(
             {
@@ -96,7 +96,7 @@ class TraceWriter:
                 "steps": walk.steps,
                 "invalid": walk.invalid,
                 "failed": walk.failed,
-                "score": score_told(walk),
+                "score": score_json(walk),
             }
         )
         if self._stream is not None:
@@ -114,7 +114,7 @@ class TraceWriter:
             raise OutputError(self.folder / TRACE_FILE, reason) from error
 
 
-def score_told(walk: Walk) -> dict[str, Any]:
+def score_json(walk: EpisodeWalk) -> dict[str, Any]:
     """Return the score of a walk for JSON: an infinite error is null."""
     told = asdict(walk.score)
     return {

@@ -8,7 +8,7 @@ from world2minecraft.navigation.scores.confidence import Rate, paired_p, rate
 from world2minecraft.navigation.scores.navigation import (
     RADII_M,
     EpisodeScore,
-    Walked,
+    WalkedPath,
     score_episode,
     summarise,
 )
@@ -18,7 +18,7 @@ __all__ = [
     "RADII_M",
     "EpisodeScore",
     "Rate",
-    "Walked",
+    "WalkedPath",
     "cls",
     "dtw_m",
     "ndtw",

@@ -20,7 +20,7 @@ USUAL_M = 3.0  # The radius of OSR, SPL and SDTW in the papers.
 
 
 @dataclass(frozen=True, eq=False)
-class Walked:
+class WalkedPath:
     """What an agent did in an episode: T poses, the first where it began.
 
     ``distance_m`` is the way on foot from each pose to the goal, inf where none leads there.
@@ -65,7 +65,7 @@ class EpisodeScore:
 
 
 def score_episode(
-    walked: Walked, reference_m: np.ndarray, *, radius_m: float = USUAL_M
+    walked: WalkedPath, reference_m: np.ndarray, *, radius_m: float = USUAL_M
 ) -> EpisodeScore:
     """Score an episode.
 

@@ -6,7 +6,7 @@ from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
 from world2minecraft.navigation.environment.action_spaces import ContinuousActions, DiscreteActions
 from world2minecraft.navigation.moves import forward_blocks, heading_vector, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.server.body import ServerBody
+from world2minecraft.navigation.server.player import ServerPlayer
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
 # Which keys to hold, and how long, to go a certain way on foot from rest to rest.
@@ -14,8 +14,8 @@ from world2minecraft.navigation.values import Move, MoveSet, Stance
 # A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
 # come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
 
-MOST_SNEAKING = 9  # Ticks: with as many, most lengths are met to a hundredth.
-MOST_BLOCKS = 16.0
+MAX_SNEAKING_TICKS = 9  # Ticks: with as many, most lengths are met to a hundredth.
+MAX_BLOCKS = 16.0
 _FLAT = BoxWorld([[-99, -1, -99, 99, 0, 99]])
 _WALK = Keys(forward=True)
 _SNEAK = Keys(forward=True, sneak=True)
@@ -30,7 +30,7 @@ def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
         >>> len(keys), sum(one.sneak for one in keys), keys[-1].forward
         (17, 9, False)
     """
-    walking, sneaking = _ticks(min(max(length, 0.0), MOST_BLOCKS))
+    walking, sneaking = _ticks(min(max(length, 0.0), MAX_BLOCKS))
     held = [_WALK] * walking + [_SNEAK] * sneaking
     rest = _way(walking, sneaking)[1]
     return [one._replace(yaw_deg=yaw_deg) for one in [*held, *[Keys()] * rest]]
@@ -40,7 +40,7 @@ def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
 def _ticks(length: float) -> tuple[int, int]:
     """Return ticks of walking and sneaking that come nearest to a length, few of the latter."""
     best, error = (0, 0), length
-    for sneaking in range(MOST_SNEAKING + 1):
+    for sneaking in range(MAX_SNEAKING_TICKS + 1):
         walking = 0
         while _way(walking + 1, sneaking)[0] <= length:
             walking += 1
@@ -65,13 +65,13 @@ def _way(walking: int, sneaking: int) -> tuple[float, int]:
     return body.position[2], _REST
 
 
-SHORT = 0.9  # Of a step: who came less far met something.
+MIN_STEP_SHARE = 0.9  # Of a step: who came less far met something.
 
 
-class MovesOnServer(DiscreteActions):
+class ServerDiscreteActions(DiscreteActions):
     """One move an action. The game knows no whole steps: one goes as far as the way is free."""
 
-    def __init__(self, scene: VlnScene, move_set: MoveSet, server: ServerBody):
+    def __init__(self, scene: VlnScene, move_set: MoveSet, server: ServerPlayer):
         super().__init__(scene, move_set, sliding=True)
         self.server = server
 
@@ -90,16 +90,16 @@ class MovesOnServer(DiscreteActions):
             x, z = heading_vector(here.yaw_deg)
             gone = (body.position[0] - here.x) * x + (body.position[2] - here.z) * z
             stance = Stance(*body.position, here.yaw_deg, here.pitch_deg)
-            return stance, gone < SHORT * length
+            return stance, gone < MIN_STEP_SHARE * length
         yaw_deg = wrap_yaw(here.yaw_deg + (turn if move == Move.RIGHT else -turn))
         body = self.server.hold([Keys(yaw_deg=yaw_deg)], here.pitch_deg)[-1]
         return Stance(*body.position, yaw_deg, here.pitch_deg), False
 
 
-class KeysOnServer(ContinuousActions):
+class ServerContinuousActions(ContinuousActions):
     """A tick of the game an action: keys held and the mouse moved, or STOP said."""
 
-    def __init__(self, scene: VlnScene, server: ServerBody):
+    def __init__(self, scene: VlnScene, server: ServerPlayer):
         super().__init__(scene)
         self.server = server
 

@@ -6,9 +6,9 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.action_spaces import ActionController
 from world2minecraft.navigation.environment.env import VlnEnv
-from world2minecraft.navigation.server.actions import KeysOnServer, MovesOnServer
+from world2minecraft.navigation.server.actions import ServerContinuousActions, ServerDiscreteActions
 from world2minecraft.navigation.server.blocks import Box
-from world2minecraft.navigation.server.body import NAME, ServerBody, join
+from world2minecraft.navigation.server.player import DEFAULT_NAME, ServerPlayer, join
 from world2minecraft.navigation.server.scene import open_server_scene
 from world2minecraft.navigation.values import MoveSet
 
@@ -30,19 +30,19 @@ class ServerEnv(VlnEnv):
 
     def __init__(
         self,
-        server: str | ServerBody,
+        server: str | ServerPlayer,
         *,
         labels: str | Path | None = None,
         box: Box | None = None,
         blocks_per_metre: float | None = None,
-        name: str = NAME,
+        name: str = DEFAULT_NAME,
         version: str = "",
         **options: Any,
     ):
         for option in ("scene", "body", "sliding"):
             if option in options:
                 raise UsageError(f"a body on a server has no option {option!r}; leave it out")
-        owned = not isinstance(server, ServerBody)
+        owned = not isinstance(server, ServerPlayer)
         self.server = join(server, name=name, version=version) if owned else server
         self._is_owned = owned
         try:
@@ -65,5 +65,5 @@ class ServerEnv(VlnEnv):
 
     def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
         if by_keys:
-            return KeysOnServer(self.scene, self.server)
-        return MovesOnServer(self.scene, move_set, self.server)
+            return ServerContinuousActions(self.scene, self.server)
+        return ServerDiscreteActions(self.scene, move_set, self.server)

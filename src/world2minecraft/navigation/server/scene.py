@@ -13,18 +13,18 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import BlockVolume, Camera, Layout
-from world2minecraft.formats.build_source import Source, Start
+from world2minecraft.formats.build_source import BuildSource, PlayerStart
 from world2minecraft.formats.scene import read_scene
-from world2minecraft.formats.volume_crop import trimmed
-from world2minecraft.formats.volume_formats import labelled
+from world2minecraft.formats.volume_crop import trim_air
+from world2minecraft.formats.volume_formats import with_scene_labels
 from world2minecraft.minecraftocc.scene_sources import open_scene_source, source_of_blocks
-from world2minecraft.navigation.running.episode_ground import Ground, SceneGround
+from world2minecraft.navigation.running.simulator import SceneSimulator, Simulator
 from world2minecraft.navigation.scene import VlnScene, layouts_beside
-from world2minecraft.navigation.server.actions import MovesOnServer
+from world2minecraft.navigation.server.actions import ServerDiscreteActions
 from world2minecraft.navigation.server.blocks import Box, checked_box
-from world2minecraft.navigation.server.body import ServerBody
+from world2minecraft.navigation.server.player import ServerPlayer
 from world2minecraft.navigation.values import Move, MoveSet, Stance
-from world2minecraft.rendering.editable_scene import LiveScene
+from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.scene import BlockScene
 
 AROUND, UNDER, ABOVE = 32, 8, 24  # Blocks around the player that are read where no box is named.
@@ -34,15 +34,15 @@ EDGE = 2  # Around a scene.
 class ServerScene(VlnScene):
     """A scene whose blocks stand on a server. Make it by ``open_server_scene``."""
 
-    def __init__(self, source: Source, scene_id: str, server: ServerBody):
+    def __init__(self, source: BuildSource, scene_id: str, server: ServerPlayer):
         scale = source.volume.blocks_per_metre
         self.server, self._labels = server, source.folder
         super().__init__(source_of_blocks(source, scene_id), 1 / scale, opens_doors=False)
 
     @cached_property
-    def live(self) -> LiveScene:
+    def live(self) -> EditableScene:
         """The pictures' scene, which follows the server's blocks."""
-        return LiveScene(self.volume)
+        return EditableScene(self.volume)
 
     @property
     def render_scene(self) -> BlockScene:  # type: ignore[override]
@@ -77,7 +77,7 @@ class ServerScene(VlnScene):
 
 
 def open_server_scene(
-    server: ServerBody,
+    server: ServerPlayer,
     *,
     labels: str | Path | None = None,
     box: Box | None = None,
@@ -107,20 +107,22 @@ def open_server_scene(
     if not volume.states.any():
         raise InputError(where, "nothing but air is in the box; choose another")
     if folder is None:
-        source = Source(_scaled(trimmed(volume), blocks_per_metre or 1.0), "server", Path(where))
+        source = BuildSource(
+            _scaled(trim_air(volume), blocks_per_metre or 1.0), "server", Path(where)
+        )
     else:
         path = Path(str(labels))  # What is walked here can be walked there again, without a server.
         scene = read_scene(folder)
-        start = Start(*scene.spawn, scene.spawn_yaw_deg)
-        source = Source(_labelled(volume, folder, where), "server", path, start, folder)
+        start = PlayerStart(*scene.spawn, scene.spawn_yaw_deg)
+        source = BuildSource(_labelled(volume, folder, where), "server", path, start, folder)
     return ServerScene(source, _scene_id(server, labels), server)
 
 
 def _labelled(volume: BlockVolume, folder: Path, where: str) -> BlockVolume:
-    known = labelled(volume, folder)
+    known = with_scene_labels(volume, folder)
     if not known.semantic.any():
         raise InputError(where, f"the blocks of {folder} do not stand there; build them first")
-    return trimmed(known)
+    return trim_air(known)
 
 
 def _scene_folder(path: Path) -> Path:
@@ -137,7 +139,7 @@ def _box_of(folder: Path) -> Box:
     return checked_box([*low.tolist(), *high.tolist()])
 
 
-def _around(server: ServerBody) -> Box:
+def _around(server: ServerPlayer) -> Box:
     x, y, z = (int(np.floor(value)) for value in server.body.position)
     return x - AROUND, y - UNDER, z - AROUND, x + AROUND, y + ABOVE, z + AROUND
 
@@ -149,7 +151,7 @@ def _scaled(volume: BlockVolume, blocks_per_metre: float) -> BlockVolume:
     )
 
 
-def _scene_id(server: ServerBody, labels: str | Path | None) -> str:
+def _scene_id(server: ServerPlayer, labels: str | Path | None) -> str:
     if labels is not None:
         return open_scene_source(labels).scene_id
     return "server_" + "".join(c if c.isalnum() else "_" for c in server.address)
@@ -162,14 +164,14 @@ def _is_in(cell: np.ndarray, shape: tuple[int, ...]) -> bool:
 # A scene on a server as the ground of episodes: moves are made by its player.
 
 
-class ServerGround(SceneGround):
+class ServerSimulator(SceneSimulator):
     """A scene whose player stands on a server; see ``imagined`` for moves that it does not make."""
 
     def __init__(
         self, scene: ServerScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
     ):
         super().__init__(scene, move_set, camera)
-        self._acting = MovesOnServer(scene, self.move_set, scene.server)
+        self._acting = ServerDiscreteActions(scene, self.move_set, scene.server)
 
     def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Make a move; the player is put where it begins, if it stands elsewhere."""
@@ -181,6 +183,6 @@ class ServerGround(SceneGround):
         return self._acting.stance, collided
 
     @property
-    def imagined(self) -> Ground:
+    def imagined(self) -> Simulator:
         """The scene alone: what the oracle thinks of moves no player."""
-        return SceneGround(self.scene, self.move_set, self.camera)
+        return SceneSimulator(self.scene, self.move_set, self.camera)

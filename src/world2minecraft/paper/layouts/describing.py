@@ -28,8 +28,22 @@ from world2minecraft.paper.layouts.values import ComparedScene
 from world2minecraft.rendering.output.images import colour_bytes
 
 # A few photos of a capture, spread evenly over it, as a model is shown them.
-
 LONGEST_PX = 1024
+
+METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
+AT_WALL_M = 0.25  # What is nearer to a wall stands at it.
+SIDES = ("west", "east", "south", "north")
+DESCRIBE = "describe.md"
+# The first kind of which a word is in a room's things.
+KINDS = (
+    ("kitchen", ("stove", "fridge", "refrigerator", "counter", "oven", "dishwasher", "kitchen")),
+    ("bathroom", ("toilet", "bathtub", "shower")),
+    ("bedroom", ("bed", "crib")),
+    ("living room", ("sofa", "couch", "loveseat")),
+    ("dining room", ("dining",)),
+    ("office", ("desk",)),
+)
+_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 def capture_photos(place: Path, count: int) -> list[Picture]:
@@ -51,22 +65,6 @@ def _small(colour: np.ndarray) -> np.ndarray:
     picture = Image.fromarray(colour)
     picture.thumbnail((LONGEST_PX, LONGEST_PX), Image.Resampling.LANCZOS)
     return np.asarray(picture)
-
-
-METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
-AT_WALL_M = 0.25  # What is nearer to a wall stands at it.
-SIDES = ("west", "east", "south", "north")
-DESCRIBE = "describe.md"
-# The first kind of which a word is in a room's things.
-KINDS = (
-    ("kitchen", ("stove", "fridge", "refrigerator", "counter", "oven", "dishwasher", "kitchen")),
-    ("bathroom", ("toilet", "bathtub", "shower")),
-    ("bedroom", ("bed", "crib")),
-    ("living room", ("sofa", "couch", "loveseat")),
-    ("dining room", ("dining",)),
-    ("office", ("desk",)),
-)
-_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 def describe_scene(scene: ComparedScene) -> str:

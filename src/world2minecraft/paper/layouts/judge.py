@@ -24,10 +24,10 @@ from world2minecraft.external_models.structured_replies import (
     ask_structured,
     extract_json_object,
 )
-from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.light_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.output.images import colour_bytes
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
 from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.views.cameras import camera_of
@@ -91,11 +91,11 @@ def pictures_of(volume: BlockVolume) -> list[Picture]:
     shots = orbit_shots(
         build.whole, camera, VIEWS, elevation_deg=OPEN_ELEVATION_DEG, start_deg=TURN_DEG
     )
-    how = DrawOptions(light=NEUTRAL, samples=2, background=PAPER)
+    how = DrawOptions(light=NEUTRAL, samples=2, background=BACKDROP)
     pictures = []
     for shot in shots:
         scene = prepare_scene(build.seen_by(shot.camera_to_room))
-        picture = next(iter(frames_of(scene, [shot], how)))
+        picture = next(iter(draw_shots(scene, [shot], how)))
         if picture.colour is None:
             raise RuntimeError("the renderer gave no colour")
         pictures.append(Picture(colour_bytes(picture.colour, ".jpg", QUALITY)))

@@ -35,6 +35,9 @@ from world2minecraft.paper.layouts.designs import design_of
 from world2minecraft.paper.layouts.values import ComparedScene
 from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
+ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
+
+
 # Collisions of what is solid: a chair pushed under a table is in its box and meets nothing.
 #
 # A thing of a layout is as solid as the design that stands for it (``designs``), turned as the layout
@@ -81,9 +84,6 @@ def _near(parts: list[LayoutObject], box: LayoutObject) -> list[LayoutObject]:
 
 def _meet(one: list[LayoutObject], other: list[LayoutObject]) -> bool:
     return any(overlap_depth_m(a, b) > OVERLAP_M for a in one for b in other)
-
-
-ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 
 
 @dataclass(frozen=True)

@@ -30,10 +30,9 @@ from world2minecraft.procgen.rooms.voxelization import (
     paint_rug,
 )
 
-# A planned house becomes voxels: walls, slabs, gaps, stairs, and what stands in its rooms.
-
 CEILING_COLOUR = (244, 243, 239)
 FLOORS = {"kitchen": "tiles", "bathroom": "tiles", "hall": "tiles"}
+ROOMS, STOREYS = (3, 14), (1, 2)
 
 
 def paint_house(
@@ -125,9 +124,6 @@ def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, sli
     run = sides[1 - across]
     sides[1 - across] = slice(run.start - 3, run.stop + 3)
     return sides[0], sides[1], slice(c.start, c.stop + 3)
-
-
-ROOMS, STOREYS = (3, 14), (1, 2)
 
 
 def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: float = 0.0) -> Room:

@@ -1,4 +1,10 @@
-"""Stairs of a house: the flight, the hole in the slab above it, and the rail around the hole."""
+"""The plan of a house: a corridor with rooms along it, the gaps in its walls, and its stairs.
+
+The corridor runs along x; rooms lie below and above it with straight walls of 12 cm between them,
+the same on every storey. Where there are two storeys, the upper side begins with a bay of the hall
+that holds the stairs. All lengths are multiples of 2 cm; the inner faces of the outer walls are at
+x = 0 and y = 0.
+"""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,12 +16,6 @@ from world2minecraft.procgen.rooms.floor_shapes import Box, Ground, Rect, Wall
 from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, shade, whole
 from world2minecraft.procgen.rooms.openings import DOOR_M, HEAD_M, SILL_M, Hole
 from world2minecraft.procgen.rooms.placement import Item
-
-# The plan of a house: a corridor with rooms along it, the same walls on every storey.
-#
-# The corridor runs along x; rooms lie below and above it with straight walls of 12 cm between them.
-# Where there are two storeys, the upper side begins with a bay of the hall that holds the stairs.
-# All lengths are multiples of 2 cm; the inner faces of the outer walls are at x = 0 and y = 0.
 
 WALL_M = 0.12  # Partition walls of 11.5 cm brick or 12.5 cm board on studs.
 SLAB_M = 0.24  # Ceiling below and floor above, 12 cm each.
@@ -36,6 +36,14 @@ ONE_STOREY = (
 )  # fmt: skip
 GROUND_STOREY = ("living", "kitchen", "bathroom", "dining", "office", "study", "bed", "living")
 UPPER_STOREY = ("bed", "bathroom", "children", "bed", "study", "children", "office", "bathroom")
+CORNER_M = 0.2  # What stays of a wall beside a door.
+BATH_SILL_M = 1.3
+OPEN_M = 1.4  # A doorway without a leaf, between a kitchen, a dining room and a living room.
+SOCIAL = ("living", "dining", "kitchen")
+OBJS = int(SemanticClass.OBJS)
+STEP_THICK_M = 0.26  # From a step's top down to the underside of the flight.
+HEADROOM_M = 2.0  # Building codes ask for 1.9 to 2.1 m over the line of walk.
+RAIL_M, RAIL_THICK_M, POST_GAP_M = 0.9, 0.04, 0.12  # Codes: 0.9 m high, under 12 cm between.
 
 
 @dataclass(frozen=True)
@@ -175,14 +183,6 @@ def _row(
     return cells
 
 
-# The gaps in a house's walls: the front door, doors to the hall, doorways, windows.
-
-CORNER_M = 0.2  # What stays of a wall beside a door.
-BATH_SILL_M = 1.3
-OPEN_M = 1.4  # A doorway without a leaf, between a kitchen, a dining room and a living room.
-SOCIAL = ("living", "dining", "kitchen")
-
-
 @dataclass(frozen=True)
 class Gap:
     """An opening as the first of ``cells`` sees it; a second cell lies behind its wall."""
@@ -293,12 +293,6 @@ def _doorway(plan: HousePlan, number: int) -> list[Gap]:
     first = whole((wall.first_m + wall.last_m - OPEN_M) / 2)
     gap = Gap("doorway", (number, number + 1), wall, first, whole(first + OPEN_M), 0.0, DOOR_M[1])
     return [gap]
-
-
-OBJS = int(SemanticClass.OBJS)
-STEP_THICK_M = 0.26  # From a step's top down to the underside of the flight.
-HEADROOM_M = 2.0  # Building codes ask for 1.9 to 2.1 m over the line of walk.
-RAIL_M, RAIL_THICK_M, POST_GAP_M = 0.9, 0.04, 0.12  # Codes: 0.9 m high, under 12 cm between.
 
 
 def stairs(flight: Flight, wood: Colour) -> Model:

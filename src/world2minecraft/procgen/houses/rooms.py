@@ -1,7 +1,8 @@
-"""The rooms of a house are furnished: each in a frame of its own, turned by quarters, then placed.
+"""Furnishing of the rooms of a house: each in a frame of its own, turned by quarters, then placed.
 
 A recipe knows its walls by number (a kitchen's counters run along walls 0 and 1), so a room is
-tried in all four turns until the recipe's walls are those without doors.
+tried in all four turns until the recipe's walls are those without doors. The kitchen of a house has
+a recipe of its own: one run of counters along whichever wall the doors leave free.
 """
 
 from collections.abc import Collection
@@ -30,11 +31,13 @@ from world2minecraft.procgen.rooms.placement import (
 )
 from world2minecraft.procgen.rooms.recipes import KINDS
 
-# The kitchen of a house: one run of counters along whichever wall the doors leave free.
-
 LOW_M = 0.5  # What is kept free from below this height is a way; above it, a window's air.
 WIDTHS_M = ((1.0, 1.6), (0.8, 1.2), (0.6, 0.8))  # Of the counters beside and under the sink.
 TABLE_TRIES = 24
+ATTEMPTS = 40
+STEP_IN_M = 0.5  # Where one stands who has come in by a door.
+STEP_OFF_M = 0.9  # The floor before the first step and behind the last stays free.
+LEAF_M = (0.88, 2.0)
 
 
 def furnish_galley(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
@@ -118,12 +121,6 @@ def _table(plan: Plan, style: Style) -> None:
             pendant_over(plan, board, (60, 64, 66))
             return
         del plan.items[before:]
-
-
-ATTEMPTS = 40
-STEP_IN_M = 0.5  # Where one stands who has come in by a door.
-STEP_OFF_M = 0.9  # The floor before the first step and behind the last stays free.
-LEAF_M = (0.88, 2.0)
 
 
 @dataclass(frozen=True)

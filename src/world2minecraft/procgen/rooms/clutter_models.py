@@ -1,4 +1,7 @@
-"""Things of odd shape that no template of furniture knows, in the sizes they have in homes."""
+"""Models of clutter: small things that lie about, and things of shapes that no template has.
+
+Sizes are those of the things themselves: a mug 9 cm, a wine bottle 7 x 30 cm, a shoe 10 x 28 cm.
+"""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -11,15 +14,13 @@ from world2minecraft.procgen.rooms.furniture_model import Bar, Colour, Model, Pa
 from world2minecraft.procgen.rooms.play_and_hall import BRIGHT, bright
 from world2minecraft.procgen.rooms.solid_voxels import modelled
 
-# Small things that lie about: cups, bottles, shoes, bags, boxes, laundry, toys, pots with plants.
-#
-# Sizes are those of the things themselves: a mug 9 cm, a wine bottle 7 x 30 cm, a shoe 10 x 28 cm.
-
 CHAIR, FURN, OBJS = (int(c) for c in (SemanticClass.CHAIR, SemanticClass.FURN, SemanticClass.OBJS))
 CLOTHES: tuple[Colour, ...] = (
     (62, 76, 108), (188, 180, 168), (150, 70, 66), (84, 110, 92), (206, 160, 92), (70, 70, 76),
 )  # fmt: skip
 Maker = Callable[[np.random.Generator], Model]
+WOOD: Colour = (176, 128, 82)
+METAL: Colour = (92, 96, 102)
 
 
 def _pick(rng: np.random.Generator, colours: tuple[Colour, ...]) -> Colour:
@@ -158,10 +159,6 @@ ON_BEDS: tuple[Maker, ...] = (teddy, laundry, decor.book_pile, bag)
 ON_FLOORS: tuple[Maker, ...] = (
     shoes, bag, carton, laundry, ball, bricks, teddy, decor.book_pile, shoes, bottle,
 )  # fmt: skip
-
-
-WOOD: Colour = (176, 128, 82)
-METAL: Colour = (92, 96, 102)
 
 
 def beanbag(rng: np.random.Generator) -> Model:

@@ -1,7 +1,8 @@
 """The ground of a room: which part of its box is air, where its walls are, how high its ceiling is.
 
 A room is its inner box less what is built into it: full-height blocks (the missing corner of an L,
-a chimney breast, a column), corners cut off at 45 degrees, and roofs that slope down to a wall.
+a chimney breast, a column), corners cut off at 45 degrees, and roofs that slope down to a wall. The
+shapes to choose from: a box, an L, a cut corner or chimney breast, a sloped ceiling, columns.
 """
 
 from collections.abc import Callable
@@ -17,6 +18,12 @@ TOUCH_M = 1e-6  # Boxes may share a face.
 
 Box = tuple[float, float, float, float, float, float]
 Rect = tuple[float, float, float, float]  # x0 y0 x1 y1
+STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+# The cell to the left of a step from a corner (i, j): cells are counted one further for the rim.
+LEFT = ((1, 1), (0, 1), (0, 0), (1, 0))
+Size = tuple[float, float, float]
+WALL_FOR_OPENING_M = 1.9  # A window of 1.6 m and its curtains, or a door, its frame and a switch.
+WALL_FOR_DOOR_M = 1.3
 
 
 @dataclass(frozen=True)
@@ -175,11 +182,6 @@ def _outline(size_m: tuple[float, float, float], blocks: tuple[Rect, ...]) -> li
     return _walk_around(free, xs, ys)
 
 
-STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
-# The cell to the left of a step from a corner (i, j): cells are counted one further for the rim.
-LEFT = ((1, 1), (0, 1), (0, 0), (1, 0))
-
-
 def _walk_around(free: np.ndarray, xs: list[float], ys: list[float]) -> list[tuple]:
     """Walk along the edge of the free cells with them at the left; return the corners turned at."""
     i, j = (int(v) for v in np.argwhere(free)[0] - 1)  # Lowest x, then y: a corner going +x.
@@ -206,14 +208,6 @@ def _chamfered(corners: list[tuple], spot: tuple[float, float], leg_m: float) ->
         way = np.sign(np.array(other) - spot)
         ends.append(tuple(float(v) for v in np.array(spot) + way * leg_m))
     return [*corners[:n], *ends, *corners[n + 1 :]]
-
-
-# The shapes of rooms: a box, an L, a cut corner or chimney breast, a sloped ceiling, columns.
-
-Size = tuple[float, float, float]
-WALL_FOR_OPENING_M = 1.9  # A window of 1.6 m and its curtains, or a door, its frame and a switch.
-
-WALL_FOR_DOOR_M = 1.3
 
 
 def box_ground(size_m: Size, rng: np.random.Generator) -> Ground:

@@ -1,4 +1,10 @@
-"""What stands in relation to what: chairs around a table, a lamp over it, pictures over a chest."""
+"""Placement of furniture without collisions, by itself or in relation to other pieces.
+
+A ``Plan`` knows the room's ground, what stands in it, and the places that must stay free (the
+door's swing, the air before a window, the way beside a bed). Walls are those of the ground; the
+first four are numbered by the quarter turns of a front that looks away from them: 0 at x = 0, 1 at
+y = 0, 2 at x = max, 3 at y = max.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,14 +18,9 @@ from world2minecraft.procgen.rooms import decor
 from world2minecraft.procgen.rooms.floor_shapes import TOUCH_M, Box, Ground, Rect, grown
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Colour, Model, whole
 
-# Where furniture stands: an empty floor plan that is filled piece by piece, without collisions.
-#
-# The plan knows the room's ground, what stands in it, and the places that must stay free (the
-# door's swing, the air before a window, the way beside a bed). Walls are those of the ground; the
-# first four are numbered by the quarter turns of a front that looks away from them: 0 at x = 0,
-# 1 at y = 0, 2 at x = max, 3 at y = max.
-
 TRIES = 40
+SQUARE_M = 0.1
+Rug = tuple[float, float, float, float, Colour]  # x0 y0 x1 y1 and its colour
 
 
 @dataclass(frozen=True)
@@ -242,9 +243,6 @@ def ways_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.
     return len(starts) == 1 and reached >= 0.75 * free.sum() and reached * SQUARE_M**2 > 1.2
 
 
-SQUARE_M = 0.1
-
-
 def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the x and y of squares of 10 cm, and where a body fits, each [X, Y]."""
     nx, ny = (int(side / SQUARE_M) for side in plan.size_m[:2])
@@ -260,9 +258,6 @@ def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.n
         if z0 < 1.9 and z1 > 0.05:
             free &= ~((x > x0 - body_m) & (x < x1 + body_m) & (y > y0 - body_m) & (y < y1 + body_m))
     return x, y, free
-
-
-Rug = tuple[float, float, float, float, Colour]  # x0 y0 x1 y1 and its colour
 
 
 def chairs_around(plan: Plan, board: Item, chair: Model, *, ends: bool) -> None:

@@ -1,4 +1,9 @@
-"""The kinds of rooms: how large they are, what their floor is, what recipe furnishes them."""
+"""The kinds of rooms: their sizes, their floors, and the recipes that furnish them.
+
+Each recipe fills a ``Plan``; it places by relation (a sofa against a wall, the television across
+from it, chairs that face their table) and returns the rugs, or None where the room does not hold
+what makes it what it is.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,11 +27,7 @@ from world2minecraft.procgen.rooms.placement import (
     snapped,
 )
 
-# The recipes of a living room, a bedroom, a kitchen, a dining room and a study.
-#
-# Each recipe fills a ``Plan``; it places by relation (a sofa against a wall, the television across
-# from it, chairs that face their table) and returns what the floor wears, or None where the room
-# does not hold what makes it what it is.
+BASE_KINDS = ("bed", "dining", "kitchen", "living", "study")
 
 
 def furnish_living(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
@@ -229,9 +230,6 @@ def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     return ((centre[0] - 0.8, centre[1] - 0.6, centre[0] + 0.8, centre[1] + 0.6, style.cloth),)
 
 
-# The recipes of a bathroom, a hall, an office and a children's room; as in ``daily_rooms``.
-
-
 def shuffled_walls(plan: Plan) -> tuple[int, ...]:
     """Return the four main walls in a random order."""
     return tuple(int(wall) for wall in plan.rng.permutation(4))
@@ -391,9 +389,6 @@ KINDS: dict[str, Kind] = {
     "office": Kind((3.2, 4.0), (4.0, 5.2), "planks", furnish_office),
     "children": Kind((2.8, 3.4), (3.4, 4.4), "planks", furnish_children),
 }
-
-
-BASE_KINDS = ("bed", "dining", "kitchen", "living", "study")
 
 
 def random_size(kind: Kind, rng: np.random.Generator) -> tuple[float, float, float]:

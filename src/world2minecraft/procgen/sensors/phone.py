@@ -1,7 +1,9 @@
 """A phone as the sensor: photos with or without their poses, and a video; never depth.
 
-Surfaces have marks (``texture``), the pictures have soft edges, a phone's exposure and noise
-(``exposure``), and neighbours share most of what they see (``film``).
+Surfaces have marks (``surface_textures``), and the pictures have soft edges, a phone's exposure and
+noise (``photo``). Photos are matched with each other, so neighbours must share most of what they
+see: the viewing direction is decided now and then, and between two such moments the camera turns
+evenly.
 """
 
 import io
@@ -30,17 +32,17 @@ from world2minecraft.procgen.sensors.trajectory import eyes_m, plan_walk
 from world2minecraft.procgen.sensors.view_planning import Gaze
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
-# How a person films a room: the walk of a scan, looked along without jumps.
-#
-# A depth sensor's pictures may look anywhere, each knows where it is. Photos are matched with each
-# other, so neighbours must share most of what they see: where to look is decided now and then, and
-# between two such moments the camera turns evenly.
-
 TURN = np.radians([14.0, 6.0])  # Of yaw and pitch at most, from one photo to the next.
 LOOK_TURN = np.radians([56.0, 24.0])  # From one look to the next.
 LOOK_PHOTOS = 4  # One decides where to look every fourth photo,
 LOOK_PICTURES = 14  # and every fourteenth picture of a video: half a second.
 SMOOTH_PICTURES = 3.0  # A hand that films sways, but does not jerk.
+PHOTO_QUALITY = 92  # What phones write.
+RATE_HZ = 24
+VIDEO_BITS_PER_PIXEL = 1.6  # A picture; phones spend 0.3 with better codecs.
+KEY_EVERY = 12  # Pictures; any of them is reached after decoding half a second at most.
+SHUTTER = 0.1  # Of the time from one picture of a video to the next.
+MOMENTS = 4  # Rays of a pixel, each at its own moment.
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,14 +100,6 @@ def plan_film(
             for track in (eyes, angles)
         )
     return Film(eyes, angles)
-
-
-PHOTO_QUALITY = 92  # What phones write.
-RATE_HZ = 24
-VIDEO_BITS_PER_PIXEL = 1.6  # A picture; phones spend 0.3 with better codecs.
-KEY_EVERY = 12  # Pictures; any of them is reached after decoding half a second at most.
-SHUTTER = 0.1  # Of the time from one picture of a video to the next.
-MOMENTS = 4  # Rays of a pixel, each at its own moment.
 
 
 def phone_shots(room: Room, how: Shooting) -> Iterator[Shot]:

@@ -1,9 +1,14 @@
-"""A photo of a generated room: what its colours look like in soft room light.
+"""Photos of generated rooms: exact flat colours for depth sensors, or those of a phone.
 
-One pass over the pixels gives colour, z-depth, voxel and the cosine between ray and surface. The
-light is a lamp under the ceiling of each room (``lamps``) plus what the walls throw back, dimmed
-where matter is near (a blurred grid of solid cells), and a fine grain, so that no surface is one
-flat tone. It belongs to the spot, not to the camera: a surface has one colour from everywhere.
+Each room has a lamp under its ceiling. ``take_photo`` gives colour, z-depth, voxel and the cosine
+between ray and surface in one pass over the pixels. The light is that of the lamp plus what the
+walls throw back, dimmed where matter is near (a blurred grid of solid cells), and a fine grain, so
+that no surface is one flat tone. It belongs to the spot, not to the camera: a surface has one
+colour from everywhere.
+
+``expose`` and ``develop`` make a phone's photo for image matching: surfaces have marks, and each
+pixel is the mean of four rays, each taken at its own moment of the exposure, so that a camera that
+moves blurs; then come the gain that the phone chose and noise.
 """
 
 from dataclasses import dataclass
@@ -20,13 +25,20 @@ from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.navmesh import is_inside
 from world2minecraft.procgen.sensors.surface_textures import FLOOR_SEED, poster, tone
 from world2minecraft.rendering import VoxelScene, prepare_voxels
-from world2minecraft.rendering.grid_traversal import TILE, bundle_start, trace
+from world2minecraft.rendering.grid_traversal import TILE, bundle_start, trace_ray
 from world2minecraft.rendering.scene_tables import NO_FACE
-
-# The lamps that light the photos of a room or a house: one under each room's ceiling.
 
 UNDER_CEILING_M = 0.35
 GRID_M, MAX_STEPS = 0.1, 300  # How finely a place for a lamp is looked for.
+COARSE = 4  # Voxels of 2 cm a cell of the blurred grid: shadows are soft over 16 cm.
+BLUR_CELLS = 1.6
+NEAR_VOXELS = 7.0  # How far off the surface the blurred grid is read.
+WALL = int(Material.WALL)
+OFFSETS_PX = ((-0.25, -0.25), (0.25, 0.25), (-0.25, 0.25), (0.25, -0.25))
+MIDDLE_GREY = 122.0  # What the mean of a picture is drawn towards,
+METERING = 0.35  # and how much of the way: white rooms stay bright.
+NOISE_FLOOR, NOISE_PER_LIGHT = 1.1, 0.012  # Standard deviation: 1.1 of 255 in black, 2.1 in white.
+DRIFT, TINT_DRIFT = 0.03, 0.012  # How the gain and the white balance of photos err.
 
 
 def hang_lamps(room: Room) -> np.ndarray:
@@ -85,11 +97,6 @@ def nearest_lamps(room: Room, shape: tuple[int, ...], cell_m: float) -> np.ndarr
         # Storeys come from below: each takes over from the middle of its floor slab up.
         lamp_of[:, :, axes[2] > floor_z_m - 0.12] = owner[tuple(nearest)][:, :, None]
     return lamp_of
-
-
-COARSE = 4  # Voxels of 2 cm a cell of the blurred grid: shadows are soft over 16 cm.
-BLUR_CELLS = 1.6
-NEAR_VOXELS = 7.0  # How far off the surface the blurred grid is read.
 
 
 class Photo(NamedTuple):
@@ -161,7 +168,7 @@ def _expose(
                     dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
                     dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
                     dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
-                    t, i, j, k, face = trace(
+                    t, i, j, k, face = trace_ray(
                         cells, pose[0, 3], pose[1, 3], pose[2, 3], dx, dy, dz, start
                     )
                     if face == NO_FACE:
@@ -234,20 +241,6 @@ def _hash(i, j, k):
     mixed = (i * 73856093) ^ (j * 19349663) ^ (k * 83492791)
     mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0x7FFFFFFF
     return ((mixed ^ (mixed >> 16)) & 0xFFFF) / 65535.0
-
-
-# A phone's photo of a generated room: marks on the surfaces, soft edges, a chip's noise.
-#
-# ``photo`` sees one ray a pixel and flat colours, which depth sensors need and matching cannot use.
-# Here each pixel is the mean of four rays, each of them taken at its own moment of the exposure, so
-# that a camera that moves blurs; then come the exposure that the phone chose, and noise.
-
-WALL = int(Material.WALL)
-OFFSETS_PX = ((-0.25, -0.25), (0.25, 0.25), (-0.25, 0.25), (0.25, -0.25))
-MIDDLE_GREY = 122.0  # What the mean of a picture is drawn towards,
-METERING = 0.35  # and how much of the way: white rooms stay bright.
-NOISE_FLOOR, NOISE_PER_LIGHT = 1.1, 0.012  # Standard deviation: 1.1 of 255 in black, 2.1 in white.
-DRIFT, TINT_DRIFT = 0.03, 0.012  # How the gain and the white balance of photos err.
 
 
 @dataclass(frozen=True, eq=False)
@@ -336,7 +329,7 @@ def _accumulate_light(
                     dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
                     dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
                     dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
-                    t, i, j, k, face = trace(
+                    t, i, j, k, face = trace_ray(
                         cells, pose[0, 3], pose[1, 3], pose[2, 3], dx, dy, dz, start
                     )
                     if face == NO_FACE:

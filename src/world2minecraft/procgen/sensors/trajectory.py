@@ -1,6 +1,8 @@
-"""The poses of a scan: a person walks through all rooms and looks around as one does who scans.
+"""The poses of a scan: a person walks through all rooms and looks around while scanning.
 
-``walk`` says where the feet are, ``gaze`` where the camera looks; here the two are put together.
+The walk enters a room by the door, goes through a few stops chosen far from each other, each time
+to the next nearest over free floor, stays a moment at each, and goes on into the nearest room not
+yet seen. ``view_planning`` decides where the camera looks.
 """
 
 from dataclasses import dataclass
@@ -17,16 +19,15 @@ from world2minecraft.procgen.sensors.navmesh import STEP_M, Stands, find_stands
 from world2minecraft.procgen.sensors.view_planning import Gaze
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
-# The walk of a person who scans: by the door into a room, from stop to stop, through all rooms.
-#
-# In each room a few stops are chosen far from each other; the walk leads from one to the next
-# nearest over free floor, stays a moment at each, and goes on into the nearest room not yet seen.
-
 STOPS_PER_M2 = 1.2  # Of free floor; four at least, so that a place is seen from several sides.
 STOPS = (4, 9)
 STAY_M = 0.6  # A stop takes as long as a walk of this length: one sweeps there.
 JUMP_M = 0.6  # Twice the longest step.
 SMOOTH_M = 0.5  # Nobody walks in steps of a grid.
+EYE_M = (1.2, 1.7)  # Of the camera over the floor.
+SWAY_M = 0.22  # How much the camera rises and sinks along the walk.
+ASIDE_M = 0.03  # A hand is never still, least of all where one stays.
+YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,12 +168,6 @@ def _smoothed(stands: Stands, way_m: np.ndarray) -> np.ndarray:
     smooth = ndimage.uniform_filter1d(way_m, round(SMOOTH_M / STEP_M), axis=0, mode="nearest")
     gap, _ = KDTree(stands.places_m).query(smooth)
     return np.where((gap < STEP_M)[:, None], smooth, way_m)
-
-
-EYE_M = (1.2, 1.7)  # Of the camera over the floor.
-SWAY_M = 0.22  # How much the camera rises and sinks along the walk.
-ASIDE_M = 0.03  # A hand is never still, least of all where one stays.
-YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 
 
 def plan_tour(

@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.grid_traversal import trace
+from world2minecraft.rendering.grid_traversal import trace_ray
 from world2minecraft.rendering.scene_tables import NO_FACE
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
@@ -147,7 +147,7 @@ def _cast(cells, eye, ahead):
     far, square = np.zeros(count), np.zeros(count)
     for n in range(count):
         dx, dy, dz = ahead[n, 0], ahead[n, 1], ahead[n, 2]
-        t, i, j, k, face = trace(cells, eye[0], eye[1], eye[2], dx, dy, dz, 0.0)
+        t, i, j, k, face = trace_ray(cells, eye[0], eye[1], eye[2], dx, dy, dz, 0.0)
         if face == NO_FACE:
             continue
         index[n], far[n] = (i * ny + j) * nz + k, t

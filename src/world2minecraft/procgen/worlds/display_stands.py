@@ -1,4 +1,9 @@
-"""Racks, plinths, beds of soil and basins that show wares: any block of the game as a thing."""
+"""Wares and the racks, plinths, planters and basins that show them.
+
+A ware is any block of the game as something to look at. ``data/wares.json`` lists the blocks that
+do not simply stand on a board: what grows needs soil, what hangs a block above, what is two blocks
+high its other half. ``home`` names those that also lie about in homes.
+"""
 
 import json
 from collections.abc import Sequence
@@ -16,14 +21,11 @@ from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
 from world2minecraft.procgen.worlds.house import BlockRoom
 from world2minecraft.procgen.worlds.shell import FACINGS
 
-# Wares: any block of the game as something to look at, with what it needs to stay.
-#
-# ``data/wares.json`` says which blocks stand otherwise than on a board: what grows needs soil, what
-# hangs a block above, what is two blocks high its other half. All others stand by themselves; of them
-# ``home`` names those that lie about in homes too.
-
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
 HOME = "home"
+FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
+WALL = int(SemanticClass.WALL)
+Corner = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -99,11 +101,6 @@ class Deck:
         pile = self._piles[mount]
         self._next[mount] += 1
         return pile[(self._next[mount] - 1) % len(pile)]
-
-
-FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
-WALL = int(SemanticClass.WALL)
-Corner = tuple[int, int, int]
 
 
 class Show:

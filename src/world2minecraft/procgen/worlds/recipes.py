@@ -1,4 +1,7 @@
-"""Which kinds the rooms of a house are of, and what more stands in those of the metric kinds."""
+"""Recipes of rooms in block houses: kinds that metric houses do not know, and additions to others.
+
+Each recipe is a list of steps, tried in order; what finds no place is left out.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -12,8 +15,6 @@ from world2minecraft.procgen.worlds.dressing import hang_one
 from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
 
-# What a recipe of a room works with: words for walls, floor and ceiling, seats and racks.
-
 BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
     "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",
     "bamboo_mosaic", "crimson", "warped", "smooth_stone", "stone", "smooth_quartz", "andesite",
@@ -26,6 +27,76 @@ BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
     "cobblestone", "mossy_cobblestone", "cobbled_deepslate", "deepslate_brick",
     "polished_blackstone_brick", "red_sandstone", "cut_red_sandstone", "mossy_stone_brick",
 )  # fmt: skip
+PILLARS = (
+    "quartz_pillar[axis=y]", "purpur_pillar[axis=y]", "polished_basalt[axis=y]",
+    "chiseled_quartz_block", "chiseled_stone_bricks", "chiseled_deepslate", "chiseled_sandstone",
+    "chiseled_red_sandstone", "chiseled_polished_blackstone", "bone_block[axis=y]",
+    "polished_deepslate", "stripped_dark_oak_log[axis=y]", "stripped_birch_log[axis=y]",
+    "smooth_stone", "cut_sandstone", "stripped_cherry_log[axis=y]", "gilded_blackstone",
+)  # fmt: skip
+RIMS = (
+    "bricks", "mud_bricks", "spruce_planks", "stone_bricks", "mossy_cobblestone", "cut_sandstone",
+    "stripped_oak_log[axis=x]", "prismarine_bricks", "smooth_quartz", "packed_mud", "calcite",
+)  # fmt: skip
+# Which kind a room of a metric house may become, and how often.
+PICTURES = ("picture", "portrait")
+BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
+    "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
+    "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
+    "dining": (
+        ("cafe", 0.12), ("office", 0.1), ("study", 0.08), ("games", 0.06), ("music", 0.06),
+    ),
+    "children": (
+        ("office", 0.12), ("study", 0.1), ("games", 0.06), ("library", 0.05), ("music", 0.04),
+        ("cafe", 0.03),
+    ),
+    "bed": (("children", 0.08),),
+    "bathroom": (("laundry", 0.12),),
+}  # fmt: skip
+SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
+SHOWING_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
+MANY_ROOMS = 8  # So many have two.
+SPARE = ("children", "dining", "study", "office")  # of these, where it has one.
+MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
+    "living": (
+        "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
+        "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "globe_lamp", "arc_lamp",
+        "corner_sofa_leather", "corner_sofa_white", "cube_shelf", "planter_box",
+    ),
+    "bed": (
+        "single_bed", "vanity", "standing_mirror", "blanket_chest", "crib", "ottoman", "radiator",
+        "chair_padded", "chest_of_drawers", "palm", "double_bed_low", "paper_lamp",
+    ),
+    "kitchen": (
+        "dishwasher", "fridge_double", "oven_tower", "pantry_rack", "pedal_bin", "radiator",
+        "wall_shelf", "counter", "microwave", "kitchen_island",
+    ),
+    "bathroom": ("towel_radiator", "laundry_basket", "shower_curtain", "wall_mirror", "fern"),
+    "dining": (
+        "display_cabinet", "sideboard", "table_console", "grandfather_clock", "fireplace", "plant",
+        "vase", "bonsai", "piano",
+    ),
+    "study": (
+        "bookcase", "armchair_wing", "globe_lamp", "filing_cabinet", "bust", "bookcase_low",
+        "desk_partners", "radiator", "cactus",
+    ),
+    "children": ("bunk_bed_pine", "crate", "bicycle", "cube_shelf", "chair_child", "box", "crib"),
+    "office": (
+        "locker", "filing_cabinet", "projector_screen", "desk_white", "office_chair", "cactus",
+        "fir", "desk_drawers", "monitor_wide",
+    ),
+    "hall": (
+        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "wall_mirror",
+        "radiator",
+    ),
+}  # fmt: skip
+CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
+LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
+SHELVES = {  # How many shelves hang in a room at most.
+    "living": 2, "bed": 1, "children": 2, "office": 2, "study": 2, "dining": 1, "kitchen": 1,
+    "hall": 2, "library": 1, "games": 1, "music": 1,
+}  # fmt: skip
+SHELF_M = 1.3
 
 
 @dataclass(frozen=True)
@@ -90,25 +161,6 @@ class Task:
             own = tuple(level for level in levels if level < self.room.height - 1)
             held += self.show.put_rack(self.room, own, board)
         return held
-
-
-# Recipes of the rooms that metric houses do not know: shops, winter gardens, workshops and more.
-#
-# Each is a list of steps, tried in order; what finds no place is left out.
-
-PILLARS = (
-    "quartz_pillar[axis=y]", "purpur_pillar[axis=y]", "polished_basalt[axis=y]",
-    "chiseled_quartz_block", "chiseled_stone_bricks", "chiseled_deepslate", "chiseled_sandstone",
-    "chiseled_red_sandstone", "chiseled_polished_blackstone", "bone_block[axis=y]",
-    "polished_deepslate", "stripped_dark_oak_log[axis=y]", "stripped_birch_log[axis=y]",
-    "smooth_stone", "cut_sandstone", "stripped_cherry_log[axis=y]", "gilded_blackstone",
-)  # fmt: skip
-RIMS = (
-    "bricks", "mud_bricks", "spruce_planks", "stone_bricks", "mossy_cobblestone", "cut_sandstone",
-    "stripped_oak_log[axis=x]", "prismarine_bricks", "smooth_quartz", "packed_mud", "calcite",
-)  # fmt: skip
-# Which kind a room of a metric house may become, and how often.
-PICTURES = ("picture", "portrait")
 
 
 def _shop(task: Task) -> None:
@@ -238,65 +290,6 @@ OWN: dict[str, Callable[[Task], None]] = {
     "library": _library, "music": _music, "games": _games, "laundry": _laundry, "cafe": _cafe,
     "gallery": _gallery,
 }  # fmt: skip
-
-
-BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
-    "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
-    "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
-    "dining": (
-        ("cafe", 0.12), ("office", 0.1), ("study", 0.08), ("games", 0.06), ("music", 0.06),
-    ),
-    "children": (
-        ("office", 0.12), ("study", 0.1), ("games", 0.06), ("library", 0.05), ("music", 0.04),
-        ("cafe", 0.03),
-    ),
-    "bed": (("children", 0.08),),
-    "bathroom": (("laundry", 0.12),),
-}  # fmt: skip
-SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
-SHOWING_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
-MANY_ROOMS = 8  # So many have two.
-SPARE = ("children", "dining", "study", "office")  # of these, where it has one.
-MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
-    "living": (
-        "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
-        "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "globe_lamp", "arc_lamp",
-        "corner_sofa_leather", "corner_sofa_white", "cube_shelf", "planter_box",
-    ),
-    "bed": (
-        "single_bed", "vanity", "standing_mirror", "blanket_chest", "crib", "ottoman", "radiator",
-        "chair_padded", "chest_of_drawers", "palm", "double_bed_low", "paper_lamp",
-    ),
-    "kitchen": (
-        "dishwasher", "fridge_double", "oven_tower", "pantry_rack", "pedal_bin", "radiator",
-        "wall_shelf", "counter", "microwave", "kitchen_island",
-    ),
-    "bathroom": ("towel_radiator", "laundry_basket", "shower_curtain", "wall_mirror", "fern"),
-    "dining": (
-        "display_cabinet", "sideboard", "table_console", "grandfather_clock", "fireplace", "plant",
-        "vase", "bonsai", "piano",
-    ),
-    "study": (
-        "bookcase", "armchair_wing", "globe_lamp", "filing_cabinet", "bust", "bookcase_low",
-        "desk_partners", "radiator", "cactus",
-    ),
-    "children": ("bunk_bed_pine", "crate", "bicycle", "cube_shelf", "chair_child", "box", "crib"),
-    "office": (
-        "locker", "filing_cabinet", "projector_screen", "desk_white", "office_chair", "cactus",
-        "fir", "desk_drawers", "monitor_wide",
-    ),
-    "hall": (
-        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "wall_mirror",
-        "radiator",
-    ),
-}  # fmt: skip
-CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
-LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
-SHELVES = {  # How many shelves hang in a room at most.
-    "living": 2, "bed": 1, "children": 2, "office": 2, "study": 2, "dining": 1, "kitchen": 1,
-    "hall": 2, "library": 1, "games": 1, "music": 1,
-}  # fmt: skip
-SHELF_M = 1.3
 
 
 def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:

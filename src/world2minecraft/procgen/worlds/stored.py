@@ -1,4 +1,4 @@
-"""Worlds of houses on disk: a folder a house, with the world, its scene and its designs."""
+"""Worlds of houses on disk: a folder per house, with the world, its scene and its designs."""
 
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,8 @@ from world2minecraft.procgen.worlds.furnishing import Thing
 from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.world import HouseWorld, generate_world
 
-# The rooms of a made house as metric layouts: outlines, openings, and what stands in them.
+ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
+WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to house.
 
 
 def house_layouts(house: BlockHouse, things: tuple[Thing, ...]) -> tuple[Layout, ...]:
@@ -66,10 +67,6 @@ def _object(thing: Thing, scale: float) -> LayoutObject:
     size = sides[[1, 0, 2]] if thing.quarter_turns % 2 else sides
     yaw = 90.0 * thing.quarter_turns
     return LayoutObject(thing.class_id, (low + high) / 2, size, yaw, thing.design)
-
-
-ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
-WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to house.
 
 
 def write_house(

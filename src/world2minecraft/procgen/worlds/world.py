@@ -28,9 +28,11 @@ from world2minecraft.procgen.worlds.recipes import OWN, Task, furnish_more, with
 from world2minecraft.procgen.worlds.shell import put_shell, put_stairs, rails
 from world2minecraft.procgen.worlds.styles import RoomLook, Style, draw_look, styles
 
-# Where one comes to on foot in a house, by the same walkable graph that tours go by.
-
 LEVEL = 0.5  # Blocks: carpets lie on a floor, slabs stand on it.
+# 0.24 m a block: three of the cells that pictures are labelled with, so no cell holds two blocks.
+BLOCKS_PER_METRE = 25 / 6
+SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
+DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 
 
 def reached_floors(
@@ -83,12 +85,6 @@ def on_floor(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.ndarray
     found &= (x >= 0) & (y >= 0) & (x < house.size[0]) & (y < house.size[1])
     found[found] = room.floor(house.size)[x[found], y[found]]
     return found
-
-
-# 0.24 m a block: three of the cells that pictures are labelled with, so no cell holds two blocks.
-BLOCKS_PER_METRE = 25 / 6
-SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
-DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 
 
 @dataclass(frozen=True, eq=False)

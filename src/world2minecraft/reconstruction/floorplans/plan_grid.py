@@ -30,9 +30,7 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import (
 from world2minecraft.reconstruction.floorplans.room_outlines import PlacedRoom, placed_rooms
 
 # Colours for what a plan names: RoomPlan measures shapes alone, so these are only plausible.
-#
 # They part furniture from floor and walls, which one colour of wood for all would not.
-
 Colour = tuple[int, int, int]
 STRUCTURE: dict[int, Colour] = {
     int(SemanticClass.FLOOR): (188, 166, 134),
@@ -68,16 +66,22 @@ THINGS: dict[str, Colour] = {
     "rug": (146, 92, 84),
 }
 
+# The cells of a plan while they are painted, and the things that stand in them so far.
+MOST_CELLS = 400_000_000
+PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.
+
+# Furniture of a plan, each in its box: the cells of the template that stands for it.
+PUSH = 2  # Cells by which a box that reaches into a wall is moved off it.
+
+REACH_M = 0.20  # How far a wall's cells may lie from the line of an opening in it.
+BEYOND_M = 0.35  # Past the wall that an opening is in: there the next room has begun.
+ASIDE_M = 0.25  # On both sides of a wall within a room, its floor goes on this far off.
+WALL, OBJS, EMPTY = int(SemanticClass.WALL), int(SemanticClass.OBJS), int(SemanticClass.EMPTY)
+
 
 def colour_of(category: str) -> Colour:
     """Return the colour of a thing by RoomPlan's category."""
     return THINGS.get(category, OTHER)
-
-
-# The cells of a plan while they are painted, and the things that stand in them so far.
-
-MOST_CELLS = 400_000_000
-PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.
 
 
 class Canvas:
@@ -174,11 +178,6 @@ class Canvas:
         )
 
 
-# Furniture of a plan, each in its box: the cells of the template that stands for it.
-
-PUSH = 2  # Cells by which a box that reaches into a wall is moved off it.
-
-
 def stand(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray) -> None:
     """Put a thing into its box: those cells of its template that are free air of its room.
 
@@ -222,12 +221,6 @@ def _pushed_in(corner: np.ndarray, sides: np.ndarray, inside: np.ndarray) -> np.
         if held > most:
             best, most = corner + step, held
     return best
-
-
-REACH_M = 0.20  # How far a wall's cells may lie from the line of an opening in it.
-BEYOND_M = 0.35  # Past the wall that an opening is in: there the next room has begun.
-ASIDE_M = 0.25  # On both sides of a wall within a room, its floor goes on this far off.
-WALL, OBJS, EMPTY = int(SemanticClass.WALL), int(SemanticClass.OBJS), int(SemanticClass.EMPTY)
 
 
 @dataclass(frozen=True, eq=False)

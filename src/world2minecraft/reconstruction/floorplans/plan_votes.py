@@ -26,10 +26,8 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 )
 
 # What a plan says of a scan's cells, as votes; and openings that the scan did not show.
-#
 # Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
 # Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
-
 EDGE_M = 0.02
 IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.
 LEVEL_M = 0.05

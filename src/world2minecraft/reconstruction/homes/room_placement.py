@@ -15,11 +15,9 @@ from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shi
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved, moved_layout
 
 # Where one room may stand beside others: its doors against theirs.
-#
 # Two runs have a door in common where openings of about one width and height meet from both sides of
 # a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one saw
 # there must agree with what the other saw of the same place, and tells the place to the cell.
-
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Between two rooms: the wall's face in each.
 ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # How far a door's place may be off.
@@ -33,6 +31,12 @@ BESIDE_CELLS = 4  # Around the wall between two rooms.
 NEAR_CELLS = 7  # Places nearer than that are one.
 MORE_DOORS = 0.3  # What each further door that meets adds.
 UNSURE_COST = 0.1
+
+SURE_BY = 0.15  # A place is taken where it fits better than any other by so much.
+MOST_SHOWN = 4
+MET_M = 0.5  # Doors nearer than that meet.
+ALIKE = 0.85  # Two scans of one room agree by so much.
+HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the other.
 
 
 @dataclass(frozen=True)
@@ -236,13 +240,6 @@ def overlap_m2(
         both &= inside_polygon(points, other.floor_polygon_m, 0.0)
         shared += float(both.sum()) * step_m**2
     return shared
-
-
-SURE_BY = 0.15  # A place is taken where it fits better than any other by so much.
-MOST_SHOWN = 4
-MET_M = 0.5  # Doors nearer than that meet.
-ALIKE = 0.85  # Two scans of one room agree by so much.
-HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the other.
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Furniture that stands in a row, told apart.
+"""Split runs of cabinets: furniture that stands in a row.
 
 What hangs is parted from what stands, what is taller from what is lower, each arm of an L from the
 other, and along an arm what looks different from its neighbour.
@@ -22,12 +22,39 @@ from world2minecraft.reconstruction.instances.object_voxels import (
     cells_by_owner,
     object_voxels,
 )
+from world2minecraft.reconstruction.instances.parameters import FindParameters
 
 # Slivers of a cut go back to the piece that they touch most.
-
 SLIVER_WIDTH_M = 0.2  # A piece this thin in plan
 SLIVER_LENGTH_M = 0.75  # and this short is the flank or the edge of its neighbour,
 MIN_CELLS = 40  # and one of so few cells a sliver of it.
+
+# The arms of an L or a U of furniture, each a rectangle of the plan.
+MIN_EMPTY_M2 = 0.2  # A plan whose box holds less air than this is one arm: half a unit's place.
+MIN_EMPTY_SHARE = 0.2  # And so large a share of its box: noise makes no arm.
+MIN_FREED_SHARE = 0.5  # A cut frees the boxes of so much of that air.
+MIN_ARM_M = 0.3
+NEARLY_BEST = 0.85  # Cuts that free so much of what the best one frees are as good.
+MIN_NEIGHBOURS = 4  # Of the 9 columns around and with one.
+OPEN_SHARE = 0.5  # A column of which this much was seen free is air; the inside of a case is not.
+
+# What hangs over something else of its class: a wall cupboard over a counter.
+MIN_HANGING_HEIGHT_M = 1.0  # What begins below this stands: a shelf of a bookcase, a drawer.
+MIN_GAP_M = 0.24  # So much free air under a piece; over a counter it is 0.5 m.
+MIN_HANGING_M2 = 0.06  # A plan of less is a stray cell or a tap.
+MAX_LAYER_SHARE = 0.28  # In the gap less of the plan is filled: kitchens 0.2, bookcases 0.38.
+PLAN_BOX = np.ones((3, 3), np.bool_)
+
+# Plans of pieces that are each of about one height: a fridge beside a counter.
+HEIGHT_STEP_M = 0.2  # Tops of neighbours that differ by less are one piece: a hob, a sink.
+MIN_COLUMNS = 6
+
+# Where a row of cupboards changes along its front: in colour or in how deep it lies.
+MIN_UNIT_M = 0.32  # The narrowest unit of a row.
+MIN_RUN_M = 0.9  # A run that is shorter is one unit.
+COLOUR_STEP = 0.05  # In Oklab: a front that differs by less looks the same; light alone gives 0.03.
+SEAM_PENALTY = 5.0  # What a seam costs, in squared steps summed over the slices of a run.
+MIN_FRONT_LAYERS = 3  # A slice that shows fewer layers of its front says nothing.
 
 
 def merge_slivers(pieces: np.ndarray, voxels: ObjectVoxels) -> np.ndarray:
@@ -68,17 +95,6 @@ def _most_adjacent(pieces: np.ndarray, number: int) -> int:
     adjacent = pieces[ndimage.binary_dilation(own, np.ones((3, 3, 3), np.bool_)) & ~own]
     counts = np.bincount(adjacent[adjacent > 0])
     return int(counts.argmax()) if len(counts) else 0
-
-
-# The arms of an L or a U of furniture, each a rectangle of the plan.
-
-MIN_EMPTY_M2 = 0.2  # A plan whose box holds less air than this is one arm: half a unit's place.
-MIN_EMPTY_SHARE = 0.2  # And so large a share of its box: noise makes no arm.
-MIN_FREED_SHARE = 0.5  # A cut frees the boxes of so much of that air.
-MIN_ARM_M = 0.3
-NEARLY_BEST = 0.85  # Cuts that free so much of what the best one frees are as good.
-MIN_NEIGHBOURS = 4  # Of the 9 columns around and with one.
-OPEN_SHARE = 0.5  # A column of which this much was seen free is air; the inside of a case is not.
 
 
 def split_into_arms(plan: np.ndarray, voxels: ObjectVoxels) -> list[np.ndarray]:
@@ -147,17 +163,6 @@ def _longest_side(plan: np.ndarray) -> int:
     return max(side.stop - side.start for side in box) if box else 0
 
 
-# What hangs over something else of its class: a wall cupboard over a counter.
-
-MIN_HANGING_HEIGHT_M = 1.0  # What begins below this stands: a shelf of a bookcase, a drawer.
-MIN_GAP_M = 0.24  # So much free air under a piece; over a counter it is 0.5 m.
-MIN_HANGING_M2 = 0.06  # A plan of less is a stray cell or a tap.
-MAX_LAYER_SHARE = (
-    0.28  # In the gap, less of the plan is filled: kitchens 0.2 at most, bookcases 0.38.
-)
-PLAN_BOX = np.ones((3, 3), np.bool_)
-
-
 def hanging_cells(voxels: ObjectVoxels) -> np.ndarray:
     """Return the own cells, bool [X, Y, Z], that hang clear of what stands below them.
 
@@ -197,14 +202,6 @@ def _is_clear(voxels: ObjectVoxels, plan: np.ndarray, bottom: int) -> bool:
     columns = own[:, :, bottom:].any(axis=2).sum()
     gap = own[:, :, max(bottom - voxels.cells_of(MIN_GAP_M), 0) : bottom]
     return bool((gap.sum(axis=(0, 1)) < MAX_LAYER_SHARE * columns).all())
-
-
-# Plans of pieces that are each of about one height: a fridge beside a counter.
-
-HEIGHT_STEP_M = (
-    0.2  # Tops of neighbours that differ by less are one piece: a hob, a sink, a box's lid.
-)
-MIN_COLUMNS = 6
 
 
 def split_by_height(voxels: ObjectVoxels) -> list[np.ndarray]:
@@ -258,15 +255,6 @@ def _height_regions(top: np.ndarray, step: float) -> np.ndarray:
     _, compact = np.unique(result, return_inverse=True)
     compact = compact.reshape(top.shape)
     return compact if (top == 0).any() else compact + 1
-
-
-# Where a row of cupboards changes along its front: in colour or in how deep it lies.
-
-MIN_UNIT_M = 0.32  # The narrowest unit of a row.
-MIN_RUN_M = 0.9  # A run that is shorter is one unit.
-COLOUR_STEP = 0.05  # In Oklab: a front that differs by less looks the same; light alone gives 0.03.
-SEAM_PENALTY = 5.0  # What a seam costs, in squared steps summed over the slices of a run.
-MIN_FRONT_LAYERS = 3  # A slice that shows fewer layers of its front says nothing.
 
 
 def split_at_seams(voxels: ObjectVoxels) -> list[np.ndarray]:
@@ -353,7 +341,9 @@ def _colour_step(colours: np.ndarray) -> float:
     return max(COLOUR_STEP, 2 * usual)
 
 
-def split_cabinet_runs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def split_cabinet_runs(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which cupboards of a row have own numbers."""
     result = owners.copy()
     next_id = int(owners.max(initial=0))

@@ -14,6 +14,8 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.jit import njit
 
+NO_CLUSTER = -1
+
 
 def object_cells(labels: np.ndarray) -> np.ndarray:
     """Return the paper's binary grid, bool [X, Y, Z]: cells of an object class, 5 to 11."""
@@ -41,9 +43,6 @@ def candidate_cells(
     Densities are multiples of 1 / k^3; half of one millionth keeps tau = 6/27 from missing 6/27.
     """
     return np.argwhere(binary & (density >= density_threshold - 5e-7)).astype(np.int32)
-
-
-NO_CLUSTER = -1
 
 
 def cluster_candidates(

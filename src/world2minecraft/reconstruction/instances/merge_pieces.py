@@ -1,4 +1,8 @@
-"""What scans tear off: loose pieces join an object of their class near by, or become one."""
+"""Passes that merge what belongs together.
+
+Parts of one class that stand on one another, small and loose pieces beside an object of their
+class, and the post, cord and foot of a lamp with its shade.
+"""
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -6,16 +10,31 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
+from world2minecraft.reconstruction.instances.density_clustering import object_cells
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
+from world2minecraft.reconstruction.instances.parameters import FindParameters
 
 # Bits of a lamp: its foot on the floor, a piece of its cord, join the shade over or under them.
-
 MAX_POST_CELLS = 2  # A post or a cord is at most so wide,
 MAX_FOOT_CELLS = 1  # a foot so high.
 MAX_GAP_M = 1.4  # Between the foot of a lamp and its shade.
 
+# Parts of one object that stand on one another: a table's top on its post, a bed on a bed.
+MIN_OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or under the other.
+HALF_OF_26 = [
+    (dx, dy, dz)
+    for dx in (-1, 0, 1)
+    for dy in (-1, 0, 1)
+    for dz in (-1, 0, 1)
+    if (dx, dy, dz) > (0, 0, 0)
+]
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
-def merge_lamp_parts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+
+def merge_lamp_parts(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which posts, cords and feet belong to their lamps.
 
     What lies wholly within the floor and belongs to nothing is no object.
@@ -58,26 +77,16 @@ def _vertical_gap(fragment: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) 
     return None if blocked.any() else max(last - first, 0)
 
 
-# Parts of one object that stand on one another: a table's top on its post, a bed on a bed.
-
-MIN_OVERLAP = 0.5  # The share of the smaller part's plan that must lie over or under the other.
-HALF_OF_26 = [
-    (dx, dy, dz)
-    for dx in (-1, 0, 1)
-    for dy in (-1, 0, 1)
-    for dz in (-1, 0, 1)
-    if (dx, dy, dz) > (0, 0, 0)
-]
-
-
-def merge_stacked(owners: np.ndarray, labels: np.ndarray) -> np.ndarray:
+def merge_stacked(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with stacked parts of one class under one number.
 
     A thin post is too sparse to hold candidates, so density parts a top from its foot. Two parts
     of the same class that touch are one object where at least half of the smaller one's plan
     lies over or under the other.
     """
-    pairs = _touching_pairs(owners, labels)
+    pairs = _touching_pairs(owners, grid.labels)
     parent = list(range(int(owners.max(initial=0)) + 1))
     plans = _columns(owners, {number for pair in pairs for number in pair})
     for first, second in pairs:
@@ -120,46 +129,41 @@ def _root(parent: list[int], number: int) -> int:
     return number
 
 
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
-
-
 def merge_small_pieces(
-    labels: np.ndarray, owners: np.ndarray, *, min_cells: int, join_radius: float
+    owners: np.ndarray, grid: OccupancyGrid, parameters: FindParameters
 ) -> np.ndarray:
     """Return owners in which no object is smaller than ``min_cells``.
 
-    What stands on the floor is large: of chairs, beds, sofas and tables fragments of some more cells
-    join a neighbour too, where there is one.
+    What stands on the floor is large: of chairs, beds, sofas and tables, fragments of some more
+    cells join a neighbour too, where there is one.
 
     Loose pieces and too small objects join the nearest object of their own class within
     ``join_radius`` cells. A loose piece that finds none becomes an object where it is large
     enough; the rest belongs to none (owner 0).
     """
-    result = owners.copy()
-    for class_id in np.unique(labels[(labels >= 5) & (labels <= 11)]):
-        fragment = STANDING_FACTOR * min_cells if class_id in STANDING else min_cells
-        _merge_class(labels == class_id, result, (min_cells, fragment), join_radius)
+    result, labels = owners.copy(), grid.labels
+    for class_id in np.unique(labels[object_cells(labels)]):
+        factor = STANDING_FACTOR if class_id in STANDING else 1
+        _merge_class(labels == class_id, result, factor * parameters.min_cells, parameters)
     return result
 
 
 def _merge_class(
-    mask: np.ndarray, owners: np.ndarray, limits: tuple[int, int], join_radius: float
+    mask: np.ndarray, owners: np.ndarray, min_whole_cells: int, parameters: FindParameters
 ) -> None:
-    min_cells, fragment = limits
+    """Merge, in place, the loose pieces of a class and its objects of too few cells."""
     sizes = np.bincount(owners[mask])
-    small = np.flatnonzero((sizes > 0) & (sizes < fragment))
+    small = np.flatnonzero((sizes > 0) & (sizes < min_whole_cells))
     loose = mask & ((owners == 0) | np.isin(owners, small[small > 0]))
     if not loose.any():
         return
-    kept = mask & ~loose
+    anchors = np.argwhere(mask & ~loose)
     owners[loose] = 0
-    anchors = np.argwhere(kept)
     tree = KDTree(anchors) if len(anchors) else None
     next_id = int(owners.max())
     for cells in _connected_pieces(loose):
-        owner = _nearest_object(tree, anchors, owners, cells, join_radius)
-        if owner == 0 and len(cells) >= min_cells:
+        owner = _nearest_object(tree, anchors, owners, cells, parameters.join_radius)
+        if owner == 0 and len(cells) >= parameters.min_cells:
             next_id += 1
             owner = next_id
         owners[tuple(cells.T)] = owner

@@ -1,6 +1,7 @@
-"""How far an object reaches beyond the cells that were seen: to the floor, its host, the ceiling.
+"""The extent of an object: its layers, and the rectangle of a chair that stands askew.
 
-A scan misses what is thin: the post of a lamp, the cord of a pendant, a chair's legs.
+A scan misses what is thin: the post of a lamp, the cord of a pendant, a chair's legs. So objects
+reach beyond the cells that were seen: to the floor, to what they stand on, or to the ceiling.
 """
 
 from typing import NamedTuple
@@ -12,14 +13,17 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.reconstruction.instances.object_voxels import floor_layer_below
 
 # Chairs that stand askew: the smallest rectangle around their cells in plan, turned freely.
-
 ANGLES_DEG = np.array([sign * a for a in range(8, 38) for sign in (1, -1)], np.float64)
-MAX_AREA_RATIO = (
-    0.95  # Of the upright rectangle's area. Straight chairs of 0.08 m cells stay above it.
-)
+MAX_AREA_RATIO = 0.95  # Of the upright rectangle. Straight chairs of 0.08 m cells stay above it.
 MIN_MIRRORED_EXCESS = 0.02  # A rectangle turned the other way that is as small: the turn is open.
 RIM_CELLS = 0.6  # Cells from the outermost centres to the sides; cells are met by their corners.
-SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, voxels, or back alone.
+SIDES_M = (0.34, 0.66)  # Of a whole chair, and of no easy chair, pile, or back alone.
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+MAX_STANDING_BASE_M = 1.0  # What begins higher stands on something else; a chair's back does not.
+MIN_HANGING_BASE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
+WALL_CELLS = 2  # What has a wall this near hangs on it.
+MIN_FREE_CELLS = 2  # What has so much free air below it
+MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.
 
 
 class Rectangle(NamedTuple):
@@ -62,14 +66,6 @@ def _rectangle_at(plan: np.ndarray, angle_deg: float) -> Rectangle:
     u, v = ((line.min() + line.max()) / 2 for line in (along, aside))
     middle = np.array([u * cos - v * sin, u * sin + v * cos])
     return Rectangle(float(angle_deg), middle, np.array([np.ptp(along), np.ptp(aside)]) + RIM_CELLS)
-
-
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-MAX_STANDING_BASE_M = 1.0  # What begins higher stands on something else; a chair's back does not.
-MIN_HANGING_BASE_M = 1.3  # A thing in the air above this hangs from the ceiling, below it stands.
-WALL_CELLS = 2  # What has a wall this near hangs on it.
-MIN_FREE_CELLS = 2  # What has so much free air below it
-MIN_FREE_SHARE = 0.6  # under so many of its columns has nothing that holds it there.
 
 
 def vertical_extent(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> tuple[int, int]:

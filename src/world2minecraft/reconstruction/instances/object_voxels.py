@@ -1,6 +1,6 @@
-"""One object's cells in a small box, with what was seen around them: what is parted into pieces.
+"""The voxels of one object: ``cells_by_owner`` gathers them, ``ObjectVoxels`` is their small box.
 
-A box keeps the work small: nothing here looks at the whole grid.
+A box keeps the work small: passes over one object need not look at the whole grid.
 """
 
 from collections.abc import Iterator
@@ -11,13 +11,14 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 
-# The cells of each owner, in one pass over those of a class.
+FLOOR_SEARCH_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
+MIN_FLOOR_CELLS = 4
 
 
 def cells_by_owner(
     owners: np.ndarray, labels: np.ndarray, class_id: int
 ) -> Iterator[tuple[int, np.ndarray]]:
-    """Give each owner of a class and its cells, int64 [N, 3], in the order of the owners.
+    """Yield each owner of a class and its cells, int64 [N, 3], in the order of the owners.
 
     Args:
         owners: int32 [X, Y, Z], 0 for none.
@@ -29,10 +30,6 @@ def cells_by_owner(
     order = np.argsort(numbers, kind="stable")
     found, starts = np.unique(numbers[order], return_index=True)
     yield from zip(found.tolist(), np.split(cells[order], starts[1:]), strict=False)
-
-
-FLOOR_SEARCH_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
-MIN_FLOOR_CELLS = 4
 
 
 class ObjectVoxels(NamedTuple):
@@ -79,7 +76,7 @@ def floor_layer_below(cells: np.ndarray, grid: OccupancyGrid) -> int:
 
 
 def object_voxels(grid: OccupancyGrid, cells: np.ndarray) -> ObjectVoxels:
-    """Return the voxels of some cells, int [N, 3]."""
+    """Return the box of voxels around some cells, int [N, 3]."""
     low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0) + 1
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     own = np.zeros(high - low, np.bool_)

@@ -1,5 +1,11 @@
-"""Stage 5, the heart of Algorithm 1: the objects of a room, from its semantic occupancy."""
+"""Stage 5, the heart of Algorithm 1: the objects of a room, from its semantic occupancy.
 
+``find_objects`` reads like the paper: density D, candidates C, clusters C', the cells O_k of each
+object. Its clusters take a whole kitchen for one object and a table's top and foot for two, so
+``PASSES`` then merge and split the objects, one pass after the other.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,6 +42,19 @@ from world2minecraft.reconstruction.instances.split_chairs import (
 )
 
 MAX_OBJECTS = 65535
+
+# A pass takes the owner of each cell, int32 [X, Y, Z] with 0 for none, and returns a new array.
+Pass = Callable[[np.ndarray, OccupancyGrid, FindParameters], np.ndarray]
+PASSES: tuple[Pass, ...] = (
+    merge_stacked,
+    merge_small_pieces,
+    split_touching_chairs,
+    merge_chair_backs,
+    split_cabinet_runs,
+    split_by_support,
+    split_by_colour,
+    merge_lamp_parts,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +98,8 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     classes = grid.labels[tuple(candidates.T)]
     cluster = cluster_candidates(candidates, classes, chosen.cluster_radius, chosen.min_samples)
     owners = assign_voxels(grid.labels, binary, candidates, cluster)
-    if not chosen.paper_compat:
-        owners = merge_small_pieces(
-            grid.labels,
-            merge_stacked(owners, grid.labels),
-            min_cells=chosen.min_cells,
-            join_radius=chosen.join_radius,
-        )
-        owners = merge_chair_backs(split_touching_chairs(owners, grid), grid)
-        owners = split_cabinet_runs(owners, grid)
-        owners = split_by_colour(split_by_support(owners, grid), grid)
-        owners = merge_lamp_parts(owners, grid)
+    for refine in () if chosen.paper_compat else PASSES:
+        owners = refine(owners, grid, chosen)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
@@ -165,12 +175,12 @@ def _instance(
     front = facing(cells, class_id, around)
     low, size = _box_m(grid, cells, class_id, reach)
     center = low + size / 2
-    askew = min_area_rectangle(cells, class_id, grid.voxel_m) if reach else None
-    if askew is not None:
-        center[:2] = grid.origin_m[:2] + askew.middle * grid.voxel_m
-        size[:2] = askew.sides * grid.voxel_m
+    rotated = min_area_rectangle(cells, class_id, grid.voxel_m) if reach else None
+    if rotated is not None:
+        center[:2] = grid.origin_m[:2] + rotated.middle * grid.voxel_m
+        size[:2] = rotated.sides * grid.voxel_m
     own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
-    yaw = 90.0 * front.quarter_turns + (askew.angle_deg if askew else 0.0)
+    yaw = 90.0 * front.quarter_turns + (rotated.angle_deg if rotated else 0.0)
     votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
     return ObjectInstance(
         id=number,

@@ -15,9 +15,9 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
+from world2minecraft.reconstruction.instances.parameters import FindParameters
 
 # What hangs on a wall: the columns of a curtain or a picture among those of small things.
-
 WALL_CELLS = 2  # A curtain hangs this near its wall.
 MIN_SHEET_CELLS = 12  # At 0.08 m, a picture of 0.3 m side.
 MIN_HANGING_TOP_M = 1.8  # What reaches so high beside a wall hangs there, wherever it ends below.
@@ -27,9 +27,13 @@ MIN_COLOUR_DIFFERENCE = 0.08  # in Oklab, one thing in light and shade differs b
 MIN_RISE_M = 0.16  # and a sheet rises above it,
 MIN_CLEAR_RISE_M = 0.5  # or so far that it may have its colour.
 PLAN_BOX = np.ones((3, 3), np.bool_)
+MIN_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
+MIN_CELLS = 8  # Of a part, as of any object.
+MIN_SHADE_CELLS = 20  # Cells of a shade that floats.
+UNDER_CELLS = 2  # A thing stands on what lies this near below it.
 
 
-class Surroundings(NamedTuple):
+class LocalScene(NamedTuple):
     """What is known of a box of cells beside their labels."""
 
     colour: np.ndarray  # float [X, Y, Z, 3], in Oklab
@@ -38,7 +42,7 @@ class Surroundings(NamedTuple):
 
 
 def hanging_plans(
-    own: np.ndarray, labels: np.ndarray, stood: np.ndarray, scene: Surroundings
+    own: np.ndarray, labels: np.ndarray, stood: np.ndarray, scene: LocalScene
 ) -> list[np.ndarray]:
     """Return the plans, bool [X, Y], of what hangs on a wall.
 
@@ -85,7 +89,7 @@ def _columns_at_wall(own: np.ndarray, labels: np.ndarray, floor: int, voxel_m: f
     return near & (((top - floor) >= MIN_HANGING_TOP_M / voxel_m) | clear)
 
 
-def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Surroundings) -> bool:
+def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: LocalScene) -> bool:
     """Tell whether what hangs in some columns is no part of what stands beside them.
 
     The leaves of a plant that lean to a wall are no thing of their own.
@@ -104,13 +108,9 @@ def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Surro
     return above_m >= MIN_CLEAR_RISE_M or (unlike and above_m >= MIN_RISE_M)
 
 
-MIN_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
-MIN_CELLS = 8  # Of a part, as of any object.
-MIN_SHADE_CELLS = 20  # Cells of a shade that floats.
-UNDER_CELLS = 2  # A thing stands on what lies this near below it.
-
-
-def split_by_support(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def split_by_support(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which small things of other supports have own numbers."""
     result = owners.copy()
     next_id = int(owners.max(initial=0))
@@ -133,7 +133,7 @@ def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     labels, own = grid.labels[box], np.zeros(grid.labels[box].shape, np.bool_)
     own[tuple((cells - low).T)] = True
-    scene = Surroundings(srgb_to_oklab(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
+    scene = LocalScene(srgb_to_oklab(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
     seeds = _seed_parts(own, labels, owners[box], scene)
     count = int(seeds.max(initial=0))
     if count < 2:
@@ -144,7 +144,7 @@ def _part_of_cells(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -
 
 
 def _seed_parts(
-    own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: Surroundings
+    own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: LocalScene
 ) -> np.ndarray:
     """Return int32 [X, Y, Z]: the numbers of the supports in the columns that they hold."""
     support = _supports(own, labels, owners, scene.floor)
@@ -168,7 +168,7 @@ def _seed_parts(
 
 
 def _floating_shades(
-    rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: Surroundings
+    rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: LocalScene
 ) -> list[np.ndarray]:
     """Return what floats before a curtain, bool [X, Y, Z] each: a lamp whose post is unseen."""
     pieces, count = label_components(rest)

@@ -9,6 +9,7 @@ from world2minecraft.furniture import template
 from world2minecraft.furniture.chair_fitting import AGAINST, OWN, SeatFit, fit_seat, look_at
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
+from world2minecraft.reconstruction.instances.parameters import FindParameters
 
 MAX_CHAIR_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
 MAX_EASY_CHAIR_M = 1.2
@@ -25,7 +26,9 @@ MIN_TORN_CELLS = 8  # The top of a back. Fewer cells stay with the chair they jo
 MARGIN_CELLS = 10  # Cells around the voxels: a chair's depth and some more.
 
 
-def split_touching_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def split_touching_chairs(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
     owners = _separate_far_pieces(owners, grid)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
@@ -43,7 +46,9 @@ def split_touching_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray
     return result
 
 
-def merge_chair_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+def merge_chair_backs(
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+) -> np.ndarray:
     """Return owners in which a back without a seat joins a seat without a back beside it.
 
     A scan sees the back of a chair at a table over the table's edge and its seat under it. Both

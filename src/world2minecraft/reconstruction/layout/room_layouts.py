@@ -19,10 +19,14 @@ from world2minecraft.reconstruction.layout.structure import Structure, Wall, str
 from world2minecraft.reconstruction.layout.surface_cells import Surface, surface_of, turned
 
 # The outline of a room's floor: few straight corners, on the planes of its walls.
-
 MERGE_M = 0.09  # Lines nearer than a cell and a bit are one wall.
 NEAR_WALL_M = 0.35  # A region ends at a wall this near; else it ends where it was seen to.
 INSIDE_SHARE = 0.5
+
+ROOM_M2 = 1.0  # A closet; less is the depth of a wall between the two faces of a doorway.
+FLOOR_SHARE = 0.15  # Of a room's columns, its floor was seen in so many; out of a window, in none.
+PASSED_CELLS = 3  # So many free cells in a column mean that rays passed; fewer are noise.
+ALONG_M = 0.3  # A wall belongs to a room over this length at least.
 
 
 def outline_of(
@@ -115,12 +119,6 @@ def _turn(way: tuple[int, int], at: tuple[int, int], to: tuple[int, int]) -> int
 
 def _bends(a: tuple[int, int], b: tuple[int, int], c: tuple[int, int]) -> bool:
     return (b[0] - a[0]) * (c[1] - b[1]) != (b[1] - a[1]) * (c[0] - b[0])
-
-
-ROOM_M2 = 1.0  # A closet; less is the depth of a wall between the two faces of a doorway.
-FLOOR_SHARE = 0.15  # Of a room's columns, its floor was seen in so many; out of a window, in none.
-PASSED_CELLS = 3  # So many free cells in a column mean that rays passed; fewer are noise.
-ALONG_M = 0.3  # A wall belongs to a room over this length at least.
 
 
 def find_structure(

@@ -17,13 +17,13 @@ from world2minecraft.core.types import Camera, PointEvidence, Scan, View
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 
 # Which way the surface at each pixel of a depth image faces.
-#
 # Depth is averaged in squares of pixels; a square's normal is that of the plane through the means of
 # its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
-
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.
 JUMP_SHARE = 0.04  # Of the depth: neighbouring squares of one surface differ by less.
+
+MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.
 
 
 def facing_of_depth(
@@ -122,9 +122,6 @@ def _spread(normals, turn, pixels, width_px, side):
         v = pixels[n] // width_px
         result[n] = turned[v // side, (pixels[n] - v * width_px) // side]
     return result
-
-
-MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.
 
 
 class Voter(Protocol):

@@ -26,13 +26,19 @@ from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
 
 # What networks said of pictures, kept in the user's cache: asked again, it costs nothing.
-#
 # A file is found by the content of the picture, the state of the network and the meaning of its
 # labels, so that whatever changes one of them is asked anew. The oldest go when too much is kept.
-
 FOLDER = "semantics"
 MOST_BYTES = 1 << 30  # Some 5,000 pictures.
 VERSION = b"1"  # Of what is kept: another makes all that is there unknown.
+
+SEGMENTERS = Registry(
+    "segmenter",
+    {"hf": "world2minecraft.reconstruction.occupancy.hf_segmenter:HuggingFaceSemantics"},
+)
+
+SHOWN_NAMES = 12  # Of those that no table holds.
+FULL = 255  # A whole vote, as it is kept.
 
 
 def key_of(colour: np.ndarray, *states: bytes) -> str:
@@ -98,12 +104,6 @@ class Segmenter(Protocol):
         ...
 
 
-SEGMENTERS = Registry(
-    "segmenter",
-    {"hf": "world2minecraft.reconstruction.occupancy.hf_segmenter:HuggingFaceSemantics"},
-)
-
-
 def segmenter(name: str) -> Segmenter:
     """Return the network that ``FAMILY:MODEL`` names, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
 
@@ -117,10 +117,6 @@ def segmenter(name: str) -> Segmenter:
     if not model:
         raise UsageError(f"a segmenter is FAMILY:MODEL, not {name!r}; type {family}:ORG/NAME")
     return make(model)
-
-
-SHOWN_NAMES = 12  # Of those that no table holds.
-FULL = 255  # A whole vote, as it is kept.
 
 
 def voters_of(chosen: OccupyParameters) -> tuple[Voter, ...]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.photo_stream import judged_photos
+from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
 from world2minecraft.capture.stereo import DepthModel, depth_model
@@ -103,7 +103,7 @@ def _told_depth(model: DepthModel) -> str:
 
 def _straight(judged: JudgedCapture) -> tuple[str, np.ndarray, Camera]:
     """Return the photo's name, its picture without distortion, and the camera of that."""
-    photo = next(iter(judged_photos(judged)), None)
+    photo = next(iter(photos_of_capture(judged)), None)
     if photo is None or photo.camera is None:
         raise CaptureError(judged.capture.folder, "cannot be decoded; export it as JPEG")
     camera = photo.camera

@@ -10,7 +10,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.capture.frames import Capture
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.photo_stream import CapturePhotos, judged_photos
+from world2minecraft.capture.photo_stream import CapturePhotos, photos_of_capture
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture
@@ -33,13 +33,15 @@ from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
 
 # From pictures to a capture with poses, depth and scale in ``OUT/capture``.
-
 FOLDER = "capture"
 STAMP = "prepared.json"
 UNNAMED_CAPTURE = "photos"  # What steps that know no path call the capture.
 UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
 LEAST_PHOTOS = 3
 Told = dict[str, Any]
+
+# Names of folders that say nothing of their scene.
+GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
 
 
 def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = silent) -> Path:
@@ -132,7 +134,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     )
     if is_one_photo(found.source):
         return prepare_photo(judged, folder, chosen, UNIT)
-    photos = judged_photos(judged)
+    photos = photos_of_capture(judged)
     if len(photos) < LEAST_PHOTOS:
         raise CaptureError(
             found.folder,
@@ -193,10 +195,6 @@ def _with_stereo(
     else:
         maps = network_maps(photos, scene, guide, chosen.stereo, progress)
     return stereo_views(photos, scene, maps)
-
-
-# Names of folders that say nothing of their scene.
-GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
 
 
 def open_prepared(

@@ -12,13 +12,15 @@ import numpy as np
 from world2minecraft.core.jit import njit
 
 # The sums of the joint solve, one pass over the observations each.
-#
 # Every observation i is a patch of frame ``frame[i]`` on surfel ``surfel[i]``. Its residual is
 # ``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of the
 # frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes up the
 # weighted mean of its observations, so every sum is that of differences from the mean.
-
 UNKNOWNS = 7
+
+REWEIGHTINGS = 4
+CG_STEPS = 60
+CG_TOLERANCE = 1e-3
 
 
 @njit
@@ -86,11 +88,6 @@ def move_patches(points, normals, frame, eyes, turns, shifts, stretches):
             new_points[i, a] = at * stretches[f] + eyes[f, a] + shifts[f, a]
             new_normals[i, a] = facing
     return new_points, new_normals
-
-
-REWEIGHTINGS = 4
-CG_STEPS = 60
-CG_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)

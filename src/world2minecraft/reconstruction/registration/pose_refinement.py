@@ -28,8 +28,6 @@ from world2minecraft.reconstruction.registration.gauss_newton import (
 from world2minecraft.reconstruction.registration.parameters import RegisterParameters
 from world2minecraft.reconstruction.registration.surfels import Surfels, find_surfels
 
-# Rounds of registration: who sees the same surface, then one joint step of all frames.
-
 # The gap that parts two surfaces and the residual beyond which a patch is no look at its surfel
 # narrow from pass to pass: a depth scale that is 10 % off moves a wall at 3 m by 30 cm.
 GAPS_M = (0.30, 0.10, 0.05, 0.04)
@@ -42,6 +40,20 @@ LEAST_NOISE_M = 0.002
 SIGMAS_LEAST = np.array([1e-4, 3e-4, 1e-4])  # Radians, metres, log; less would freeze a frame.
 SIGMAS_MOST = np.array([0.03, 0.05, 0.15])
 GROUPS = (slice(0, 3), slice(3, 6), slice(6, 7))
+
+STAGE = "register"
+JUDGED_GAP_M = 0.10
+HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak for each other.
+MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
+CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
+CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
+MOST_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
+LEAST_EACH = 200
+LEAST_JUDGES = 50
+DECIMALS = 9
+
+
+# Rounds of registration: who sees the same surface, then one joint step of all frames.
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,18 +176,6 @@ def _rotation(vector: np.ndarray) -> np.ndarray:
         else (1.0, 0.5)
     )
     return np.eye(3) + first * cross + second * square
-
-
-STAGE = "register"
-JUDGED_GAP_M = 0.10
-HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak for each other.
-MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
-CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
-CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
-MOST_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
-LEAST_EACH = 200
-LEAST_JUDGES = 50
-DECIMALS = 9
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,13 @@ from world2minecraft.reconstruction.retrieval.variants import (
 )
 
 # What a cut leaves over: crumbs that a template's surface hides, and crumbs that belong together.
-#
 # In: the cells of each crumb and of the runs that match, all of one object.
-
 FEWEST = 4  # Cells; a smaller crumb is noise of the run beside it.
 Box = tuple[np.ndarray, np.ndarray]
+
+OWN_CELLS = "cells"
+HALF = 0.5
+SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
 
 
 def tidied(
@@ -88,11 +90,6 @@ def _within(cells: np.ndarray, box: Box) -> np.ndarray:
 
 def _box(cells: np.ndarray) -> Box:
     return cells.min(axis=0), cells.max(axis=0) + 1
-
-
-OWN_CELLS = "cells"
-HALF = 0.5
-SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
 
 
 class Matched(NamedTuple):

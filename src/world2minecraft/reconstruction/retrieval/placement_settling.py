@@ -20,14 +20,22 @@ from world2minecraft.furniture.solids import OWN_CELLS, box_m, depth_m, own_cell
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import largest_rectangle
 
 # Placements kept within the room they stand in: trimmed at its walls, or moved off them.
-#
 # In: placements and the rooms' outlines, the walls' inner faces. A scan's surface is thick and its
 # walls are found to a centimetre or two, so boxes reach into walls by a cell.
-
 STEP_M = 0.04  # How finely a slanted wall is followed.
 LOST_M = 0.6  # What lies farther outside was seen through an opening or in a mirror.
 MOST_STAYS = 0.7  # Of each side of what is cut; else it is moved as a whole.
 HAIR_M = 1e-6
+
+# Placements that overlap by a cell or two give way: what stands on a thing begins at its top.
+DEEPEST_CELLS = 2  # A scan's noise and the cells that two things share; more is a real overlap.
+TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair under its table is no overlap.
+
+FORGIVEN_M = 0.03  # Under the 4 cm that the metric forgives.
+FARTHEST_M = 0.24  # Farther off its cells no longer lie in what stands for them.
+CELLS_COST_M = 0.3  # A template is worth as much as being moved this far.
+CHAIR_COST_M = 0.6  # A heap of cells is no chair.
+MOVED_ONES = (SemanticClass.CHAIR,)  # What people move; the rest stands where it stands.
 
 
 def within_rooms(placement: Placement, rooms: Sequence[Layout], voxel_m: float) -> Placement | None:
@@ -184,12 +192,6 @@ def _rim(box: np.ndarray, polygon: np.ndarray) -> np.ndarray:
     return np.concatenate(sides)
 
 
-# Placements that overlap by a cell or two give way: what stands on a thing begins at its top.
-
-DEEPEST_CELLS = 2  # A scan's noise and the cells that two things share; more is a real overlap.
-TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair under its table is no overlap.
-
-
 def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placement, ...]:
     """Return the placements, in their order, without overlaps of up to two cells.
 
@@ -272,13 +274,6 @@ def _with_box(placement: Placement, box: Box) -> Placement:
     size = box[1] - box[0]
     own = size[[1, 0, 2]] if placement.quarter_turns % 2 else size
     return replace(placement, center_m=np.round((box[0] + box[1]) / 2, 4), size_m=np.round(own, 4))
-
-
-FORGIVEN_M = 0.03  # Under the 4 cm that the metric forgives.
-FARTHEST_M = 0.24  # Farther off its cells no longer lie in what stands for them.
-CELLS_COST_M = 0.3  # A template is worth as much as being moved this far.
-CHAIR_COST_M = 0.6  # A heap of cells is no chair.
-MOVED_ONES = (SemanticClass.CHAIR,)  # What people move; the rest stands where it stands.
 
 
 class Change(NamedTuple):

@@ -15,11 +15,17 @@ from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
 
 # One way to put one template, and its score: the paper's IoU and what breaks ties.
-
 PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
-
 Cells = tuple[int, int, int]
 Values = tuple[tuple[str, float], ...]
+
+# The first, coarse trials: every template of a class, turned and sized by the object's box.
+HIDDEN_CELLS = 1  # How far a scan's noise may eat into both sides of an object at once.
+CLEAR_M = 0.3  # What hangs on a wall leaves at least this much free under it.
+
+NO_SHIFT = np.zeros((1, 3), np.int64)
+ROUNDS = 2  # A third round changed no match in trials on generated furniture.
+PARAMETER_STEPS = 5  # About one cell of 0.08 m for the widest parameter.
 
 
 class Trial(NamedTuple):
@@ -103,12 +109,6 @@ def _turned(
     return np.ascontiguousarray(turn_grid(solid, quarter_turns))
 
 
-# The first, coarse trials: every template of a class, turned and sized by the object's box.
-
-HIDDEN_CELLS = 1  # How far a scan's noise may eat into both sides of an object at once.
-CLEAR_M = 0.3  # What hangs on a wall leaves at least this much free under it.
-
-
 def reach_of(templates: tuple[Template, ...], voxel_m: float) -> Cells:
     """Return the largest of the smallest sizes: how far a trial can leave an object's box."""
     side = max((limits(one, voxel_m, axis)[0] for one in templates for axis in (0, 1)), default=1)
@@ -181,11 +181,6 @@ def _anchors(trial: Trial, evidence: Evidence, bottom: int, anywhere: bool) -> l
     if trial.template.mount == "floor" and not anywhere:
         anchors[2] = [bottom]
     return anchors
-
-
-NO_SHIFT = np.zeros((1, 3), np.int64)
-ROUNDS = 2  # A third round changed no match in trials on generated furniture.
-PARAMETER_STEPS = 5  # About one cell of 0.08 m for the widest parameter.
 
 
 def best_matches(

@@ -35,7 +35,6 @@ from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
 from world2minecraft.reconstruction.semantics.votes import geometric_prior
 
 # The completion network as it is run: ONNX in, chances out, a large grid in tiles.
-
 WEIGHTS = Path(__file__).parents[2] / "weights" / "completion.onnx"
 LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # Other cells look like other things.
 MULTIPLE = 8  # Of the sides that the network takes.
@@ -43,6 +42,9 @@ TILE, MARGIN = 96, 16  # Cells: a room is one tile; what lies at a tile's edge s
 MAX_BYTES = 64 << 20
 THREADS = 2
 HALF = 0.5
+
+LEAST_CHANCE = 1e-4
+FIRST_THING = int(SemanticClass.CHAIR)
 
 
 class CompletionModel:
@@ -132,10 +134,6 @@ def softmax(logits: np.ndarray) -> np.ndarray:
     """Return chances of logits along the first axis."""
     shares = np.exp(logits - logits.max(axis=0))
     return shares / shares.sum(axis=0)
-
-
-LEAST_CHANCE = 1e-4
-FIRST_THING = int(SemanticClass.CHAIR)
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,34 @@ from world2minecraft.reconstruction.semantics.screens import screen_share
 from world2minecraft.reconstruction.semantics.surface_pieces import Piece, find_pieces
 
 # Seats: plates at knee height with a back on one side. A chair's is compact, a sofa's is long.
-
 AROUND_CELLS = 2  # The edge between seat and back is hidden; the back is looked for this far off.
+
+# How far around its plate a thing may reach and up to what height, in metres; 0 = the plate's own.
+# Arms, backs and headboards rise over a seat or a mattress; on a table lie other things.
+REACH_M = {
+    SemanticClass.TABLE: (0.08, 0.0),
+    SemanticClass.FURN: (0.08, 0.0),
+    SemanticClass.BED: (0.08, 1.2),
+    SemanticClass.SOFA: (0.32, 1.0),
+    SemanticClass.CHAIR: (0.24, 1.15),
+}
+HEAD_M = 0.55  # How far pillows reach from the head of a bed.
+APART_M = 0.5  # A chair belongs to a table no further off.
+WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
+MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
+TOP_M = 0.06  # A plate's cells lie this near its height.
+# What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
+ROUNDS = (
+    (SemanticClass.TABLE,),
+    (SemanticClass.BED, SemanticClass.SOFA, SemanticClass.CHAIR),
+    (SemanticClass.FURN,),
+)
+JOINING_CLASSES = (
+    SemanticClass.FURN,
+    SemanticClass.SOFA,
+    SemanticClass.BED,
+    SemanticClass.CHAIR,
+)
 
 
 def class_of_seat(
@@ -231,35 +257,6 @@ def _is_chair(piece: Piece, parameters: PieceParameters) -> bool:
     low = piece.low_m[2] <= parameters.chair_bottom_m and piece.tall_m >= 0.25
     sized = within(piece.high_m[2], parameters.chair_top_m)
     return low and sized and within(piece.long_m, parameters.chair_length_m) and not piece.near_wall
-
-
-# How far around its plate a thing may reach and up to what height, in metres; 0 = the plate's own.
-# Arms, backs and headboards rise over a seat or a mattress; on a table lie other things.
-REACH_M = {
-    SemanticClass.TABLE: (0.08, 0.0),
-    SemanticClass.FURN: (0.08, 0.0),
-    SemanticClass.BED: (0.08, 1.2),
-    SemanticClass.SOFA: (0.32, 1.0),
-    SemanticClass.CHAIR: (0.24, 1.15),
-}
-HEAD_M = 0.55  # How far pillows reach from the head of a bed.
-APART_M = 0.5  # A chair belongs to a table no further off.
-WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
-MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
-TOP_M = 0.06  # A plate's cells lie this near its height.
-
-# What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
-ROUNDS = (
-    (SemanticClass.TABLE,),
-    (SemanticClass.BED, SemanticClass.SOFA, SemanticClass.CHAIR),
-    (SemanticClass.FURN,),
-)
-JOINING_CLASSES = (
-    SemanticClass.FURN,
-    SemanticClass.SOFA,
-    SemanticClass.BED,
-    SemanticClass.CHAIR,
-)
 
 
 def label_furniture(

@@ -1,6 +1,6 @@
 """The arrays of a batch: made once, filled as often as one likes.
 
-``BatchArrays`` is what a user sees, ``ManyPixels`` the same memory as the kernel wants it.
+``BatchArrays`` is what a user sees, ``BatchPixels`` the same memory as the kernel wants it.
 """
 
 from collections.abc import Collection, Iterator
@@ -11,14 +11,14 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.rendering.picture import MAX_PIXELS, MOST_SAMPLES, Picture
-from world2minecraft.rendering.picture_arrays import WANTED, PixelArrays
+from world2minecraft.rendering.picture import MAX_PIXELS, MAX_SAMPLES, Picture
+from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 
 # The kernel of batches: pictures of many poses in one call, without Python between them.
 
 
-class ManyPixels(NamedTuple):
+class BatchPixels(NamedTuple):
     """``PixelArrays`` with an axis for N pictures before the others.
 
     What nobody asked for, but the renderer needs, has fewer pictures: one for each slot.
@@ -60,23 +60,23 @@ def draw_poses(
         lamp: the light.
         cells: int64 [CELLS, 3], the caller's own.
         scratch: float64 [SCRATCH], the caller's own.
-        out: ``ManyPixels``.
+        out: ``BatchPixels``.
     """
     count = len(poses)
     for n in range(start, count, stride):
         picture = PixelArrays(
-            out.depth[place(out.depth, n, slot, count)],
-            out.distance[place(out.distance, n, slot, count)],
-            out.block[place(out.block, n, slot, count)],
-            out.face[place(out.face, n, slot, count)],
-            out.thing[place(out.thing, n, slot, count)],
-            out.opaque_depth[place(out.opaque_depth, n, slot, count)],
-            out.opaque_index[place(out.opaque_index, n, slot, count)],
-            out.opaque_thing[place(out.opaque_thing, n, slot, count)],
-            out.normal[place(out.normal, n, slot, count)],
-            out.semantic[place(out.semantic, n, slot, count)],
-            out.instance[place(out.instance, n, slot, count)],
-            out.colour[place(out.colour, n, slot, count)],
+            out.depth[picture_row(out.depth, n, slot, count)],
+            out.distance[picture_row(out.distance, n, slot, count)],
+            out.block[picture_row(out.block, n, slot, count)],
+            out.face[picture_row(out.face, n, slot, count)],
+            out.thing[picture_row(out.thing, n, slot, count)],
+            out.opaque_depth[picture_row(out.opaque_depth, n, slot, count)],
+            out.opaque_index[picture_row(out.opaque_index, n, slot, count)],
+            out.opaque_thing[picture_row(out.opaque_thing, n, slot, count)],
+            out.normal[picture_row(out.normal, n, slot, count)],
+            out.semantic[picture_row(out.semantic, n, slot, count)],
+            out.instance[picture_row(out.instance, n, slot, count)],
+            out.colour[picture_row(out.colour, n, slot, count)],
             out.wanted,
         )
         draw_rows(
@@ -85,14 +85,14 @@ def draw_poses(
 
 
 @inlined
-def place(array, n, slot, count):
+def picture_row(array, n, slot, count):
     """Return the picture of an array that picture ``n`` is drawn into."""
     return n if len(array) == count else min(slot, len(array) - 1)
 
 
-MOST_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
-MOST_PICTURES = 1_000_000
-NOTHING = np.empty(0)
+MAX_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
+MAX_PICTURES = 1_000_000
+EMPTY = np.empty(0)
 
 Size = tuple[int, int]  # height, width
 
@@ -125,7 +125,7 @@ class BatchArrays:
         """
         parts = {field.name: getattr(self, field.name) for field in fields(self)}
         given = {name: array[number] for name, array in parts.items() if array is not None}
-        always = dict.fromkeys(("depth_m", "range_m", "block_index", "face", "cube_index"), NOTHING)
+        always = dict.fromkeys(("depth_m", "range_m", "block_index", "face", "cube_index"), EMPTY)
         return Picture(**{**always, **given})
 
     def named(self) -> Iterator[tuple[str, np.ndarray]]:
@@ -155,12 +155,12 @@ BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free"
 # What ``render_volume`` makes where nothing is said, and what it makes always.
 PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
 
-Room = tuple[tuple[int, ...], np.dtype]
+ArraySpec = tuple[tuple[int, ...], np.dtype]
 
 
-def rooms_of(
+def array_specs(
     count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...]
-) -> dict[str, Room]:
+) -> dict[str, ArraySpec]:
     """Return the shape and dtype of each array of a batch, by its name.
 
     Args:
@@ -175,15 +175,15 @@ def rooms_of(
     unknown = sorted(set(outputs) - set(BATCH_OUTPUTS))
     if unknown:
         raise UsageError(f"outputs may be {', '.join(BATCH_OUTPUTS)}, not {unknown[0]!r}")
-    rooms: dict[str, Room] = {
+    rooms: dict[str, ArraySpec] = {
         name: ((count, *size, *rest), np.dtype(kind))
         for name, (output, _, kind, rest) in _PLAN.items()
         if output in outputs
     }
     if "free" in outputs:
         rooms["free"] = ((count, *shape), np.dtype(bool))
-    total = bytes_of(rooms)
-    if total > MOST_BYTES:
+    total = total_bytes(rooms)
+    if total > MAX_BYTES:
         raise UsageError(
             f"{count:,} pictures of {size[1]}x{size[0]} take {total / 2**30:,.0f} GiB at once; "
             "take fewer poses a batch, or render_stream, which keeps a few pictures alone"
@@ -191,7 +191,7 @@ def rooms_of(
     return rooms
 
 
-def bytes_of(rooms: dict[str, Room]) -> int:
+def total_bytes(rooms: dict[str, ArraySpec]) -> int:
     """Return the bytes of all arrays."""
     return sum(int(np.prod(shape, dtype=object)) * kind.itemsize for shape, kind in rooms.values())
 
@@ -199,22 +199,22 @@ def bytes_of(rooms: dict[str, Room]) -> int:
 def batch_arrays(
     count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...] = (0, 0, 0)
 ) -> BatchArrays:
-    """Return arrays for ``render_batch`` to fill, zeros until then; see ``rooms_of``."""
-    rooms = rooms_of(count, size, outputs, shape)
+    """Return arrays for ``render_batch`` to fill, zeros until then; see ``array_specs``."""
+    rooms = array_specs(count, size, outputs, shape)
     return BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
 
 
 def check_batch(count: int, size: Size, samples: int) -> None:
     """Refuse batches that cannot be drawn. Raises UsageError."""
-    if count > MOST_PICTURES:
-        raise UsageError(f"a batch may have {MOST_PICTURES:,} poses, not {count:,}")
-    if not 1 <= samples <= MOST_SAMPLES:
-        raise UsageError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if count > MAX_PICTURES:
+        raise UsageError(f"a batch may have {MAX_PICTURES:,} poses, not {count:,}")
+    if not 1 <= samples <= MAX_SAMPLES:
+        raise UsageError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
     if size[0] * size[1] * samples**2 > MAX_PIXELS:
         raise UsageError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
 
 
-def check_arrays(given: BatchArrays, rooms: dict[str, Room]) -> None:
+def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
     """Refuse arrays that do not suit a batch. Raises UsageError."""
     arrays = dict(given.named())
     for name, (shape, kind) in rooms.items():
@@ -228,9 +228,9 @@ def check_arrays(given: BatchArrays, rooms: dict[str, Room]) -> None:
         raise UsageError(f"out.{min(arrays)} is given, but no output fills it")
 
 
-def pixels_of(
+def kernel_arrays(
     arrays: BatchArrays, size: Size, slots: int, outputs: Collection[str], *, fine: bool
-) -> ManyPixels:
+) -> BatchPixels:
     """Return the arrays for the kernel, with scratch for what it writes unasked.
 
     Args:
@@ -240,7 +240,7 @@ def pixels_of(
         outputs: what was asked for.
         fine: whether the colour is drawn apart.
     """
-    wanted = sum(bit for name, bit in WANTED.items() if name in outputs)
+    wanted = sum(bit for name, bit in OUTPUT_BITS.items() if name in outputs)
     parts = {}
     for name, (_, kernel_name, kind, rest) in _PLAN.items():
         array = getattr(arrays, name)
@@ -249,5 +249,5 @@ def pixels_of(
             array = np.zeros((*room, *rest), kind)
         parts[kernel_name] = array
     if fine:
-        wanted &= ~WANTED["colour"]
-    return ManyPixels(**parts, wanted=wanted)
+        wanted &= ~OUTPUT_BITS["colour"]
+    return BatchPixels(**parts, wanted=wanted)

@@ -9,31 +9,31 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.arrays import (
     BatchArrays,
-    ManyPixels,
+    BatchPixels,
     Size,
+    array_specs,
     batch_arrays,
     check_arrays,
     check_batch,
     draw_poses,
-    pixels_of,
-    rooms_of,
+    kernel_arrays,
 )
-from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import TILE, band_memory, draw_rows
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
-from world2minecraft.rendering.thread_pool import bands, side_by_side
+from world2minecraft.rendering.thread_pool import bands, run_parallel
 
 LARGE_PX = 200_000  # From here on threads share each picture and not the poses: less scratch.
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class KernelScene:
     """What pictures are drawn of, as the kernels read it."""
 
     tables: SceneTables
@@ -58,7 +58,7 @@ def render_batch(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Paper | None = None,
+    background: Backdrop | None = None,
     out: BatchArrays | None = None,
 ) -> BatchArrays:
     """Take the pictures of many poses in one call of the kernel.
@@ -85,15 +85,17 @@ def render_batch(
     size = (each[0].height_px, each[0].width_px) if each else (1, 1)
     check_batch(len(matrices), size, samples)
     shape = scene.semantic.shape
-    rooms = rooms_of(len(matrices), size, outputs, shape)
+    rooms = array_specs(len(matrices), size, outputs, shape)
     arrays = out or batch_arrays(len(matrices), size, outputs, shape)
     if out is not None:
         check_arrays(out, rooms)
     if len(matrices) == 0:
         return arrays
     views = views_of(scene, each, matrices)
-    lamp = lamp_of(light, scene, background, views.poses[:, :, 3])
-    draw_views(Stage(scene.tables, scene.side_px), views, lamp, outputs, samples, threads, arrays)
+    lamp = shading_parameters(light, scene, background, views.poses[:, :, 3])
+    draw_views(
+        KernelScene(scene.tables, scene.side_px), views, lamp, outputs, samples, threads, arrays
+    )
     return arrays
 
 
@@ -136,9 +138,9 @@ def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[
 
 
 def draw_views(
-    stage: Stage,
+    stage: KernelScene,
     views: Views,
-    lamp: Lamp,
+    lamp: ShadingParameters,
     outputs: Collection[str],
     samples: int,
     threads: int,
@@ -152,25 +154,29 @@ def draw_views(
         depth = np.empty((count, height, width), np.float32)
     by_rows = fine or count < 4 * threads or height * width > LARGE_PX
     slots = 1 if by_rows else max(1, threads)
-    out = pixels_of(arrays, views.size, slots, outputs, fine=fine)
+    out = kernel_arrays(arrays, views.size, slots, outputs, fine=fine)
     if depth is not None:
         out = out._replace(depth=depth)
     out.normal[...] = 0.0
     draw = _drawer(stage, views, lamp, samples, out)
     if by_rows:
         parts = bands(height, max(1, threads), TILE)
-        side_by_side(lambda rows: draw(0, 1, rows, 0), parts)
+        run_parallel(lambda rows: draw(0, 1, rows, 0), parts)
     else:
-        side_by_side(lambda slot: draw(slot, slots, (0, height), slot), range(slots))
+        run_parallel(lambda slot: draw(slot, slots, (0, height), slot), range(slots))
     if arrays.free is not None and depth is not None:
         for n in range(count):
-            arrays.free[n] = crossed_air(stage.tables, views.poses[n], views.rays[n], 1.0, depth[n])
+            arrays.free[n] = observed_free_space(
+                stage.tables, views.poses[n], views.rays[n], 1.0, depth[n]
+            )
 
 
 Drawer = Callable[[int, int, tuple[int, int], int], None]
 
 
-def _drawer(stage: Stage, views: Views, lamp: Lamp, samples: int, out: ManyPixels) -> Drawer:
+def _drawer(
+    stage: KernelScene, views: Views, lamp: ShadingParameters, samples: int, out: BatchPixels
+) -> Drawer:
     """Return what draws some rows of every so many pictures."""
     height, width = views.size
     apart = samples > 1 and out.colour.shape[1:3] == views.size

@@ -21,33 +21,33 @@ from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.arrays import (
     PICTURE_OUTPUTS,
+    ArraySpec,
     BatchArrays,
-    Room,
+    array_specs,
     check_batch,
-    rooms_of,
 )
 from world2minecraft.rendering.batch.drawing import (
-    Stage,
+    KernelScene,
     Views,
     checked_poses,
     draw_views,
     views_of,
 )
-from world2minecraft.rendering.batch.shared_memory import Block, placed
+from world2minecraft.rendering.batch.shared_memory import SharedArrays, lay_out
 from world2minecraft.rendering.batch.workers import (
-    PATIENCE_S,
-    Hand,
+    EXIT_TIMEOUT_S,
     Job,
     Make,
     Reply,
     SceneMessage,
     Task,
-    deaf_to_interrupts,
-    release,
-    started,
+    Worker,
+    ignore_interrupts,
+    start_worker,
+    stop_workers,
 )
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
@@ -55,10 +55,10 @@ from world2minecraft.rendering.scene_tables import SceneTables
 # The slots that pictures of a pool come back through, and how poses are cut into tasks.
 
 TASK_PX = 1 << 16  # A task has so many pixels at least: a message takes 0.1 ms.
-MOST_A_TASK = 64  # Pictures.
+MAX_TASK_PICTURES = 64  # Pictures.
 
 
-class Ring:
+class SlotRing:
     """Slots of shared memory, and the tasks that they are for, in the order of their pictures."""
 
     def __init__(self, slots: int, slot_bytes: int):
@@ -69,10 +69,10 @@ class Ring:
         self._slot_of: dict[int, int] = {}
         self._bytes = slot_bytes
 
-    def take(self, first: int, views: Views, rooms: dict[str, Room]) -> Task:
+    def take(self, first: int, views: Views, rooms: dict[str, ArraySpec]) -> Task:
         """Take a slot for pictures, and return the task to draw them there."""
         slot = self._slot_of[first] = self.free.popleft()
-        self.taken[first] = Task(first, views, placed(rooms, slot * self._bytes)[0])
+        self.taken[first] = Task(first, views, lay_out(rooms, slot * self._bytes)[0])
         return self.taken[first]
 
     def next_reply(self, ordered: bool) -> Reply | None:
@@ -87,7 +87,7 @@ class Ring:
         self.free.append(self._slot_of.pop(first))
 
 
-def pictures_of(reply: Reply, ring: Ring, block: Block) -> list[tuple[int, Any]]:
+def pictures_of(reply: Reply, ring: SlotRing, block: SharedArrays) -> list[tuple[int, Any]]:
     """Return what a task made, or copies of its pictures, each with its number."""
     if reply.made is not None:
         return list(enumerate(reply.made, reply.first))
@@ -102,12 +102,12 @@ def _copied(picture: Picture) -> Picture:
     return replace(picture, **{k: v.copy() for k, v in arrays.items() if v is not None})
 
 
-def runs_of(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
+def split_into_tasks(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
     """Cut poses into tasks: neighbours of one size, more of them where pictures are small."""
     first = 0
     while first < len(cameras):
         size = cameras[first].height_px, cameras[first].width_px
-        most = min(max(TASK_PX // (size[0] * size[1]), 1), MOST_A_TASK)
+        most = min(max(TASK_PX // (size[0] * size[1]), 1), MAX_TASK_PICTURES)
         last = first + 1
         while last < len(cameras) and last - first < most:
             if (cameras[last].height_px, cameras[last].width_px) != size:
@@ -121,9 +121,9 @@ def runs_of(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
 # bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
 
 
-MOST_WORKERS = 256
-WAITING = 2  # Tasks that each worker has, so that it never waits for the next.
-PLAIN = LookLight(exposure=1.0)
+MAX_WORKERS = 256
+QUEUED_TASKS = 2  # Tasks that each worker has, so that it never waits for the next.
+UNIT_EXPOSURE = LookLight(exposure=1.0)
 
 
 class RenderPool:
@@ -150,17 +150,17 @@ class RenderPool:
             UsageError: the number is out of range, or there is no shared memory.
         """
         count = usable_cores() if workers is None else workers
-        if not 1 <= count <= MOST_WORKERS:
-            raise UsageError(f"a pool has 1 to {MOST_WORKERS} workers, not {count}")
+        if not 1 <= count <= MAX_WORKERS:
+            raise UsageError(f"a pool has 1 to {MAX_WORKERS} workers, not {count}")
         self.workers, self._scene, self._busy = count, scene, False
-        self._blocks: list[Block] = [_shared(scene)]
-        self._hands: list[Hand] = []
-        self._end = weakref.finalize(self, release, self._hands, self._blocks)
+        self._blocks: list[SharedArrays] = [_share_tables(scene)]
+        self._hands: list[Worker] = []
+        self._end = weakref.finalize(self, stop_workers, self._hands, self._blocks)
         try:
             _compile(self._blocks[0], scene)
-            with deaf_to_interrupts():
+            with ignore_interrupts():
                 for number in range(count):
-                    self._hands.append(started(number))
+                    self._hands.append(start_worker(number))
             self._tell(SceneMessage(self._blocks[0].plan, scene.side_px))
         except BaseException:
             self.close()
@@ -185,7 +185,7 @@ class RenderPool:
             UsageError: the pool is closed, or its pictures are still being taken.
         """
         self._check_idle()
-        old, new = self._blocks[0], _shared(scene)
+        old, new = self._blocks[0], _share_tables(scene)
         self._scene, self._blocks[0] = scene, new
         self._tell(SceneMessage(new.plan, scene.side_px))
         old.close()
@@ -198,7 +198,7 @@ class RenderPool:
         outputs: Collection[str] = DEFAULT_OUTPUTS,
         light: LookLight = DAY,
         samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
         ordered: bool = True,
         make: Make | None = None,
     ) -> Iterator[tuple[int, Any]]:
@@ -232,12 +232,12 @@ class RenderPool:
         for size in {(one.height_px, one.width_px) for one in each}:
             check_batch(len(each), size, samples)
         wanted = tuple(outputs)
-        runs = [views_of(self._scene, each[a:b], matrices[a:b]) for a, b in runs_of(each)]
-        rooms_of(1, (1, 1), wanted, self._scene.semantic.shape)  # Unknown names are said now.
+        runs = [views_of(self._scene, each[a:b], matrices[a:b]) for a, b in split_into_tasks(each)]
+        array_specs(1, (1, 1), wanted, self._scene.semantic.shape)  # Unknown names are said now.
         if not runs:
             return iter(())
         eyes = np.concatenate([run.poses[:, :, 3] for run in runs])
-        lamp = lamp_of(light, self._scene, background, eyes)
+        lamp = shading_parameters(light, self._scene, background, eyes)
         return self._draw(runs, Job("", lamp, wanted, samples, make), ordered)
 
     def _draw(self, runs: list[Views], job: Job, ordered: bool) -> Iterator[tuple[int, Any]]:
@@ -245,12 +245,12 @@ class RenderPool:
         self._check_idle()
         self._busy = True
         outputs, shape = (*PICTURE_OUTPUTS, *job.outputs), self._scene.semantic.shape
-        rooms = [rooms_of(len(run.poses), run.size, outputs, shape) for run in runs]
-        ends = [placed(each)[1] for each in rooms]
-        slots = min(len(runs), WAITING * self.workers + 1)
-        block = Block.create({}, slots * max(ends))
+        rooms = [array_specs(len(run.poses), run.size, outputs, shape) for run in runs]
+        ends = [lay_out(each)[1] for each in rooms]
+        slots = min(len(runs), QUEUED_TASKS * self.workers + 1)
+        block = SharedArrays.create({}, slots * max(ends))
         self._blocks.append(block)
-        ring = Ring(slots, max(ends))
+        ring = SlotRing(slots, max(ends))
         try:
             self._tell(replace(job, slots=block.plan.name))
             firsts = np.cumsum([0, *(len(run.poses) for run in runs)]).tolist()
@@ -271,17 +271,17 @@ class RenderPool:
             block.close()
             self._busy = False
 
-    def _hand_out(self, tasks: deque, ring: Ring) -> None:
+    def _hand_out(self, tasks: deque, ring: SlotRing) -> None:
         """Give tasks to those workers that have few, as long as there are slots."""
         while tasks and ring.free:
             hand = min(self._hands, key=lambda one: len(one.tasks))
-            if len(hand.tasks) >= WAITING:
+            if len(hand.tasks) >= QUEUED_TASKS:
                 return
             task = ring.take(*tasks.popleft())
             hand.tasks.append(task.first)
             self._send(hand, task)
 
-    def _listen(self, ring: Ring) -> None:
+    def _listen(self, ring: SlotRing) -> None:
         """Wait for replies."""
         by_pipe = {hand.pipe: hand for hand in self._hands}
         for pipe in wait(list(by_pipe)):
@@ -291,7 +291,7 @@ class RenderPool:
                 raise reply.error
             ring.done[reply.first] = reply
 
-    def _receive(self, hand: Hand) -> Reply:
+    def _receive(self, hand: Worker) -> Reply:
         try:
             reply = hand.pipe.recv()
         except (EOFError, OSError):
@@ -299,7 +299,7 @@ class RenderPool:
         hand.tasks.popleft()
         return reply
 
-    def _send(self, hand: Hand, message: object) -> None:
+    def _send(self, hand: Worker, message: object) -> None:
         try:
             hand.pipe.send(message)
         except OSError:
@@ -331,9 +331,9 @@ class RenderPool:
                     break
                 hand.tasks.popleft()
 
-    def _lost(self, hand: Hand) -> WorkerError:
+    def _lost(self, hand: Worker) -> WorkerError:
         """Close the pool and return the error that says which worker died, and of what."""
-        hand.process.join(PATIENCE_S)
+        hand.process.join(EXIT_TIMEOUT_S)
         code, number, doing = hand.process.exitcode, hand.number + 1, list(hand.tasks)
         hand.tasks.clear()
         at = f" while it drew picture {doing[0]}" if doing else ""
@@ -357,22 +357,22 @@ class RenderPool:
             )
 
 
-def _shared(scene: BlockScene) -> Block:
+def _share_tables(scene: BlockScene) -> SharedArrays:
     """Copy the tables of a scene to shared memory."""
     tables = {name: np.ascontiguousarray(array) for name, array in scene.tables._asdict().items()}
-    places, size = placed({name: (array.shape, array.dtype) for name, array in tables.items()})
-    block = Block.create(places, size)
+    places, size = lay_out({name: (array.shape, array.dtype) for name, array in tables.items()})
+    block = SharedArrays.create(places, size)
     for name, array in block.arrays().items():
         array[...] = tables[name]
     return block
 
 
-def _compile(block: Block, scene: BlockScene) -> None:
+def _compile(block: SharedArrays, scene: BlockScene) -> None:
     """Draw a tiny picture just as workers do, so that they find all kernels compiled."""
-    stage = Stage(SceneTables(**block.arrays()), scene.side_px)
-    lamp = pickle.loads(pickle.dumps(lamp_of(PLAIN, scene)))
+    stage = KernelScene(SceneTables(**block.arrays()), scene.side_px)
+    lamp = pickle.loads(pickle.dumps(shading_parameters(UNIT_EXPOSURE, scene)))
     views = Views((8, 8), np.eye(4)[None, :3].copy(), np.array([[8.0, 8.0, 4.0, 4.0]]))
     outputs = ("colour", "depth", "free")
-    rooms = rooms_of(1, (8, 8), outputs, scene.semantic.shape)
+    rooms = array_specs(1, (8, 8), outputs, scene.semantic.shape)
     arrays = BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
     draw_views(stage, views, lamp, outputs, 2, 1, arrays)

@@ -1,6 +1,6 @@
 """Arrays in shared memory: written once, seen by every process that knows their plan.
 
-A ``Block`` is made by one process, which takes it away again, and joined by others. Each array
+A ``SharedArrays`` is made by one process, which takes it away again, and joined by others. Each array
 begins at a whole number of cache lines. Whether it may be written to is kept: kernels are compiled
 for that, and a process that is told otherwise would compile its own.
 """
@@ -17,7 +17,7 @@ LINE_BYTES = 64
 
 
 @dataclass(frozen=True)
-class Place:
+class ArrayPlace:
     """Where an array lies in a block."""
 
     offset: int
@@ -27,34 +27,34 @@ class Place:
 
 
 @dataclass(frozen=True)
-class BlockPlan:
+class SharedLayout:
     """What another process needs to know to join a block."""
 
     name: str
-    places: dict[str, Place]
+    places: dict[str, ArrayPlace]
 
 
-def placed(
+def lay_out(
     rooms: Mapping[str, tuple[tuple[int, ...], np.dtype]], start: int = 0
-) -> tuple[dict[str, Place], int]:
+) -> tuple[dict[str, ArrayPlace], int]:
     """Return a place for each array, by its shape and dtype, and where the last one ends."""
     places, offset = {}, start
     for name, (shape, kind) in rooms.items():
-        places[name] = Place(offset, tuple(shape), kind.str)
+        places[name] = ArrayPlace(offset, tuple(shape), kind.str)
         size = int(np.prod(shape, dtype=object)) * kind.itemsize
         offset += -(-size // LINE_BYTES) * LINE_BYTES
     return places, offset
 
 
-class Block:
+class SharedArrays:
     """Shared memory with arrays in it."""
 
-    def __init__(self, memory: SharedMemory, plan: BlockPlan, *, owned: bool):
+    def __init__(self, memory: SharedMemory, plan: SharedLayout, *, owned: bool):
         """Use ``create`` or ``join``."""
         self.plan, self._memory, self._owned = plan, memory, owned
 
     @classmethod
-    def create(cls, places: dict[str, Place], size: int) -> "Block":
+    def create(cls, places: dict[str, ArrayPlace], size: int) -> "Block":
         """Make a block.
 
         Raises:
@@ -67,10 +67,10 @@ class Block:
                 f"{size / 2**20:,.0f} MiB of shared memory are not to be had ({error}); take "
                 "smaller pictures, fewer workers, or more of it (in a container --shm-size=2g)"
             ) from error
-        return cls(memory, BlockPlan(memory.name, places), owned=True)
+        return cls(memory, SharedLayout(memory.name, places), owned=True)
 
     @classmethod
-    def join(cls, plan: BlockPlan) -> "Block":
+    def join(cls, plan: SharedLayout) -> "Block":
         """Open a block that another process has made."""
         return cls(SharedMemory(name=plan.name), plan, owned=False)
 
@@ -78,7 +78,7 @@ class Block:
         """Return the arrays by their names; they are the memory itself."""
         return {name: self.array(place) for name, place in self.plan.places.items()}
 
-    def array(self, place: Place) -> np.ndarray:
+    def array(self, place: ArrayPlace) -> np.ndarray:
         """Return the array at a place."""
         array = np.ndarray(place.shape, place.dtype, self._memory.buf, place.offset)
         array.flags.writeable = place.writeable

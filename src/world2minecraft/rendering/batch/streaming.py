@@ -14,9 +14,9 @@ import numpy as np
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.rendering.batch.pool import MOST_WORKERS, RenderPool
+from world2minecraft.rendering.batch.pool import MAX_WORKERS, RenderPool
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, exposure_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.views.cameras import Shot
@@ -31,10 +31,10 @@ Thing = TypeVar("Thing")
 Made = TypeVar("Made")
 
 SPARE = 2  # Things that may wait beside those that are made or written.
-LOOK_S = 0.05  # How often a thread that waits looks whether it shall stop.
+POLL_S = 0.05  # How often a thread that waits looks whether it shall stop.
 
 
-def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
+def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
     """Give the things of an iterator, which a thread takes up to ``most`` ahead.
 
     Where the user stops early the thread ends, after the thing that it is at, and the iterator is
@@ -46,7 +46,7 @@ def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
     def put(kind: str, value: Any) -> None:
         while not stop.is_set():
             with suppress(Full):
-                queue.put((kind, value), timeout=LOOK_S)
+                queue.put((kind, value), timeout=POLL_S)
                 return
 
     def take() -> None:
@@ -79,7 +79,7 @@ def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, Non
         thread.join()
 
 
-def done_behind(
+def ordered_map(
     things: Iterator[Thing], work: Callable[[Thing], Made], threads: int, most: int
 ) -> Generator[Made, None, None]:
     """Give what ``work`` makes of each thing, in order; threads do it while the next are taken.
@@ -116,7 +116,7 @@ def _raise_first(waiting: deque[Future[Made]]) -> None:
 Pictures = Generator[tuple[int, Picture], None, None]
 Write = Callable[[int, Shot, Picture], Any]
 
-MOST_WRITERS = 256
+MAX_WRITERS = 256
 
 
 def render_stream(
@@ -127,7 +127,7 @@ def render_stream(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Paper | None = None,
+    background: Backdrop | None = None,
     write: Write | None = None,
     encode_threads: int = 1,
     jobs: int = 1,
@@ -157,8 +157,8 @@ def render_stream(
         UsageError: what is asked for cannot be. WorkerError: a process died.
     """
     for name, value, most in (
-        ("encode_threads", encode_threads, MOST_WRITERS),
-        ("jobs", jobs, MOST_WORKERS),
+        ("encode_threads", encode_threads, MAX_WRITERS),
+        ("jobs", jobs, MAX_WORKERS),
     ):
         if not 1 <= value <= most:
             raise UsageError(f"{name} may be 1 to {most}, not {value}")
@@ -185,14 +185,14 @@ def _stream(
 ) -> Iterator[Any]:
     progress("render", 0, len(shots))
     if write is None:
-        results = ahead_of(pictures, SPARE)
+        results = prefetch(pictures, SPARE)
     else:
         given = write
 
         def work(one: tuple[int, Picture]) -> Any:
             return given(one[0], shots[one[0]], one[1])
 
-        results = done_behind(pictures, work, encode_threads, encode_threads + SPARE)
+        results = ordered_map(pictures, work, encode_threads, encode_threads + SPARE)
     with closing(pictures), closing(results):
         for done, result in enumerate(results, 1):
             progress("render", done, len(shots))

@@ -19,10 +19,10 @@ from typing import Any
 
 from world2minecraft.core.errors import WorkerError
 from world2minecraft.rendering.batch.arrays import PICTURE_OUTPUTS, BatchArrays
-from world2minecraft.rendering.batch.drawing import Stage, Views, draw_views
-from world2minecraft.rendering.batch.shared_memory import Block, BlockPlan, Place
+from world2minecraft.rendering.batch.drawing import KernelScene, Views, draw_views
+from world2minecraft.rendering.batch.shared_memory import ArrayPlace, SharedArrays, SharedLayout
 from world2minecraft.rendering.picture import Picture
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene_tables import SceneTables
 
 Make = Callable[[int, Picture], Any]  # Number of the picture, picture; may be sent as a pickle.
@@ -32,7 +32,7 @@ Make = Callable[[int, Picture], Any]  # Number of the picture, picture; may be s
 class SceneMessage:
     """Where the tables of the scene lie."""
 
-    plan: BlockPlan
+    plan: SharedLayout
     side_px: int
 
 
@@ -41,7 +41,7 @@ class Job:
     """What tasks have in common."""
 
     slots: str  # the name of the memory that pictures are drawn into
-    lamp: Lamp
+    lamp: ShadingParameters
     outputs: tuple[str, ...]
     samples: int
     make: Make | None
@@ -53,7 +53,7 @@ class Task:
 
     first: int  # the number of the first picture
     views: Views
-    places: dict[str, Place]
+    places: dict[str, ArrayPlace]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class Reply:
 def serve(pipe: Connection) -> None:
     """Do what comes through the pipe until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and closes the pipe.
-    desk = Desk()
+    desk = WorkerState()
     try:
         while (message := pipe.recv()) is not None:
             reply = desk.take(message)
@@ -88,7 +88,7 @@ def _send(pipe: Connection, reply: Reply) -> None:
         pipe.send(Reply(reply.first, error=WorkerError(text)))
 
 
-class Desk:
+class WorkerState:
     """What a worker was told, and the memory that it has joined.
 
     It joins memory with the first task that needs it: a job that others were quicker to finish is
@@ -99,8 +99,8 @@ class Desk:
         """Begin with nothing."""
         self._scene: SceneMessage | None = None
         self._job: Job | None = None
-        self._stage: Stage | None = None
-        self._blocks: dict[str, Block] = {}
+        self._stage: KernelScene | None = None
+        self._blocks: dict[str, SharedArrays] = {}
 
     def take(self, message: SceneMessage | Job | Task) -> Reply | None:
         """Do what a message says; return the answer to a task."""
@@ -116,7 +116,7 @@ class Desk:
         try:
             return Reply(task.first, self._made(task))
         except Exception as error:
-            return Reply(task.first, error=sendable(error))
+            return Reply(task.first, error=picklable_error(error))
 
     def _made(self, task: Task) -> list[Any] | None:
         job, scene = self._job, self._scene
@@ -124,8 +124,8 @@ class Desk:
             raise WorkerError("a worker was given a task before its scene")
         if self._stage is None:
             tables = self._joined("scene", scene.plan).arrays()
-            self._stage = Stage(SceneTables(**tables), scene.side_px)
-        slots = self._joined("slots", BlockPlan(job.slots, {}))
+            self._stage = KernelScene(SceneTables(**tables), scene.side_px)
+        slots = self._joined("slots", SharedLayout(job.slots, {}))
         arrays = BatchArrays(**{name: slots.array(at) for name, at in task.places.items()})
         outputs = (*PICTURE_OUTPUTS, *job.outputs)
         draw_views(self._stage, task.views, job.lamp, outputs, job.samples, 1, arrays)
@@ -134,13 +134,13 @@ class Desk:
         numbers = range(len(task.views.poses))
         return [job.make(task.first + number, arrays.picture(number)) for number in numbers]
 
-    def _joined(self, use: str, plan: BlockPlan) -> Block:
+    def _joined(self, use: str, plan: SharedLayout) -> SharedArrays:
         """Return the memory for a use; what was there for it before is let go."""
         block = self._blocks.get(use)
         if block is None or block.plan.name != plan.name:
             if block is not None:
                 block.close()
-            block = self._blocks[use] = Block.join(plan)
+            block = self._blocks[use] = SharedArrays.join(plan)
         return block
 
     def clear(self) -> None:
@@ -150,7 +150,7 @@ class Desk:
             block.close()
 
 
-def sendable(error: Exception) -> Exception:
+def picklable_error(error: Exception) -> Exception:
     """Return an error as it is where that can be sent, else one that tells it."""
     try:
         copied = pickle.loads(pickle.dumps(error))
@@ -164,11 +164,11 @@ def sendable(error: Exception) -> Exception:
 
 # The worker processes of a pool: how they are started, and ended in any case.
 
-PATIENCE_S = 5.0  # For a worker to end by itself.
+EXIT_TIMEOUT_S = 5.0  # For a worker to end by itself.
 
 
 @dataclass(eq=False)
-class Hand:
+class Worker:
     """A worker as the pool sees it."""
 
     number: int
@@ -178,7 +178,7 @@ class Hand:
 
 
 @contextmanager
-def deaf_to_interrupts() -> Iterator[None]:
+def ignore_interrupts() -> Iterator[None]:
     """Start children that Ctrl-C does not reach: the parent ends them."""
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -190,7 +190,7 @@ def deaf_to_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def started(number: int) -> Hand:
+def start_worker(number: int) -> Worker:
     """Start a worker: a new interpreter on every system, so that all behave alike."""
     context = get_context("spawn")
     ours, theirs = context.Pipe()
@@ -198,17 +198,17 @@ def started(number: int) -> Hand:
     process = context.Process(target=serve, args=(theirs,), name=name, daemon=True)
     process.start()
     theirs.close()  # So that the pipe ends with the worker.
-    return Hand(number, process, ours)
+    return Worker(number, process, ours)
 
 
-def release(hands: list[Hand], blocks: list[Block]) -> None:
+def stop_workers(hands: list[Worker], blocks: list[SharedArrays]) -> None:
     """End workers, the patient way first, and take shared memory away."""
     for hand in hands:
         with suppress(OSError):
             hand.pipe.send(None)
         hand.pipe.close()
     for hand in hands:
-        hand.process.join(PATIENCE_S)
+        hand.process.join(EXIT_TIMEOUT_S)
         if hand.process.is_alive():
             hand.process.kill()
             hand.process.join()

@@ -14,7 +14,7 @@ VANILLA_PX = 16  # What the game's own pictures have a block.
 
 
 @dataclass(frozen=True, eq=False)
-class OwnLooks:
+class BuiltinModels:
     """Looks of all blocks: models by rules, textures by recipes.
 
     Args:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.rendering.block_models.texture_recipes import PREFIX, spell, split_recipe
+from world2minecraft.rendering.block_models.texture_recipes import PREFIX, hex_colour, split_recipe
 from world2minecraft.rendering.texture import Texture
 from world2minecraft.rendering.textures import GENERATORS, texture_of
 from world2minecraft.rendering.textures.stencil import letters as stencil_letters
@@ -37,25 +37,25 @@ def picture_of(recipe: str, size_px: int) -> Texture:
     """
     _, colours, options = split_recipe(recipe)
     name = options.get("name", "")
-    if name not in pictures():
-        raise UnknownNameError("picture", name, pictures())
-    under = texture_of(f"{PREFIX}{options.get('base', 'plain')}{spell(colours[0])}", size_px)
-    return _painted(under, pictures()[name], colours)
+    if name not in load_pictures():
+        raise UnknownNameError("picture", name, load_pictures())
+    under = texture_of(f"{PREFIX}{options.get('base', 'plain')}{hex_colour(colours[0])}", size_px)
+    return _paint(under, load_pictures()[name], colours)
 
 
 @lru_cache(maxsize=1 << 14)
-def is_painted(words: str) -> bool:
+def has_texture(words: str) -> bool:
     """Tell whether a generator, and a picture where one is named, is there for a skin's words."""
     generator, *rest = words.split()
     if generator != PICTURE:
         return generator in GENERATORS
     pairs = [word.partition("=") for word in rest]
     options = {key: value for key, _, value in pairs}
-    return options.get("name") in pictures() and options.get("base", "plain") in GENERATORS
+    return options.get("name") in load_pictures() and options.get("base", "plain") in GENERATORS
 
 
 @cache
-def pictures() -> Mapping[str, Mapping[str, Any]]:
+def load_pictures() -> Mapping[str, Mapping[str, Any]]:
     """Read the shipped pictures, once: rows of letters, inks, and which of them glow."""
     path = files("world2minecraft.rendering.block_models").joinpath("data/pictures.json")
     raw = json.loads(path.read_text("utf-8"))
@@ -69,7 +69,7 @@ def letters_of(picture: Mapping[str, Any]) -> np.ndarray:
     return np.array([list(row) for row in rows])
 
 
-def _enlarged(rows: np.ndarray, size_px: int, is_round: bool) -> np.ndarray:
+def _enlarge(rows: np.ndarray, size_px: int, is_round: bool) -> np.ndarray:
     """Return the letter of each texel; above a letter a texel, what is round gets round corners."""
     if is_round:
         return stencil_letters(" ".join("".join(row) for row in rows), size_px)
@@ -77,11 +77,11 @@ def _enlarged(rows: np.ndarray, size_px: int, is_round: bool) -> np.ndarray:
     return np.repeat(np.repeat(rows, times, axis=0), times, axis=1)
 
 
-def _painted(
+def _paint(
     under: Texture, picture: Mapping[str, Any], colours: tuple[tuple[int, int, int], ...]
 ) -> Texture:
     size_px = under.colour.shape[0]
-    letters = _enlarged(letters_of(picture), size_px, bool(picture.get("round")))
+    letters = _enlarge(letters_of(picture), size_px, bool(picture.get("round")))
     colour = under.colour.copy()
     emission = np.zeros((size_px, size_px), np.uint8)
     for letter in np.unique(letters):
@@ -93,7 +93,7 @@ def _painted(
             colour[here, :3] = np.minimum(shaded.round(), 255).astype(np.uint8)
         else:
             ink = _ink(str(letter), picture, colours)
-            colour[here, :3] = _grained(ink, under.colour[here][:, :3], colours[0])
+            colour[here, :3] = _add_grain(ink, under.colour[here][:, :3], colours[0])
             colour[here, 3] = 255
         if letter in picture.get("glow", ""):
             emission[here] = 255
@@ -117,7 +117,7 @@ def _ink(letter: str, picture: Mapping[str, Any], colours) -> tuple[int, int, in
     return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
 
 
-def _grained(ink, under: np.ndarray, mean) -> np.ndarray:
+def _add_grain(ink, under: np.ndarray, mean) -> np.ndarray:
     """Return an ink, uint8 [N, 3], with half the grain of what lies under it."""
     grain = under.mean(axis=1, keepdims=True) - float(np.mean(mean))
     return np.clip(np.array(ink) + 0.5 * grain, 0, 255).round().astype(np.uint8)

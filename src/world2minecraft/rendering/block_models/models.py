@@ -15,11 +15,11 @@ from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     BlockModel,
     Element,
-    FaceLook,
+    ElementFace,
     face_uv,
 )
-from world2minecraft.rendering.block_models.face_pictures import is_painted
-from world2minecraft.rendering.block_models.rules import LookRule, rule_for
+from world2minecraft.rendering.block_models.face_pictures import has_texture
+from world2minecraft.rendering.block_models.rules import ModelRule, rule_for
 from world2minecraft.rendering.block_models.texture_recipes import Values, recipe_of, values_of
 
 # Turning elements: a model is written once, for north or for up, and turned to what a state says.
@@ -32,7 +32,9 @@ MIDDLE = (0.5, 0.5, 0.5)
 _NORMALS = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]])
 
 
-def spun(angle_deg: float, axis: str = "y", origin: Sequence[float] = MIDDLE) -> np.ndarray:
+def rotation_about(
+    angle_deg: float, axis: str = "y", origin: Sequence[float] = MIDDLE
+) -> np.ndarray:
     """Return the turn about an axis: about y clockwise as seen from above.
 
     Args:
@@ -48,10 +50,10 @@ def spun(angle_deg: float, axis: str = "y", origin: Sequence[float] = MIDDLE) ->
     turn = -sine if axis == "y" else sine
     matrix[first, first] = matrix[second, second] = cosine
     matrix[first, second], matrix[second, first] = -turn, turn
-    return about(matrix, origin)
+    return about_point(matrix, origin)
 
 
-def about(matrix: np.ndarray, origin: Sequence[float]) -> np.ndarray:
+def about_point(matrix: np.ndarray, origin: Sequence[float]) -> np.ndarray:
     """Return a matrix so moved that it leaves ``origin`` where it is."""
     moved = matrix.copy()
     middle = np.asarray(origin, np.float64)
@@ -59,32 +61,32 @@ def about(matrix: np.ndarray, origin: Sequence[float]) -> np.ndarray:
     return moved
 
 
-def quarter(facing: str) -> np.ndarray:
+def rotation_from_north(facing: str) -> np.ndarray:
     """Return the turn that carries north to a side; none for what is no side."""
-    return spun(90.0 * QUARTERS.index(facing)) if facing in QUARTERS else np.eye(4)
+    return rotation_about(90.0 * QUARTERS.index(facing)) if facing in QUARTERS else np.eye(4)
 
 
-def tipped(facing: str) -> np.ndarray:
+def rotation_from_up(facing: str) -> np.ndarray:
     """Return the turn that carries up to one of the six sides."""
     if facing == "down":
-        return spun(180.0, "x")
+        return rotation_about(180.0, "x")
     if facing in QUARTERS:
-        return quarter(facing) @ spun(-90.0, "x")
+        return rotation_from_north(facing) @ rotation_about(-90.0, "x")
     return np.eye(4)
 
 
-def along(axis: str) -> np.ndarray:
+def rotation_from_y(axis: str) -> np.ndarray:
     """Return the turn that carries the y axis to another."""
-    return {"x": tipped("east"), "z": tipped("north")}.get(axis, np.eye(4))
+    return {"x": rotation_from_up("east"), "z": rotation_from_up("north")}.get(axis, np.eye(4))
 
 
-def sixteenth(rotation: str, front: str = "south") -> np.ndarray:
+def rotation_of_sixteenths(rotation: str, front: str = "south") -> np.ndarray:
     """Return the turn of a sign, a banner or a head: 0 looks to ``front``, clockwise from there."""
     step = int(rotation) % 16 if rotation.isdecimal() and len(rotation) < 4 else 0
-    return spun(90.0 * QUARTERS.index(front) + 22.5 * step)
+    return rotation_about(90.0 * QUARTERS.index(front) + 22.5 * step)
 
 
-def turned(element: Element, matrix: np.ndarray) -> Element:
+def rotate_element(element: Element, matrix: np.ndarray) -> Element:
     """Return an element carried by a turn: an aligned box stays aligned where that can be."""
     rotation = matrix[:3, :3]
     if element.turn is not None or not np.isin(rotation, (-1.0, 0.0, 1.0)).all():
@@ -93,7 +95,7 @@ def turned(element: Element, matrix: np.ndarray) -> Element:
     corners = np.array([element.low, element.high]) @ rotation.T + matrix[:3, 3]
     back = np.eye(4)
     back[:3, :3], back[:3, 3] = rotation.T, -rotation.T @ matrix[:3, 3]
-    faces: list[FaceLook | None] = [None] * 6
+    faces: list[ElementFace | None] = [None] * 6
     for side, face in enumerate(element.faces):
         normal = rotation @ _NORMALS[side]
         if face is not None:
@@ -137,7 +139,7 @@ _GROUPS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Dress:
+class PartContext:
     """What the parts of a state are painted with: its name, its properties and known skins."""
 
     name: str
@@ -147,25 +149,25 @@ class Dress:
     light: int
 
 
-def elements_of(part: Mapping[str, Any], dress: Dress) -> Iterator[Element]:
+def elements_of(part: Mapping[str, Any], dress: PartContext) -> Iterator[Element]:
     """Yield the elements of a part where the state draws it."""
-    if not holds(part.get("when", {}), dress.values):
+    if not matches(part.get("when", {}), dress.values):
         return
-    drawn = [_tilted(one, part.get("tilt", ())) for one in _shapes(part, dress)]
+    drawn = [_tilt(one, part.get("tilt", ())) for one in _shapes(part, dress)]
     if "sides" not in part and "faces" not in part:
         yield from drawn
         return
     wanted = part.get("sides", part.get("faces"))
     for side in (*QUARTERS, "up", "down") if "faces" in part else QUARTERS:
-        if holds({side: wanted}, dress.values):
-            yield from (turned(one, _to_side(side)) for one in drawn)
+        if matches({side: wanted}, dress.values):
+            yield from (rotate_element(one, _to_side(side)) for one in drawn)
 
 
 def box_element(
     low: Sequence[float],
     high: Sequence[float],
     part: Mapping[str, Any],
-    dress: Dress,
+    dress: PartContext,
     shade: bool = True,
 ) -> Element:
     """Return a box, sixteenths, dressed as its part says."""
@@ -176,7 +178,7 @@ def box_element(
     return Element(corner, other, faces, shade=shade, emission=glow)
 
 
-def holds(when: Any, values: Mapping[str, str]) -> bool:
+def matches(when: Any, values: Mapping[str, str]) -> bool:
     """Tell whether a state has the wanted values."""
     cases = when if isinstance(when, list) else [when]
     return any(
@@ -188,11 +190,11 @@ def holds(when: Any, values: Mapping[str, str]) -> bool:
 def _to_side(side: str) -> np.ndarray:
     """Return the turn that carries a part at the north side to another side."""
     if side in QUARTERS:
-        return quarter(side)
-    return spun(90.0 if side == "up" else -90.0, "x")
+        return rotation_from_north(side)
+    return rotation_about(90.0 if side == "up" else -90.0, "x")
 
 
-def _shapes(part: Mapping[str, Any], dress: Dress) -> Iterator[Element]:
+def _shapes(part: Mapping[str, Any], dress: PartContext) -> Iterator[Element]:
     for box in part.get("boxes", ()):
         yield box_element(box[:3], box[3:], part, dress)
     if "cross" in part:
@@ -200,40 +202,40 @@ def _shapes(part: Mapping[str, Any], dress: Dress) -> Iterator[Element]:
         upright = {"uv": "fit", **part}
         for angle_deg in (45.0, -45.0):
             flat = box_element((8 - half, bottom, 8), (8 + half, top, 8), upright, dress, False)
-            yield turned(flat, spun(angle_deg))
+            yield rotate_element(flat, rotation_about(angle_deg))
     if "hash" in part:
         bottom, top = part["hash"]
         upright = {"uv": "fit", **part}
         for at in (4.0, 12.0):
             flat = box_element((0, bottom, at), (16, top, at), upright, dress, False)
             yield flat
-            yield turned(flat, spun(90.0))
+            yield rotate_element(flat, rotation_about(90.0))
 
 
-def _tilted(element: Element, tilts: Sequence[Any]) -> Element:
+def _tilt(element: Element, tilts: Sequence[Any]) -> Element:
     for axis, angle_deg, *origin in [tilts] if tilts and isinstance(tilts[0], str) else tilts:
         middle = [float(part) / 16 for part in origin or (8, 8, 8)]
-        element = turned(element, spun(float(angle_deg), axis, middle))
+        element = rotate_element(element, rotation_about(float(angle_deg), axis, middle))
     return element
 
 
-def _face(side: int, low, high, part: Mapping[str, Any], dress: Dress) -> FaceLook | None:
+def _face(side: int, low, high, part: Mapping[str, Any], dress: PartContext) -> ElementFace | None:
     across = side // 2
     if any(low[axis] == high[axis] for axis in range(3) if axis != across):
         return None  # The edge of something flat.
     name = FACE_NAMES[side]
     words = part.get("skin", dress.skin)
     for _ in range(2):  # A table of faces may name a skin that is a table of faces itself.
-        words = _of_face(_known(words, part, dress), name)
-    words = _known(words, part, dress)
+        words = _value_for_face(_resolve_skin(words, part, dress), name)
+    words = _resolve_skin(words, part, dress)
     if words is None:
         return None
-    if not is_painted(words := words.format_map(Values(dress.values))):
+    if not has_texture(words := words.format_map(Values(dress.values))):
         words = PLAIN  # A property of a mod's block has a value that the rule does not foresee.
-    place = _of_face(part.get("uv", "place"), name) or "place"
+    place = _value_for_face(part.get("uv", "place"), name) or "place"
     rect = None if place == "place" else WHOLE if place == "fit" else tuple(place)
     matrix = _matrix(side, low, high, rect, part.get("spin", {}).get(name, 0))
-    return FaceLook(_recipe(words, dress.name), matrix)
+    return ElementFace(_recipe(words, dress.name), matrix)
 
 
 @lru_cache(maxsize=1 << 14)
@@ -249,7 +251,7 @@ def _recipe(words: str, name: str) -> str:
     return recipe_of(words, name, {})
 
 
-def _known(skin: Any, part: Mapping[str, Any], dress: Dress) -> Any:
+def _resolve_skin(skin: Any, part: Mapping[str, Any], dress: PartContext) -> Any:
     """Return what a skin's name stands for."""
     for _ in range(4):
         if not isinstance(skin, str):
@@ -266,7 +268,7 @@ def _known(skin: Any, part: Mapping[str, Any], dress: Dress) -> Any:
     return skin
 
 
-def _of_face(table: Any, name: str) -> Any:
+def _value_for_face(table: Any, name: str) -> Any:
     """Return what a table says of a face: by its name, by its group, or for all."""
     if not isinstance(table, Mapping):
         return table
@@ -288,22 +290,24 @@ def model_of(state: str) -> BlockModel:
     """
     whole = complete(parse_state(state))
     rule = rule_for(whole)
-    dress = _dress(whole, rule)
+    dress = _context_of(whole, rule)
     if rule is None or rule.parts is None:
-        elements = _seen_boxes(whole, dress, glows=rule is not None and rule.glow)
+        elements = _visual_elements(whole, dress, glows=rule is not None and rule.glow)
         return BlockModel(tuple(elements), not dress.light, stand_in=rule is None)
     turn = _turn(rule, dress)
-    drawn = [one for part in rule.parts for one in elements_of(_lit(part, rule), dress)]
+    drawn = [one for part in rule.parts for one in elements_of(_with_glow(part, rule), dress)]
     flat = any("cross" in part or "hash" in part for part in rule.parts)
-    elements = drawn if np.array_equal(turn, np.eye(4)) else [turned(one, turn) for one in drawn]
+    elements = (
+        drawn if np.array_equal(turn, np.eye(4)) else [rotate_element(one, turn) for one in drawn]
+    )
     return BlockModel(tuple(elements), ambient_occlusion=not (flat or dress.light))
 
 
-def _dress(state: BlockState, rule: LookRule | None) -> Dress:
+def _context_of(state: BlockState, rule: ModelRule | None) -> PartContext:
     values = values_of(state.name, _known_values(state))
     light = BRIGHTEST if is_luminous(str(state)) else light_of(str(state))
     skin = PLAIN if rule is None or rule.skin is None else rule.skin
-    return Dress(state.name, values, skin, {} if rule is None else rule.skins, light)
+    return PartContext(state.name, values, skin, {} if rule is None else rule.skins, light)
 
 
 def _known_values(state: BlockState) -> dict[str, str]:
@@ -313,26 +317,28 @@ def _known_values(state: BlockState) -> dict[str, str]:
     return values if block is None else values | block.values_at(block.index_of(values))
 
 
-def _seen_boxes(state: BlockState, dress: Dress, glows: bool) -> list[Element]:
+def _visual_elements(state: BlockState, dress: PartContext, glows: bool) -> list[Element]:
     boxes = visual_boxes_of(str(state)).astype(float) * 16
     return [box_element(box[:3], box[3:], {"glow": glows}, dress) for box in boxes.tolist()]
 
 
-def _lit(part, rule: LookRule):
+def _with_glow(part, rule: ModelRule):
     return {"glow": True, **part} if rule.glow else part
 
 
-def _turn(rule: LookRule, dress: Dress) -> np.ndarray:
+def _turn(rule: ModelRule, dress: PartContext) -> np.ndarray:
     """Return the matrix that carries the written model to the state's."""
     matrix = np.eye(4)
     for kind, key in rule.turns:
         value = dress.values[key].partition("_")[0]  # A jigsaw's "down_east" points down.
         if kind == "turn":
-            matrix = quarter(value) @ matrix
+            matrix = rotation_from_north(value) @ matrix
         elif kind == "point":
-            matrix = tipped(value) @ matrix
+            matrix = rotation_from_up(value) @ matrix
         elif kind == "axis":
-            matrix = along(value) @ matrix
+            matrix = rotation_from_y(value) @ matrix
         else:
-            matrix = sixteenth(value, "south" if kind == "rotation" else "north") @ matrix
+            matrix = (
+                rotation_of_sixteenths(value, "south" if kind == "rotation" else "north") @ matrix
+            )
     return matrix

@@ -54,7 +54,7 @@ PREFIXES = ("waxed_", "infested_", "petrified_")
 
 
 @dataclass(frozen=True, eq=False)
-class LookRule:
+class ModelRule:
     """How some blocks look; the keys are explained above."""
 
     blocks: tuple[str, ...]
@@ -66,7 +66,7 @@ class LookRule:
     glow: bool
 
 
-def rule_for(state: BlockState) -> LookRule | None:
+def rule_for(state: BlockState) -> ModelRule | None:
     """Return the rule of a complete state, or None where none fits."""
     return _rule(state.name, tuple(key for key, _ in state.properties))
 
@@ -92,9 +92,9 @@ def material_of(name: str) -> str:
 
 
 @lru_cache(maxsize=1 << 14)
-def _rule(name: str, properties: tuple[str, ...]) -> LookRule | None:
+def _rule(name: str, properties: tuple[str, ...]) -> ModelRule | None:
     names = [one.partition(":")[2] for one in dict.fromkeys((name, material_of(name)))]
-    for rules in look_rules():
+    for rules in model_rules():
         for plain in names:
             for rule in rules:
                 if all(key in properties for key in rule.needs) and any(
@@ -105,7 +105,7 @@ def _rule(name: str, properties: tuple[str, ...]) -> LookRule | None:
 
 
 @cache
-def look_rules() -> tuple[tuple[LookRule, ...], tuple[LookRule, ...]]:
+def model_rules() -> tuple[tuple[ModelRule, ...], tuple[ModelRule, ...]]:
     """Read the shipped files, once: the rules of known blocks, then those by words of names."""
     folder = files("world2minecraft.rendering.block_models").joinpath("data")
     raw = [json.loads(folder.joinpath(name).read_text("utf-8")) for name in FILES]
@@ -120,7 +120,7 @@ def look_rules() -> tuple[tuple[LookRule, ...], tuple[LookRule, ...]]:
 
 def _read_rule(
     entry: Mapping[str, Any], shared: Mapping[str, Any], models: Mapping[str, Any]
-) -> LookRule:
+) -> ModelRule:
     turns = tuple((key, entry[key]) for key in TURNS if key in entry)
     parts = entry.get("parts")
     if isinstance(parts, str):
@@ -128,7 +128,7 @@ def _read_rule(
     if parts is None and turns:
         painted = {key: entry[key] for key in ("uv", "spin") if key in entry}
         parts = [{"boxes": [[0, 0, 0, 16, 16, 16]], **painted}]
-    return LookRule(
+    return ModelRule(
         blocks=tuple(entry["blocks"]),
         needs=(*entry.get("needs", ()), *(value for _, value in turns)),
         skin=entry.get("skin"),

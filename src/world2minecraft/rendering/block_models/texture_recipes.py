@@ -50,7 +50,7 @@ def split_recipe(
     return generator, values, {key: value for key, _, value in pairs}
 
 
-def spell(rgb: tuple[int, int, int]) -> str:
+def hex_colour(rgb: tuple[int, int, int]) -> str:
     """Return a colour as recipes have it."""
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
@@ -66,7 +66,7 @@ def _colour(word: str, name: str) -> str:
         other, share = _plain_colour(mixed[0], name), float(mixed[1])
         rgb = [a + (b - a) * share for a, b in zip(rgb, other, strict=True)]
     red, green, blue = (min(255, round(part)) for part in rgb)
-    return spell((red, green, blue))
+    return hex_colour((red, green, blue))
 
 
 def _plain_colour(word: str, name: str) -> list[float]:
@@ -97,6 +97,6 @@ def values_of(name: str, properties: Mapping[str, str]) -> Values:
     stem, _, last = plain.rpartition("_")
     power = properties.get("power", "")
     red = 76 + min(int(power), 15) * 179 // 15 if power.isdecimal() and len(power) < 3 else 76
-    wire = spell((red, red // 12, red // 24))
+    wire = hex_colour((red, red // 12, red // 24))
     inside = plain.removeprefix("potted_")
     return Values(properties, plain=plain, stem=stem, last=last, inside=inside, wire=wire)

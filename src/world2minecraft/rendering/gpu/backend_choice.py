@@ -16,7 +16,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.rendering.gpu.device import GpuError, find_adapter, info_of
 from world2minecraft.rendering.gpu.renderer import GpuRenderer
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper
+from world2minecraft.rendering.light_parameters import DAY, Backdrop
 from world2minecraft.rendering.picture import (
     DEFAULT_OUTPUTS,
     Picture,
@@ -41,7 +41,7 @@ class Renderer(Protocol):
     def render(
         self, camera: Camera, camera_to_room: np.ndarray, *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture."""
         ...
@@ -49,7 +49,7 @@ class Renderer(Protocol):
     def render_many(
         self, camera: Camera, poses: Iterable[np.ndarray], *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
         """Take a picture from each pose, in their order."""
         ...
@@ -57,7 +57,7 @@ class Renderer(Protocol):
     def render_parallel(
         self, px_per_metre: float, size: tuple[int, int], camera_to_room: np.ndarray, *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture by parallel rays."""
         ...
@@ -83,7 +83,7 @@ class CpuRenderer:
     def render(
         self, camera: Camera, camera_to_room: np.ndarray, *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture; see ``render_volume``."""
         return render_volume(
@@ -94,7 +94,7 @@ class CpuRenderer:
     def render_many(
         self, camera: Camera, poses: Iterable[np.ndarray], *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
         """Take a picture from each pose, in their order."""
         for pose in poses:
@@ -105,7 +105,7 @@ class CpuRenderer:
     def render_parallel(
         self, px_per_metre: float, size: tuple[int, int], camera_to_room: np.ndarray, *,
         outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture by parallel rays; see the function of that name."""
         return render_parallel(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import MissingExtraError, UsageError
-from world2minecraft.rendering.gpu.scene_buffers import LAYOUT, bytes_of
+from world2minecraft.rendering.gpu.scene_buffers import LAYOUT, buffer_bytes
 from world2minecraft.rendering.gpu.uniforms import AT_CORNERS, AT_ENCODE, struct_text
 from world2minecraft.rendering.scene import BlockScene
 
@@ -45,7 +45,7 @@ def shader_text() -> str:
 # A software adapter draws on the CPU, slower than our own kernel; it is taken only by name, for
 # tests: ``W2M_GPU_ADAPTER=software``, or any part of an adapter's name.
 
-VARIABLE = "W2M_GPU_ADAPTER"
+ADAPTER_VARIABLE = "W2M_GPU_ADAPTER"
 SOFTWARE = "software"
 _SOFTWARE_NAMES = ("llvmpipe", "lavapipe", "swiftshader", "softpipe", "microsoft basic render")
 _ORDER = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
@@ -89,7 +89,7 @@ def find_adapter(name: str | None = None) -> Any:
     """
     if find_spec("wgpu") is None:
         raise MissingExtraError("--device gpu", "gpu")
-    wanted = (name or os.environ.get(VARIABLE, "")).strip().lower()
+    wanted = (name or os.environ.get(ADAPTER_VARIABLE, "")).strip().lower()
     found = _adapters()
     for adapter in found:
         info = info_of(adapter)
@@ -104,7 +104,7 @@ def find_adapter(name: str | None = None) -> Any:
         raise GpuError(f"no GPU adapter is named {wanted!r}; there are: {names}")
     raise GpuError(
         f"no graphics card was found (adapters: {names}); install its Vulkan driver, "
-        f"or use --device cpu; {VARIABLE}={SOFTWARE} takes a software adapter, for tests"
+        f"or use --device cpu; {ADAPTER_VARIABLE}={SOFTWARE} takes a software adapter, for tests"
     )
 
 
@@ -183,7 +183,7 @@ class Engine:
             self.device.limits["max-storage-buffer-binding-size"],
             self.device.limits["max-buffer-size"],
         )
-        for name, size in bytes_of(scene).items():
+        for name, size in buffer_bytes(scene).items():
             if size > most:
                 shape = " x ".join(map(str, scene.tables.space.shape))
                 raise GpuError(
@@ -206,7 +206,7 @@ class Engine:
                 )
                 for name, array in arrays.items()
             }
-        except failures() as error:
+        except device_errors() as error:
             raise GpuError(
                 f"{self.name} could not take the world: {error}; use --device cpu"
             ) from error
@@ -225,13 +225,13 @@ def engine_for(adapter: Any) -> Engine:
     return _ENGINES[key]
 
 
-def forget(engine: Engine) -> None:
+def discard_engine(engine: Engine) -> None:
     """Forget an engine whose device is lost, so that the next one is new."""
     for key in [key for key, value in _ENGINES.items() if value is engine]:
         del _ENGINES[key]
 
 
-def failures() -> tuple[type[Exception], ...]:
+def device_errors() -> tuple[type[Exception], ...]:
     """Return what wgpu raises where a device is lost or its memory is full."""
     return RuntimeError, wgpu_module().GPUError
 

@@ -15,19 +15,19 @@ from world2minecraft.rendering.gpu.uniforms import (
     PARAMETER_BYTES,
     TONE_BYTES,
     VIEW,
-    Ask,
+    PictureRequest,
     tone_words,
 )
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 
 SLOT_BYTES = 64 << 20  # Of one set; large enough that its overhead is small, small for memory.
-MOST_JOBS = 256  # Of one submission.
-MOST_SAMPLES = 16_000_000  # Rays from the eye of one submission.
+MAX_JOBS = 256  # Of one submission.
+MAX_RAYS = 16_000_000  # Rays from the eye of one submission.
 TILE = 8  # Pixels a side of a workgroup.
 
 
 @dataclass(frozen=True)
-class Plan:
+class SubmissionPlan:
     """How the jobs of a call are cut: rows of a band, and jobs of a submission."""
 
     band_rows: int
@@ -35,7 +35,9 @@ class Plan:
     words: int  # 32-bit words of one job
 
 
-def plan_of(ask: Ask, pictures: int | None, most_bytes: int = SLOT_BYTES) -> Plan:
+def plan_submissions(
+    ask: PictureRequest, pictures: int | None, most_bytes: int = SLOT_BYTES
+) -> SubmissionPlan:
     """Cut pictures so that a submission fits into ``most_bytes``, and one row at least.
 
     ``pictures`` is how many there are, None where that is not known.
@@ -43,17 +45,17 @@ def plan_of(ask: Ask, pictures: int | None, most_bytes: int = SLOT_BYTES) -> Pla
     height, width = ask.size
     row_words = width * ask.layout.planes
     # Many samples are much work: a submission that lasts seconds is stopped by some drivers.
-    most_pixels = MOST_SAMPLES // ask.samples**2
+    most_pixels = MAX_RAYS // ask.samples**2
     room = max(min(most_bytes // 4, most_pixels * ask.layout.planes), row_words)
     band_rows = min(height, room // row_words)
     words = band_rows * row_words
-    jobs = max(1, min(MOST_JOBS, room // words))
+    jobs = max(1, min(MAX_JOBS, room // words))
     if pictures is not None:
         jobs = min(jobs, pictures * -(-height // band_rows))
-    return Plan(band_rows, max(jobs, 1), words)
+    return SubmissionPlan(band_rows, max(jobs, 1), words)
 
 
-class Slot:
+class BufferSet:
     """One set of buffers, which one call uses at a time."""
 
     def __init__(self, engine: Any, scene: Mapping[str, Any], out_bytes: int):
@@ -67,7 +69,7 @@ class Slot:
         usage = wgpu_module().BufferUsage
         self.scene, self.out_bytes, self._engine, self._bytes = scene, out_bytes, engine, 0
         self._promise: Any = None
-        self._lamp: Lamp | None = None
+        self._lamp: ShadingParameters | None = None
 
         def made(size: int, flags: int) -> Any:
             return engine.device.create_buffer(size=size, usage=flags)
@@ -75,7 +77,7 @@ class Slot:
         self._own = {
             "parameters": made(PARAMETER_BYTES, usage.UNIFORM | usage.COPY_DST),
             "tone": made(TONE_BYTES, usage.STORAGE | usage.COPY_DST),
-            "views": made(MOST_JOBS * VIEW.itemsize, usage.STORAGE | usage.COPY_DST),
+            "views": made(MAX_JOBS * VIEW.itemsize, usage.STORAGE | usage.COPY_DST),
             "out": made(out_bytes, usage.STORAGE | usage.COPY_SRC),
         }
         self._back = made(out_bytes, usage.COPY_DST | usage.MAP_READ)
@@ -88,7 +90,7 @@ class Slot:
             ],
         )
 
-    def prepare(self, parameters: bytes, lamp: Lamp) -> None:
+    def prepare(self, parameters: bytes, lamp: ShadingParameters) -> None:
         """Take what the next submission is drawn with."""
         self._write("parameters", parameters)
         if self._lamp is not lamp:
@@ -98,7 +100,7 @@ class Slot:
     def _write(self, name: str, data: bytes | np.ndarray) -> None:
         self._engine.device.queue.write_buffer(self._own[name], 0, data)
 
-    def submit(self, views: np.ndarray, ask: Ask, plan: Plan) -> None:
+    def submit(self, views: np.ndarray, ask: PictureRequest, plan: SubmissionPlan) -> None:
         """Begin to draw some views, ``VIEW`` [N]."""
         self._write("views", views)
         self._bytes = 4 * plan.words * len(views)

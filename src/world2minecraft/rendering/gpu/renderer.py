@@ -9,38 +9,42 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.gpu.device import (
     GpuError,
+    device_errors,
+    discard_engine,
     engine_for,
-    failures,
     find_adapter,
-    forget,
 )
-from world2minecraft.rendering.gpu.readback_buffers import Plan, Slot, plan_of
-from world2minecraft.rendering.gpu.scene_buffers import packed
+from world2minecraft.rendering.gpu.readback_buffers import (
+    BufferSet,
+    SubmissionPlan,
+    plan_submissions,
+)
+from world2minecraft.rendering.gpu.scene_buffers import pack_scene
 from world2minecraft.rendering.gpu.uniforms import (
     VIEW,
-    Ask,
-    Layout,
+    PictureRequest,
+    PlaneLayout,
     check_pose,
-    layout_of,
+    entry_distance,
     parameter_bytes,
+    plane_layout,
     view_of,
-    way_ahead,
 )
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import INSTANCE, SEMANTIC
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 
 # What the shader wrote becomes the arrays of a picture.
 
 
-def fill(arrays: PixelArrays, planes: np.ndarray, row: int, layout: Layout) -> None:
+def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: PlaneLayout) -> None:
     """Fill in a band of rows.
 
     Args:
@@ -73,8 +77,8 @@ def fill(arrays: PixelArrays, planes: np.ndarray, row: int, layout: Layout) -> N
         arrays.normal[rows, :, axis] = real[layout.normal + axis]
 
 
-AHEAD = 2  # Submissions under way: one is drawn while another is read.
-MOST_FREE = AHEAD  # Sets of buffers that are kept for the next call.
+MAX_IN_FLIGHT = 2  # Submissions under way: one is drawn while another is read.
+MAX_FREE = MAX_IN_FLIGHT  # Sets of buffers that are kept for the next call.
 LOST = "{} stopped answering: {}; use --device cpu"
 
 
@@ -122,7 +126,7 @@ class GpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS,
         light: LookLight = DAY,
         samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:
         """Take a picture; the arguments are those of ``render_volume``."""
         (picture,) = self.render_many(
@@ -139,7 +143,7 @@ class GpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS,
         light: LookLight = DAY,
         samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Iterator[Picture]:
         """Take a picture from each pose, in their order; some poses are asked for ahead.
 
@@ -168,7 +172,7 @@ class GpuRenderer:
         outputs: Collection[str] = DEFAULT_OUTPUTS,
         light: LookLight = DAY,
         samples: int = 1,
-        background: Paper | None = None,
+        background: Backdrop | None = None,
     ) -> Picture:
         """Take a picture by parallel rays; see the function of that name."""
         rays = (px_per_metre, px_per_metre, size[1] / 2, size[0] / 2)
@@ -180,10 +184,10 @@ class GpuRenderer:
     def _open(self) -> None:
         self._engine = engine_for(self._adapter)
         self._engine.check_fits(self._scene)
-        scene = packed(self._scene)
+        scene = pack_scene(self._scene)
         self._offsets = scene.offsets
         self._buffers = self._engine.upload(scene.buffers)
-        self._free: list[Slot] = []
+        self._free: list[BufferSet] = []
 
     def _close_buffers(self) -> None:
         for slot in self._free:
@@ -197,39 +201,45 @@ class GpuRenderer:
     ) -> Iterator[Picture]:
         check_request(outputs, size, samples)
         scene = self._scene
-        layout = layout_of(tuple(outputs), len(scene.things) > 0)
-        ask = Ask(size, rays, spread, samples, layout)
-        plan = plan_of(ask, _count(poses))
+        layout = plane_layout(tuple(outputs), len(scene.things) > 0)
+        ask = PictureRequest(size, rays, spread, samples, layout)
+        plan = plan_submissions(ask, _count(poses))
 
         def jobs() -> Iterator[_Job]:
             for camera_to_room in poses:
                 pose = (scene.room_to_grid @ np.asarray(camera_to_room, np.float64))[:3]
                 check_pose(pose)
-                lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
+                lamp = shading_parameters(
+                    light, scene, background, pose[:, 3][None] if spread else None
+                )
                 for row in range(0, size[0], plan.band_rows):
                     yield _Job(pose, row, lamp)
 
-        for pose, arrays in self._drawn(ask, plan, alike(jobs(), plan.jobs), outputs):
+        for pose, arrays in self._drawn(ask, plan, group_jobs(jobs(), plan.jobs), outputs):
             picture = picture_of(arrays, outputs)
             if "free" in outputs:
-                free = crossed_air(scene.tables, pose, np.array(rays), spread, arrays.depth)
+                free = observed_free_space(scene.tables, pose, np.array(rays), spread, arrays.depth)
                 picture = replace(picture, free=free)
             yield picture
 
     def _drawn(
-        self, ask: Ask, plan: Plan, lots: "Iterator[list[_Job]]", outputs: Collection[str]
+        self,
+        ask: PictureRequest,
+        plan: SubmissionPlan,
+        lots: "Iterator[list[_Job]]",
+        outputs: Collection[str],
     ) -> Iterator[tuple[np.ndarray, PixelArrays]]:
         """Draw lots of jobs; two submissions are under way at a time."""
         under_way: deque[_Work] = deque()
         arrays, lost = pixel_arrays((1, 1), ()), False
         try:
             while True:
-                under_way += [_Work(lot) for lot in islice(lots, AHEAD - len(under_way))]
+                under_way += [_Work(lot) for lot in islice(lots, MAX_IN_FLIGHT - len(under_way))]
                 if not under_way:
                     return
                 try:
                     words = self._begin(under_way, ask, plan)
-                except failures() as error:
+                except device_errors() as error:
                     if lost:
                         raise GpuError(LOST.format(self.name, error)) from error
                     lost = True
@@ -237,7 +247,7 @@ class GpuRenderer:
                     continue
                 for job, planes in zip(under_way[0].jobs, words, strict=True):
                     arrays = pixel_arrays(ask.size, outputs) if job.row == 0 else arrays
-                    fill(arrays, planes, job.row, ask.layout)
+                    unpack_rows(arrays, planes, job.row, ask.layout)
                     if job.row + plan.band_rows >= ask.size[0]:
                         yield job.pose, arrays
                 self._give_back(under_way.popleft().slot)
@@ -245,7 +255,9 @@ class GpuRenderer:
             for work in under_way:
                 self._give_back(work.slot)
 
-    def _begin(self, under_way: "deque[_Work]", ask: Ask, plan: Plan) -> np.ndarray:
+    def _begin(
+        self, under_way: "deque[_Work]", ask: PictureRequest, plan: SubmissionPlan
+    ) -> np.ndarray:
         """Submit what is not yet; return the first one's words [jobs, planes, rows, W]."""
         for work in under_way:
             if work.slot is None:
@@ -260,30 +272,30 @@ class GpuRenderer:
 
     def _open_again(self, under_way: "deque[_Work]") -> None:
         """Open the device anew after it was lost."""
-        forget(self._engine)
+        discard_engine(self._engine)
         for work in under_way:
             work.slot = None
         self._open()
 
-    def _slot(self, out_bytes: int) -> Slot:
+    def _slot(self, out_bytes: int) -> BufferSet:
         """Return a set of buffers of a size."""
         for place, slot in enumerate(self._free):
             if slot.out_bytes == out_bytes:
                 return self._free.pop(place)
-        return Slot(self._engine, self._buffers, out_bytes)
+        return BufferSet(self._engine, self._buffers, out_bytes)
 
-    def _give_back(self, slot: Slot | None) -> None:
+    def _give_back(self, slot: BufferSet | None) -> None:
         if slot is None:
             return
         try:
             slot.release()
-        except failures():  # Its device is lost.
+        except device_errors():  # Its device is lost.
             return
         if slot.scene is not self._buffers:  # The scene has changed since.
             slot.destroy()
             return
         self._free.append(slot)
-        if len(self._free) > MOST_FREE:
+        if len(self._free) > MAX_FREE:
             self._free.pop(0).destroy()
 
 
@@ -292,7 +304,7 @@ class _Job(NamedTuple):
 
     pose: np.ndarray  # float64 [3, 4], camera to grid
     row: int  # the band's first
-    lamp: Lamp
+    lamp: ShadingParameters
 
 
 @dataclass
@@ -300,10 +312,10 @@ class _Work:
     """Jobs of one submission, and the buffers that it was submitted with."""
 
     jobs: list[_Job]
-    slot: Slot | None = None
+    slot: BufferSet | None = None
 
 
-def alike(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
+def group_jobs(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
     """Give lots of up to so many jobs, in their order; the jobs of a lot have one light."""
     lot: list[_Job] = []
     for job in jobs:
@@ -319,8 +331,8 @@ def _count(poses: object) -> int | None:
     return len(poses) if isinstance(poses, Sized) else None
 
 
-def _views(jobs: list[_Job], scene: BlockScene, ask: Ask) -> np.ndarray:
+def _views(jobs: list[_Job], scene: BlockScene, ask: PictureRequest) -> np.ndarray:
     shape = scene.tables.space.shape
-    ahead = [0.0 if ask.spread else way_ahead(job.pose, shape) for job in jobs]
+    ahead = [0.0 if ask.spread else entry_distance(job.pose, shape) for job in jobs]
     views = [view_of(job.pose, job.row, way) for job, way in zip(jobs, ahead, strict=True)]
     return np.array(views, VIEW)

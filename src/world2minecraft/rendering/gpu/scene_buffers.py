@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.rendering.ray_caster.shading import main_face
+from world2minecraft.rendering.ray_caster.shading import dominant_face
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import ABSOLUTE, BOXES, FLAGS, OWNER, TURN, SceneTables
 
@@ -48,7 +48,7 @@ class PackedScene:
         }  # fmt: skip
 
 
-def packed(scene: BlockScene) -> PackedScene:
+def pack_scene(scene: BlockScene) -> PackedScene:
     """Pack a scene."""
     tables = scene.tables
     turns, rows, anchors = _turns(tables)
@@ -73,7 +73,7 @@ def packed(scene: BlockScene) -> PackedScene:
     )
 
 
-def bytes_of(scene: BlockScene) -> dict[str, int]:
+def buffer_bytes(scene: BlockScene) -> dict[str, int]:
     """Return how many bytes the buffers of a scene take, before they are made."""
     tables = scene.tables
     words = (
@@ -130,7 +130,7 @@ def _main_faces(normals: np.ndarray) -> int:
     word = 0
     for side in range(6):
         x, y, z = (1.0 if side % 2 else -1.0) * normals[side // 2]
-        word |= int(main_face(x, y, z)) << (4 * side)
+        word |= int(dominant_face(x, y, z)) << (4 * side)
     return word
 
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.rendering.light.pixel_light import LitParameters
+from world2minecraft.rendering.light.pixel_light import LightCoefficients
 from world2minecraft.rendering.light.sky import Background
 from world2minecraft.rendering.light.tone_mapping import ENCODE_STEPS
-from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 
-FARTHEST = 2.0**30  # Blocks; farther cameras see nothing.
-MOST_SHOULDER = 1e30
+MAX_COORDINATE = 2.0**30  # Blocks; farther cameras see nothing.
+MAX_SHOULDER = 1e30
 _KINDS = {"i32": np.int32, "u32": np.uint32, "f32": np.float32}
 _PAPER = tuple(f"paper_{end}_{channel}" for end in ("first", "last") for channel in "rgb")
 SCALARS: tuple[tuple[str, str], ...] = (
@@ -29,7 +29,7 @@ SCALARS: tuple[tuple[str, str], ...] = (
     *((name, "u32") for name in ("at_bounds", "at_starts", "at_refs", "at_elements", "at_turns")),
     *((name, "u32") for name in ("at_things", "texel_count")),
     *((name, "f32") for name in ("fx", "fy", "cx", "cy", "spread", "shoulder", *_PAPER)),
-    *((f"lit_{name}", "f32") for name in LitParameters._fields),
+    *((f"lit_{name}", "f32") for name in LightCoefficients._fields),
     *((f"sky_{name}", "f32") for name in Background._fields),
 )
 _PARAMETERS = np.dtype([(name, _KINDS[kind]) for name, kind in SCALARS])
@@ -44,7 +44,7 @@ VIEW = np.dtype(
 
 
 @dataclass(frozen=True)
-class Layout:
+class PlaneLayout:
     """Which planes of 32 bits a picture has, and which hold what; -1 for none.
 
     The first four are depth, range, index, and colour with the face in its highest byte.
@@ -58,7 +58,7 @@ class Layout:
     planes: int
 
 
-def layout_of(outputs: Sequence[str], has_things: bool) -> Layout:
+def plane_layout(outputs: Sequence[str], has_things: bool) -> PlaneLayout:
     """Return the planes of some outputs."""
     planes = 4
     thing = planes if has_things else -1
@@ -70,18 +70,18 @@ def layout_of(outputs: Sequence[str], has_things: bool) -> Layout:
     planes += 3 * ("opaque" in outputs)
     normal = planes if "normal" in outputs else -1
     planes += 3 * ("normal" in outputs)
-    return Layout("colour" in outputs, opaque, normal, thing, label, planes)
+    return PlaneLayout("colour" in outputs, opaque, normal, thing, label, planes)
 
 
 @dataclass(frozen=True)
-class Ask:
+class PictureRequest:
     """What all pictures of one call share: H x W pixels, intrinsics, light."""
 
     size: tuple[int, int]
     rays: tuple[float, float, float, float]  # fx, fy, cx, cy in pixels, or pixels a metre
     spread: float  # 1 for a pinhole camera, 0 for parallel rays
     samples: int
-    layout: Layout
+    layout: PlaneLayout
 
 
 def struct_text() -> str:
@@ -91,7 +91,11 @@ def struct_text() -> str:
 
 
 def parameter_bytes(
-    ask: Ask, lamp: Lamp, scene: BlockScene, offsets: Mapping[str, int], band_rows: int
+    ask: PictureRequest,
+    lamp: ShadingParameters,
+    scene: BlockScene,
+    offsets: Mapping[str, int],
+    band_rows: int,
 ) -> bytes:
     """Return the uniform's bytes, a whole number of 16.
 
@@ -116,7 +120,7 @@ def parameter_bytes(
     values |= {"wants_colour": layout.colour, "by_row": lamp.by_row}
     values |= {"most_steps": 2 * sum(tables.space.shape) + 8}
     values |= dict(zip(("fx", "fy", "cx", "cy"), ask.rays, strict=True))
-    values |= {"spread": ask.spread, "shoulder": min(tone.shoulder, MOST_SHOULDER)}
+    values |= {"spread": ask.spread, "shoulder": min(tone.shoulder, MAX_SHOULDER)}
     values |= dict(zip(_PAPER, lamp.paper.ravel().tolist(), strict=True))
     values |= {f"lit_{name}": value for name, value in lamp.lit._asdict().items()}
     values |= {f"sky_{name}": value for name, value in lamp.background._asdict().items()}
@@ -126,7 +130,7 @@ def parameter_bytes(
     return record.tobytes().ljust(PARAMETER_BYTES, b"\0")
 
 
-def tone_words(lamp: Lamp) -> np.ndarray:
+def tone_words(lamp: ShadingParameters) -> np.ndarray:
     """Return the tables of a light, uint32: floats, four screen values a word, floats again."""
     decode = np.ascontiguousarray(lamp.tone.decode, np.float32).view(np.uint32)
     encode = np.ascontiguousarray(lamp.tone.encode).view(np.uint32)
@@ -145,10 +149,10 @@ def view_of(pose: np.ndarray, first_row: int, ahead: float = 0.0) -> np.ndarray:
     Args:
         pose: float64 [3, 4], camera to grid.
         first_row: the row of the picture that the view begins with.
-        ahead: metres along the camera's z at which rays begin; see ``way_ahead``.
+        ahead: metres along the camera's z at which rays begin; see ``entry_distance``.
     """
     record = np.zeros((), VIEW)
-    eye = np.clip(pose[:, 3] + ahead * pose[:, 2], -FARTHEST, FARTHEST)
+    eye = np.clip(pose[:, 3] + ahead * pose[:, 2], -MAX_COORDINATE, MAX_COORDINATE)
     base = np.floor(eye)
     record["rows"] = np.concatenate([pose[:, :3], (eye - base)[:, None]], axis=1)
     record["base"] = base
@@ -156,7 +160,7 @@ def view_of(pose: np.ndarray, first_row: int, ahead: float = 0.0) -> np.ndarray:
     return record
 
 
-def way_ahead(pose: np.ndarray, shape: tuple[int, ...]) -> float:
+def entry_distance(pose: np.ndarray, shape: tuple[int, ...]) -> float:
     """Return how far parallel rays may go, in metres, before the first may enter the grid.
 
     They share one direction, so that a camera far away can come near, where 32 bits are finer.

@@ -1,7 +1,7 @@
 """Light: of the sky, of lamps, of the hour; and from light to the screen.
 
 A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
-kernel reads, and ``edit_light`` keeps it true where cells change. A ``LookLight`` says how a
+kernel reads, and ``edit_light`` keeps it true where cells change. A ``LightSettings`` says how a
 picture is lit, ``scene_exposure(field, look, eyes)`` how far that is opened up; the look gives the
 kernel
 
@@ -23,16 +23,16 @@ table, ``shade.corner_lights``, in place of the first and third):
 from world2minecraft.rendering.light.exposure import scene_exposure
 from world2minecraft.rendering.light.light_field import LightField, light_field
 from world2minecraft.rendering.light.pixel_light import (
-    LitParameters,
+    LightCoefficients,
     direction_shade,
-    glow_light,
+    emission_light,
     lattice_light,
-    lit_colour,
+    light_multipliers,
 )
 from world2minecraft.rendering.light.relight import edit_light
-from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.settings import LightSettings
 from world2minecraft.rendering.light.sky import Background, background_light
-from world2minecraft.rendering.light.tone_mapping import Tone, finish
+from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
 
 __all__ = [
     "Background",

@@ -10,19 +10,19 @@ import numpy as np
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.light import SHUT, SOLID, steps_of
 from world2minecraft.rendering.light.light_field import LightField
-from world2minecraft.rendering.light.propagation import BRIGHTEST, units
-from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
+from world2minecraft.rendering.light.settings import LightSettings
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
 # a night.
 DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.70, 0.32
-ADAPTS = 0.80  # How much of the way there: dim rooms stay a little dimmer than bright ones.
-LEAST, MOST = 0.6, 4.0
+ADAPTATION = 0.80  # How much of the way there: dim rooms stay a little dimmer than bright ones.
+MIN_EXPOSURE, MAX_EXPOSURE = 0.6, 4.0
 REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None = None) -> float:
+def scene_exposure(field: LightField, look: LightSettings, eyes: np.ndarray | None = None) -> float:
     """Return the exposure of a scene for ``LookLight.parameters`` and ``background``.
 
     Args:
@@ -39,7 +39,7 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
         return 1.0
     cells = standing_cells(field)
     if eyes is not None:
-        near = _around(field, np.atleast_2d(np.asarray(eyes, np.float64)))
+        near = _cells_near_eyes(field, np.atleast_2d(np.asarray(eyes, np.float64)))
         cells = near if len(near) else _outdoors(field, cells)
     if not len(cells):
         return 1.0
@@ -48,10 +48,10 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
     daylight = min(float(LUMINANCE @ look.sky.light), 1.0)
     at_night = NIGHT_KEY + (LAMP_KEY - NIGHT_KEY) * lamps.sum() / (sky + lamps).sum()
     key = at_night + (DAY_KEY - at_night) * daylight
-    return float(np.clip((key / light) ** ADAPTS, LEAST, MOST))
+    return float(np.clip((key / light) ** ADAPTATION, MIN_EXPOSURE, MAX_EXPOSURE))
 
 
-def _surface_light(field: LightField, look: LookLight, cells: np.ndarray) -> np.ndarray:
+def _surface_light(field: LightField, look: LightSettings, cells: np.ndarray) -> np.ndarray:
     """Return the luminance of the sky's and of the lamps' light in cells, float64 [2, N]."""
     lit = look.parameters(1.0)
     ambient, sky, block = (
@@ -84,11 +84,11 @@ def standing_cells(field: LightField) -> np.ndarray:
 def _outdoors(field: LightField, cells: np.ndarray) -> np.ndarray:
     """Return those of some flat cells that have the whole light of the sky, or all, if none has."""
     sky = field.sky.reshape(-1)[cells]
-    open_air = cells[sky >= units(BRIGHTEST, field.reach)]
+    open_air = cells[sky >= light_units(BRIGHTEST, field.reach)]
     return open_air if len(open_air) else cells
 
 
-def _around(field: LightField, eyes: np.ndarray) -> np.ndarray:
+def _cells_near_eyes(field: LightField, eyes: np.ndarray) -> np.ndarray:
     """Return the flat free cells near surfaces that light reaches from the eyes in few steps."""
     shape = np.array(field.kinds.shape)
     cells = np.floor(eyes).astype(np.int64) + 1
@@ -97,11 +97,11 @@ def _around(field: LightField, eyes: np.ndarray) -> np.ndarray:
         return np.empty(0, np.int64)
     starts = np.unique(np.ravel_multi_index(tuple(cells[inside].T), field.kinds.shape))
     kinds, steps = field.kinds.reshape(-1), steps_of(field.kinds.shape)
-    return _reach(kinds, field.words, steps, starts, REACH_BLOCKS)
+    return _reachable_near_surfaces(kinds, field.words, steps, starts, REACH_BLOCKS)
 
 
 @njit
-def _reach(kinds, words, steps, starts, most):
+def _reachable_near_surfaces(kinds, words, steps, starts, most):
     """Return the free cells up to ``most`` steps from the starts that touch a solid one."""
     seen = np.zeros(len(kinds), np.bool_)
     queue, count = np.empty(1024, np.int64), 0

@@ -9,8 +9,8 @@ from world2minecraft.minecraft.rules.light import SOLID, with_margin
 from world2minecraft.rendering.light.propagation import (
     flood_block,
     flood_sky,
-    light_rows,
-    whole_reach,
+    light_tables,
+    rounded_reach,
 )
 
 # The light lattice: for every corner of every layer of cells, the light that a face shows there.
@@ -28,7 +28,7 @@ BLOCK_SHIFT, COUNT_SHIFT = 6, 12
 _ONE, _BLOCK = 1 << 20, 1 << 10  # A packed cell: one, block light, sky light; 0 where solid.
 
 
-def quarters(reach: float) -> np.ndarray:
+def quarter_level_table(reach: float) -> np.ndarray:
     """Return uint16 [5, 1024]: quarters of a level by the number of cells and their sum."""
     sums = np.arange(1024)
     table = np.zeros((5, 1024), np.uint16)
@@ -47,7 +47,7 @@ def fill_lattice(lattice, sky, block, kinds, words, table, low, high):
         block: uint8, block light.
         kinds: uint16, rows of ``words``.
         words: uint32 [K].
-        table: what ``quarters`` returns.
+        table: what ``quarter_level_table`` returns.
         low: int64 [3], the first cell with the margin counted (the whole begins at 0, 0, 0).
         high: int64 [3], past the last one (the whole ends at X + 2, Y + 2, Z + 2).
     """
@@ -90,7 +90,7 @@ def _corner(a, b, c, d, table):
     return sky | (block << BLOCK_SHIFT) | (solid << COUNT_SHIFT)
 
 
-MOST_STATES = 65_535
+MAX_STATES = 65_535
 
 
 @dataclass(eq=False)
@@ -141,14 +141,14 @@ def light_field(
     Raises:
         ValueError: the reach is out of range, or the palette has over 65,535 states.
     """
-    if len(palette) > MOST_STATES:
-        raise ValueError(f"a palette may have {MOST_STATES:,} states, not {len(palette):,}")
-    reach = whole_reach(reach)
-    words, gives = light_rows(palette, hidden_lamps)
+    if len(palette) > MAX_STATES:
+        raise ValueError(f"a palette may have {MAX_STATES:,} states, not {len(palette):,}")
+    reach = rounded_reach(reach)
+    words, gives = light_tables(palette, hidden_lamps)
     kinds = with_margin(states.astype(np.uint16) + np.uint16(1), 0)
     sky = flood_sky(kinds, words, reach)
     block = flood_block(kinds, words, gives, reach)
     lattice = np.zeros((3, *kinds.shape), np.uint16)
     low, high = np.zeros(3, np.int64), np.array(kinds.shape, np.int64)
-    fill_lattice(lattice, sky, block, kinds, words, quarters(reach), low, high)
+    fill_lattice(lattice, sky, block, kinds, words, quarter_level_table(reach), low, high)
     return LightField(kinds, words, gives, sky, block, lattice, reach, hidden_lamps)

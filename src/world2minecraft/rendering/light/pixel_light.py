@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from world2minecraft.core.jit import inlined
 
-SCREEN_MOST = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_linear`` turns.
+MAX_SCREEN = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_linear`` turns.
 
 
-class LitParameters(NamedTuple):
+class LightCoefficients(NamedTuple):
     """What a ``LookLight`` comes to for the kernel: floats alone, which numba keeps at hand."""
 
     sky_r: float  # full sky light
@@ -73,7 +73,7 @@ def lattice_light(light, side, i, j, k, layer_step, p, q):
 
 
 @inlined
-def lit_colour(sky, block, occluders, shade, sun, params):
+def light_multipliers(sky, block, occluders, shade, sun, params):
     """Return the multipliers ``(r, g, b)`` of a place's light.
 
     Args:
@@ -82,7 +82,7 @@ def lit_colour(sky, block, occluders, shade, sun, params):
         occluders: what darkens the corner, 0 to 3; 0 where a model has no ambient occlusion.
         shade: of the face's direction, see ``direction_shade``.
         sun: 0 where the sun does not shine or was not asked for, else the cosine of its angle.
-        params: ``LitParameters``.
+        params: ``LightCoefficients``.
     """
     s, b = sky * (1 / 15), block * (1 / 15)
     s = s / (1.0 + params.curve * (1.0 - s))
@@ -111,7 +111,7 @@ def direction_shade(nx, ny, nz, cosine, params):
 
 
 @inlined
-def glow_light(emission, params):
+def emission_light(emission, params):
     """Return the least multiplier, grey, of a surface that shines by itself (0 to 15)."""
     light = emission * (1 / 15) * params.glow
     return to_linear(light) if params.screen > 0.0 else light
@@ -120,7 +120,7 @@ def glow_light(emission, params):
 @inlined
 def to_linear(value):
     """Return value ** 2.2 for 0 to 1.5, within 0.6 of 255 on the screen; cheap enough a pixel."""
-    value = min(value, SCREEN_MOST)
+    value = min(value, MAX_SCREEN)
     square = value * value
     high = (0.61682 - value * 0.14103) * square
     return square * (0.55340 + value * 1.02762 - square * 1.05753 + high * value)

@@ -40,7 +40,7 @@ HIDDEN_LAMP = "minecraft:light"
 
 
 @lru_cache(maxsize=1 << 16)
-def word_of(state: str) -> int:
+def opacity_word(state: str) -> int:
     """Return what ``minecraft.rules.light`` knows of a block state.
 
     Raises:
@@ -59,7 +59,7 @@ def word_of(state: str) -> int:
     return word
 
 
-def light_rows(
+def light_tables(
     palette: tuple[str, ...], hidden_lamps: bool = True
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the tables of a palette, a row for each state after one for the margin.
@@ -72,7 +72,7 @@ def light_rows(
         uint32 [P + 1], the words of ``minecraft.rules.light``, and uint8 [P + 1], the light that
         each gives, 0 to 15.
     """
-    words = [SHUT, *map(word_of, palette)]
+    words = [SHUT, *map(opacity_word, palette)]
     gives = [
         0 if state.partition("[")[0] == HIDDEN_LAMP and not hidden_lamps else light_of(state)
         for state in palette
@@ -99,7 +99,7 @@ def _covers(boxes: np.ndarray) -> int:
 
 
 BRIGHTEST = 15
-MOST_REACH = 16.0  # 15 * 16 units just fit a byte.
+MAX_REACH = 16.0  # 15 * 16 units just fit a byte.
 
 
 def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.ndarray:
@@ -108,16 +108,16 @@ def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.nd
     Args:
         kinds: uint16 [X + 2, Y + 2, Z + 2], rows of ``words``; the margin has row 0.
         words: uint32 [K], see ``minecraft.rules.light``.
-        reach: blocks a level, from ``whole_reach``; 1 is the game's.
+        reach: blocks a level, from ``rounded_reach``; 1 is the game's.
     """
-    top = units(BRIGHTEST, reach)
+    top = light_units(BRIGHTEST, reach)
     sky = np.full(kinds.shape, top, np.uint8)
     sky[1:-1, 1:-1, 1:-1] = 0
     steps = steps_of(kinds.shape)
     if sky[1:-1, 1:-1, 1:-1].size:
-        _fall(sky, kinds, words, top)
+        _light_from_above(sky, kinds, words, top)
         flat = sky.reshape(-1)
-        seeds = _edges(sky, flat, kinds.reshape(-1), words, steps, top)
+        seeds = _light_from_sides(sky, flat, kinds.reshape(-1), words, steps, top)
         spread(flat, kinds.reshape(-1), words, steps, seeds)
     return sky
 
@@ -129,25 +129,25 @@ def flood_block(
 
     Args: as ``flood_sky``; ``gives`` uint8 [K], the levels that states give.
     """
-    unit = np.array([units(level, reach) for level in range(BRIGHTEST + 1)], np.uint8)
+    unit = np.array([light_units(level, reach) for level in range(BRIGHTEST + 1)], np.uint8)
     light = unit[gives][kinds]
     flat = light.reshape(-1)
     spread(flat, kinds.reshape(-1), words, steps_of(kinds.shape), np.flatnonzero(flat))
     return light
 
 
-def whole_reach(reach: float) -> float:
+def rounded_reach(reach: float) -> float:
     """Return the nearest reach in which full light is a whole number of units.
 
     Raises:
         ValueError: the reach is out of range.
     """
-    if not 1 <= reach <= MOST_REACH:
-        raise ValueError(f"reach may be 1 to {MOST_REACH:g} blocks a light level, not {reach}")
+    if not 1 <= reach <= MAX_REACH:
+        raise ValueError(f"reach may be 1 to {MAX_REACH:g} blocks a light level, not {reach}")
     return round(BRIGHTEST * reach) / BRIGHTEST
 
 
-def units(level: int, reach: float) -> int:
+def light_units(level: int, reach: float) -> int:
     """Return a light level in the units of a reach."""
     return int(level * reach + 0.5)
 
@@ -162,7 +162,7 @@ def falls_into(words, above, cell):
 
 
 @njit
-def _fall(sky, kinds, words, top):
+def _light_from_above(sky, kinds, words, top):
     """Set the cells that the sky lights straight from above to ``top``."""
     size_x, size_y, size_z = sky.shape
     for x in range(1, size_x - 1):
@@ -181,7 +181,7 @@ def enters(words, kind, side):
 
 
 @njit
-def _edges(sky, flat, kinds, words, steps, top):
+def _light_from_sides(sky, flat, kinds, words, steps, top):
     """Light what the open air at the sides lights; return the cells to spread from, int64 [N]."""
     size_x, size_y, size_z = sky.shape
     seeds, count = np.empty(1024, np.int64), 0

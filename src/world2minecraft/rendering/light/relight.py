@@ -9,17 +9,17 @@ import numpy as np
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.light import spread, steps_of
 from world2minecraft.rendering.light.light_field import (
-    MOST_STATES,
+    MAX_STATES,
     LightField,
     fill_lattice,
-    quarters,
+    quarter_level_table,
 )
 from world2minecraft.rendering.light.propagation import (
     BRIGHTEST,
     enters,
     falls_into,
-    light_rows,
-    units,
+    light_tables,
+    light_units,
 )
 
 
@@ -46,27 +46,27 @@ def edit_light(
     if (low < 1).any() or (high > np.array(field.kinds.shape) - 1).any():
         raise ValueError(f"the box at {tuple(corner)} of {states.shape} is not in the volume")
     if palette is not None:
-        _learn(field, palette)
+        _add_states(field, palette)
     if not states.size:
         return
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     field.kinds[box] = states.astype(np.uint16) + np.uint16(1)
-    unit = np.array([units(level, field.reach) for level in range(BRIGHTEST + 1)], np.uint8)
-    top = units(BRIGHTEST, field.reach)
+    unit = np.array([light_units(level, field.reach) for level in range(BRIGHTEST + 1)], np.uint8)
+    top = light_units(BRIGHTEST, field.reach)
     first, last = low.copy(), high.copy()
     dark = np.zeros_like(field.gives)
     for light, gives, full in ((field.sky, dark, top), (field.block, unit[field.gives], 0)):
-        reached = _reached(light.shape, low, high, top, full > 0)
+        reached = _affected_box(light.shape, low, high, top, full > 0)
         before = light[reached].copy()
         _relight(light, field.kinds, field.words, gives, low, high, full)
-        _grow(first, last, reached, before != light[reached])
-    table = quarters(field.reach)
+        _extend_box(first, last, reached, before != light[reached])
+    table = quarter_level_table(field.reach)
     fill_lattice(
         field.lattice, field.sky, field.block, field.kinds, field.words, table, first, last
     )
 
 
-def _reached(shape, low, high, top: int, to_ground: bool) -> tuple[slice, ...]:
+def _affected_box(shape, low, high, top: int, to_ground: bool) -> tuple[slice, ...]:
     """Return the box that a change between ``low`` and ``high`` may light or darken."""
     first, last = np.maximum(low - top, 0), np.minimum(high + top, shape)
     if to_ground:  # Full light of the sky goes straight down.
@@ -74,7 +74,7 @@ def _reached(shape, low, high, top: int, to_ground: bool) -> tuple[slice, ...]:
     return tuple(slice(int(a), int(b)) for a, b in zip(first, last, strict=True))
 
 
-def _grow(first, last, reached: tuple[slice, ...], changed: np.ndarray) -> None:
+def _extend_box(first, last, reached: tuple[slice, ...], changed: np.ndarray) -> None:
     """Let ``first`` and ``last`` hold all cells that changed."""
     for axis in range(3):
         others = tuple(n for n in range(3) if n != axis)
@@ -84,12 +84,12 @@ def _grow(first, last, reached: tuple[slice, ...], changed: np.ndarray) -> None:
             last[axis] = max(last[axis], found[-1] + 1)
 
 
-def _learn(field: LightField, palette: tuple[str, ...]) -> None:
+def _add_states(field: LightField, palette: tuple[str, ...]) -> None:
     """Add the rows of states that are new."""
     known = len(field.words) - 1
-    if not known <= len(palette) <= MOST_STATES:
-        raise ValueError(f"the palette may have {known} to {MOST_STATES:,} states now")
-    words, gives = light_rows(palette[known:], field.hidden_lamps)
+    if not known <= len(palette) <= MAX_STATES:
+        raise ValueError(f"the palette may have {known} to {MAX_STATES:,} states now")
+    words, gives = light_tables(palette[known:], field.hidden_lamps)
     field.words = np.concatenate([field.words, words[1:]])
     field.gives = np.concatenate([field.gives, gives[1:]])
 
@@ -100,13 +100,13 @@ def _relight(light, kinds, words, gives, low, high, top: int) -> None:
     ranges = [np.arange(a, b) for a, b in zip(low, high, strict=True)]
     cells = np.ravel_multi_index(np.meshgrid(*ranges, indexing="ij"), light.shape).reshape(-1)
     rows = kinds.reshape(-1)
-    dark, edge = _put_out(flat, rows, steps, cells, top)
-    seeds = _kindle(flat, rows, words, gives, steps, dark, edge, top)
+    dark, edge = _darken(flat, rows, steps, cells, top)
+    seeds = _find_seeds(flat, rows, words, gives, steps, dark, edge, top)
     spread(flat, rows, words, steps, seeds)
 
 
 @njit
-def _put_out(light, kinds, steps, cells, top):
+def _darken(light, kinds, steps, cells, top):
     """Darken cells and all that they may have lit; return those, and the lit cells beside them."""
     dark, levels, edge = cells.copy(), light[cells], np.empty(64, np.int64)
     count, edges, done = len(cells), 0, 0
@@ -135,7 +135,7 @@ def _put_out(light, kinds, steps, cells, top):
 
 
 @njit
-def _kindle(light, kinds, words, gives, steps, dark, edge, top):
+def _find_seeds(light, kinds, words, gives, steps, dark, edge, top):
     """Light again what shines by itself or under the sky; return all cells to spread from."""
     seeds, count = np.empty(len(dark) + len(edge) + 64, np.int64), 0
     for cell in edge:

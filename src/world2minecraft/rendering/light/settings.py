@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.rendering.light.pixel_light import SCREEN_MOST, LitParameters
+from world2minecraft.rendering.light.pixel_light import MAX_SCREEN, LightCoefficients
 from world2minecraft.rendering.light.sky import Background, Sky, sky_at
 from world2minecraft.rendering.light.tone_mapping import (
     SCREEN_POWER,
@@ -35,7 +35,7 @@ NEUTRAL_HEADLIGHT, NEUTRAL_CORNER, NEUTRAL_GLOW = 0.14, 0.15, 1.12
 
 
 @dataclass(frozen=True)
-class LookLight:
+class LightSettings:
     """How a picture is lit.
 
     Presets: ``shader`` is light in linear colours with a soft shoulder; ``game`` is the game's own
@@ -70,7 +70,7 @@ class LookLight:
         """The tables that carry screen values to light and back."""
         return filmic_tone() if self.preset == "shader" else screen_tone()
 
-    def parameters(self, exposure: float = 1.0) -> LitParameters:
+    def parameters(self, exposure: float = 1.0) -> LightCoefficients:
         """Return what the kernel reads. ``exposure`` counts only where the look names none."""
         exposure = exposure if self.exposure is None else self.exposure
         if self.preset == "neutral":
@@ -78,17 +78,17 @@ class LookLight:
         sky = self.sky
         light = np.array(sky.shade if self.sun_shadow else sky.light)
         daylight = min(sky.light[1], 1.0)
-        lamp = mixed(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
-        ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * mixed(DIM_BY_NIGHT, (1, 1, 1), daylight)
+        lamp = mix(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
+        ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * mix(DIM_BY_NIGHT, (1, 1, 1), daylight)
         rest = [3.0 - 2.0 * self.brightness, CORNER, *self._shades(), 0.0, GLOW, 0.0]
         if self.preset == "game":
             light, lamp = light ** (1 / SCREEN_POWER), np.array(WARM)
             # The game mixes b with 1 - (1 - b) ** 4 for b = l / (4 - 3 l); these come close.
             curve = 3.0 - 6.6 * self.brightness + 3.3 * self.brightness**2
-            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, min(exposure, SCREEN_MOST)]
+            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, min(exposure, MAX_SCREEN)]
         sun = np.array(sky.sun) * self.sun_shadow
         colours = np.concatenate([light, lamp, ambient, sun]) * exposure
-        return LitParameters._make([*colours.tolist(), *sky.sun_direction, *rest])
+        return LightCoefficients._make([*colours.tolist(), *sky.sun_direction, *rest])
 
     def _shades(self) -> tuple[float, ...]:
         """Return the shades of faces in linear light: x, up, down, z."""
@@ -106,14 +106,14 @@ class LookLight:
         return Background._make([*colours.reshape(-1).tolist(), *sky.sun_direction])
 
 
-def mixed(first: Sequence[float], second: Sequence[float], share: float) -> np.ndarray:
+def mix(first: Sequence[float], second: Sequence[float], share: float) -> np.ndarray:
     """Return a colour between two, ``share`` of the way to the second."""
     return np.array(first) * (1 - share) + np.array(second) * share
 
 
-def _neutral(exposure: float) -> LitParameters:
+def _neutral(exposure: float) -> LightCoefficients:
     """Return a grey light at the camera, with the shades of the preview."""
     light = NEUTRAL_EXPOSURE * exposure
     colours = [*[0.0] * 6, light, light, light, *[0.0] * 3]
-    rest = [3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, SCREEN_MOST]
-    return LitParameters._make([*colours, 0.0, 1.0, 0.0, *rest])
+    rest = [3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, MAX_SCREEN]
+    return LightCoefficients._make([*colours, 0.0, 1.0, 0.0, *rest])

@@ -69,7 +69,7 @@ def background_light(dx, dy, dz, background):
 
 
 SUN_TILT_DEG = 30.0  # How far south of straight overhead the sun passes: shadows want a direction.
-LEAST_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
+MIN_SUN_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def sun_direction(hour: float) -> tuple[float, float, float]:
     """
     angle = np.pi * ((hour - 6) % 12) / 12
     tilt = np.deg2rad(SUN_TILT_DEG)
-    height = max(float(np.sin(angle) * np.cos(tilt)), LEAST_HEIGHT)
+    height = max(float(np.sin(angle) * np.cos(tilt)), MIN_SUN_HEIGHT)
     towards = np.array([np.cos(angle), height, np.sin(angle) * np.sin(tilt)])
     x, y, z = towards / np.linalg.norm(towards)
     return float(x), float(y), float(z)

@@ -69,14 +69,14 @@ def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
     return scaled + (pressed - scaled) * pale
 
 
-def develop(light: np.ndarray, tone: Tone) -> np.ndarray:
-    """Return screen colours, uint8 [..., 3], of linear light: ``finish`` for whole pictures."""
+def tone_map_picture(light: np.ndarray, tone: Tone) -> np.ndarray:
+    """Return screen colours, uint8 [..., 3], of linear light: ``tone_map_pixel`` for whole pictures."""
     pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else np.maximum(light, 0)
     return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 
 
 @inlined
-def finish(r, g, b, tone):
+def tone_map_pixel(r, g, b, tone):
     """Return the screen's ``(red, green, blue)``, uint8, of a pixel's linear light."""
     peak = max(r, g, b)
     if peak > tone.shoulder:

@@ -14,19 +14,25 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.rendering.atlas import Atlas, to_srgb
-from world2minecraft.rendering.block_elements import BlockModel, LookSource
-from world2minecraft.rendering.block_models import OwnLooks
+from world2minecraft.rendering.block_elements import BlockModel, ModelSource
+from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.cutaway import (
     without_ceiling,
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.freestanding_boxes import standing_things
+from world2minecraft.rendering.freestanding_boxes import display_entity_elements
 from world2minecraft.rendering.light.light_field import BLOCK_SHIFT, COUNT_SHIFT, light_field
-from world2minecraft.rendering.light.propagation import MOST_REACH
-from world2minecraft.rendering.mesh.quads import INSIDE, Quads, covered, joined, quads_of
+from world2minecraft.rendering.light.propagation import MAX_REACH
+from world2minecraft.rendering.mesh.quads import (
+    INSIDE,
+    Quads,
+    concatenate_quads,
+    hidden_sides,
+    quads_of,
+)
 from world2minecraft.rendering.scene import bake_model
-from world2minecraft.rendering.scene_baking import Baker, joins, kind_of, models_of
+from world2minecraft.rendering.scene_baking import Baker, joins_neighbours, kind_of, models_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL
 
 # Faces of full cubes that lie side by side and look alike become one quad.
@@ -42,7 +48,7 @@ class Rectangles(NamedTuple):
     length: np.ndarray  # int64 [R, 3], cells along x, y and z
 
 
-def merged(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
+def merge_faces(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
     """Join unit faces along one of their axes, and what that gives along the other.
 
     Args:
@@ -55,9 +61,9 @@ def merged(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
         cells[np.arange(len(side)), ALONG[side, 1]],
     )
     plane = cells[np.arange(len(side)), side // 2]
-    first, run = _runs([side, plane, look, one, two], look >= 0)
+    first, run = _join_runs([side, plane, look, one, two], look >= 0)
     keys = [side[first], plane[first], look[first], two[first], run, one[first]]
-    again, lines = _runs(keys, look[first] >= 0)
+    again, lines = _join_runs(keys, look[first] >= 0)
     rows = first[again]
     length = np.ones((len(rows), 3), np.int64)
     at = np.arange(len(rows))
@@ -66,7 +72,7 @@ def merged(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
     return Rectangles(rows, length)
 
 
-def _runs(keys: list[np.ndarray], may: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _join_runs(keys: list[np.ndarray], may: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Join rows equal in all keys but the last, which counts up by one; return first and number."""
     if not len(keys[0]):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
@@ -87,7 +93,7 @@ CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
 CEILING, PARTITIONS = 1 << 4, 1 << 5
 
 
-def cuts_of(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
+def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
     """Return the cuts that take each block away, and each display entity.
 
     Bits 0 to 3 are the near walls of ``CORNERS``, bit 4 the ceiling and all above it, bit 5 the
@@ -115,7 +121,7 @@ _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyo
 OPEN = np.array([60, 0, 0], np.uint8)  # Daylight and free corners: faces that a cut lays bare.
 
 
-def light_at(
+def sample_lattice(
     lattice: np.ndarray, cells: np.ndarray, facing: np.ndarray, points: np.ndarray
 ) -> np.ndarray:
     """Return sky light, block light (quarters of a level, 0 to 60) and occluders (0 to 240 for 3).
@@ -165,7 +171,7 @@ class BlockMesh:
     """Q quads in coordinates of the volume's cells; those that are drawn over others come last.
 
     ``light`` is sky light and block light, 0 to 60, and what darkens a corner, 0 to 240.
-    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cuts_of``. A
+    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cut_bits``. A
     quad with a ``cover`` is seen only where that is hidden.
     """
 
@@ -202,7 +208,7 @@ class _Placed:
 
 
 def mesh_of(
-    volume: BlockVolume, looks: LookSource | None = None, *, texture_px: int = 16
+    volume: BlockVolume, looks: ModelSource | None = None, *, texture_px: int = 16
 ) -> BlockMesh:
     """Return the mesh of a volume, display entities too.
 
@@ -211,31 +217,34 @@ def mesh_of(
         looks: where models and textures come from; our own set where None.
         texture_px: the side of a texture, 16, 32, 64 or 128.
     """
-    baker = Baker(looks or OwnLooks(texture_px), texture_px)
+    baker = Baker(looks or BuiltinModels(texture_px), texture_px)
     models = models_of(volume.palette, baker.looks)
     numbers = [bake_model(s, m, baker) for s, m in zip(volume.palette, models, strict=True)]
-    guests = standing_things(volume, baker.looks)[1]
+    guests = display_entity_elements(volume, baker.looks)[1]
     free = [(guest, baker.add(guest.element, ABSOLUTE | guest.flags)) for guest in guests]
     table = baker.table()
-    cuts, thing_cuts = cuts_of(volume)
-    reach = min(max(1.0, volume.blocks_per_metre / 2), MOST_REACH)
+    cuts, thing_cuts = cut_bits(volume)
+    reach = min(max(1.0, volume.blocks_per_metre / 2), MAX_REACH)
     lattice = light_field(volume.states, volume.palette, reach).lattice
     templates = [
-        joined([quads_of(n, baker.elements[n][0], table) for n in rows]) for rows in numbers
+        concatenate_quads([quads_of(n, baker.elements[n][0], table) for n in rows])
+        for rows in numbers
     ]
     parts = _of_blocks(volume, models, baker.looks, templates, cuts, lattice)
     things = display_cubes(volume.entities)
     for guest, number in free:
         cube = things[guest.owner]
         facts = (NO_STATE, cube.class_id, cube.instance, thing_cuts[guest.owner])
-        parts.append(_lit(_standing(quads_of(number, guest.element, table), facts), lattice))
+        parts.append(
+            _with_light(_place_freestanding(quads_of(number, guest.element, table), facts), lattice)
+        )
     return _mesh(parts, table.atlas)
 
 
 def _of_blocks(
     volume: BlockVolume,
     models: list[BlockModel],
-    looks: LookSource,
+    looks: ModelSource,
     templates: list[Quads],
     cuts: np.ndarray,
     lattice: np.ndarray,
@@ -243,9 +252,11 @@ def _of_blocks(
     """Return the visible quads of all blocks with their light, uint8 [Q, 4, 3]."""
     states = volume.states
     kinds = np.array([kind_of(model, looks) for model in models], np.int8)
-    joining = np.array([joins(*pair) for pair in zip(volume.palette, models, strict=True)], bool)
+    joining = np.array(
+        [joins_neighbours(*pair) for pair in zip(volume.palette, models, strict=True)], bool
+    )
     groups = cuts.astype(np.int32) * 256 + volume.semantic
-    hidden = covered(states, kinds, joining, groups)
+    hidden = hidden_sides(states, kinds, joining, groups)
     full = (kinds == FULL)[states]
     owners = volume.semantic + cuts * np.uint16(256)
     covers = np.pad(np.where(full, owners, NO_COVER), 1, constant_values=NO_COVER)
@@ -268,8 +279,8 @@ def _of_blocks(
         facts = (volume.semantic[at], volume.instance[at], cuts[at])
         state = np.full(len(cells), row, np.uint16)
         placed = _Placed(quads, cells, state, *facts, _cover(quads, cells, covers))
-        lit = _lit(placed, lattice)
-        parts.append(_joined(*lit) if kinds[row] == FULL else lit)
+        lit = _with_light(placed, lattice)
+        parts.append(_merge_cube_faces(*lit) if kinds[row] == FULL else lit)
     return parts
 
 
@@ -280,18 +291,18 @@ def _cover(quads: Quads, cells: np.ndarray, covers: np.ndarray) -> np.ndarray:
     return np.where(quads.side == INSIDE, NO_COVER, covers[tuple(ahead.T)])
 
 
-def _lit(placed: _Placed, lattice: np.ndarray) -> tuple[_Placed, np.ndarray]:
+def _with_light(placed: _Placed, lattice: np.ndarray) -> tuple[_Placed, np.ndarray]:
     """Return quads with the light at their corners; what a cut lays bare is in the open."""
     count = len(placed.cells)
     cells = np.repeat(placed.cells, 4, axis=0)
     points = placed.quads.corners.reshape(-1, 3)
     facing = np.repeat(placed.quads.facing.astype(np.int64), 4)
-    light = light_at(lattice, cells, facing, points).reshape(count, 4, 3)
+    light = sample_lattice(lattice, cells, facing, points).reshape(count, 4, 3)
     light[placed.cover != NO_COVER] = OPEN
     return placed, light
 
 
-def _standing(quads: Quads, facts: tuple[int, int, int, int]) -> _Placed:
+def _place_freestanding(quads: Quads, facts: tuple[int, int, int, int]) -> _Placed:
     """Place quads in grid coordinates in the cell of their middle."""
     middle = quads.corners.mean(axis=1)
     cells = np.floor(middle).astype(np.int64)
@@ -301,14 +312,14 @@ def _standing(quads: Quads, facts: tuple[int, int, int, int]) -> _Placed:
     return _Placed(moved, cells, *held)
 
 
-def _joined(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
+def _merge_cube_faces(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
     """Join the faces of cubes of one state; only such that are lit evenly."""
     facts = (placed.semantic, placed.instance, placed.cuts, placed.cover)
     facts = np.stack(facts, axis=1).astype(np.int64)
     keys = np.concatenate([facts, light[:, 0].astype(np.int64)], axis=1)
     look = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
     even = (light == light[:, :1]).all(axis=(1, 2))
-    found = merged(placed.cells, placed.quads.side, np.where(even, look, -1))
+    found = merge_faces(placed.cells, placed.quads.side, np.where(even, look, -1))
     rows, length = found
     grown = placed.quads.corners[rows] * length[:, None]
     quads = placed.quads.taken(rows)
@@ -327,7 +338,7 @@ def _joined(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
 
 def _mesh(parts: list[tuple[_Placed, np.ndarray]], atlas: Atlas) -> BlockMesh:
     """Put all quads into one mesh, the clear ones last."""
-    quads = joined([placed.quads for placed, _ in parts])
+    quads = concatenate_quads([placed.quads for placed, _ in parts])
     order = np.argsort(quads.clear, kind="stable")
 
     def all_of(name: str, dtype: type) -> np.ndarray:

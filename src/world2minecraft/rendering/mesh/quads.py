@@ -77,7 +77,7 @@ def quads_of(number: int, element: Element, table: ElementTable) -> Quads:
     )
 
 
-def joined(parts: list[Quads]) -> Quads:
+def concatenate_quads(parts: list[Quads]) -> Quads:
     """Return all quads of some lists, in their order."""
     if not parts:
         return Quads(
@@ -88,7 +88,7 @@ def joined(parts: list[Quads]) -> Quads:
     return Quads(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
-def covered(
+def hidden_sides(
     states: np.ndarray, kinds: np.ndarray, joins: np.ndarray, groups: np.ndarray
 ) -> np.ndarray:
     """Return which sides of each block show nothing, bool [6, X, Y, Z].

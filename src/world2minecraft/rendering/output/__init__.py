@@ -1,6 +1,6 @@
 """Pictures as files: colour, depth, ids, and moving pictures."""
 
-from world2minecraft.rendering.output.animation import MOVING_SUFFIXES, moving_picture
+from world2minecraft.rendering.output.animation import ANIMATION_SUFFIXES, animation_writer
 from world2minecraft.rendering.output.exr import exr_bytes
 from world2minecraft.rendering.output.images import (
     colour_bytes,
@@ -10,11 +10,11 @@ from world2minecraft.rendering.output.images import (
 )
 from world2minecraft.rendering.output.layers import (
     LAYERS,
-    FileChoice,
+    FileFormats,
     file_name,
-    layers_named,
-    needs_of,
-    table_of_names,
+    id_names,
+    parse_layers,
+    required_outputs,
 )
 
 __all__ = [
@@ -30,5 +30,5 @@ __all__ = [
     "moving_picture",
     "needs_of",
     "number_bytes",
-    "table_of_names",
+    "id_names",
 ]

@@ -19,8 +19,8 @@ from world2minecraft.core.errors import LimitError, MissingExtraError, OutputErr
 
 PILLOW_KINDS = {".gif": "GIF", ".apng": "PNG", ".webp": "WEBP"}
 VIDEO_SUFFIXES = (".mp4", ".webm")
-MOVING_SUFFIXES = (*PILLOW_KINDS, *VIDEO_SUFFIXES)
-MOST_HELD_BYTES = 1 << 30  # Pillow's kinds are held in memory until they are whole.
+ANIMATION_SUFFIXES = (*PILLOW_KINDS, *VIDEO_SUFFIXES)
+MAX_BUFFERED_BYTES = 1 << 30  # Pillow's kinds are held in memory until they are whole.
 GIF_COLOURS = 256
 GIF_SAMPLES = 12  # Frames that its colours are chosen from.
 WEBP_QUALITY = 88
@@ -37,11 +37,11 @@ FrameWriter = Callable[[np.ndarray], None]  # Takes a frame, uint8 [H, W, 3], al
 
 
 @contextmanager
-def moving_picture(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
+def animation_writer(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
     """Write a moving picture: the block is given what takes its frames.
 
     Args:
-        path: ends in one of ``MOVING_SUFFIXES``.
+        path: ends in one of ``ANIMATION_SUFFIXES``.
         rate_hz: frames a second; a GIF rounds each frame to hundredths of a second.
 
     Raises:
@@ -51,17 +51,17 @@ def moving_picture(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
     target = Path(path)
     suffix = target.suffix.lower()
     if suffix in VIDEO_SUFFIXES:
-        with _whole(target) as draft, _ffmpeg(draft, suffix, rate_hz, target) as write:
+        with _atomic_file(target) as draft, _ffmpeg(draft, suffix, rate_hz, target) as write:
             yield write
     elif suffix in PILLOW_KINDS:
         held: list[np.ndarray] = []
-        yield _holding(held, target)
+        yield _frame_collector(held, target)
         if not held:
             raise UsageError(f"{target}: a moving picture needs at least one frame")
-        with _whole(target) as draft:
+        with _atomic_file(target) as draft:
             _save(held, draft, PILLOW_KINDS[suffix], rate_hz)
     else:
-        known = ", ".join(MOVING_SUFFIXES)
+        known = ", ".join(ANIMATION_SUFFIXES)
         raise UsageError(f"{target}: a moving picture ends in {known}, not {suffix!r}")
 
 
@@ -84,9 +84,9 @@ def ffmpeg_program() -> str:
         return found
 
 
-def _holding(held: list[np.ndarray], target: Path) -> FrameWriter:
+def _frame_collector(held: list[np.ndarray], target: Path) -> FrameWriter:
     def take(colour: np.ndarray) -> None:
-        if sum(one.nbytes for one in held[:1]) * (len(held) + 1) > MOST_HELD_BYTES:
+        if sum(one.nbytes for one in held[:1]) * (len(held) + 1) > MAX_BUFFERED_BYTES:
             raise LimitError(
                 target, f"over {len(held)} frames of this size; take fewer, smaller, or an .mp4"
             )
@@ -98,7 +98,7 @@ def _holding(held: list[np.ndarray], target: Path) -> FrameWriter:
 def _save(held: list[np.ndarray], draft: Path, kind: str, rate_hz: float) -> None:
     images = [Image.fromarray(colour) for colour in held]
     if kind == "GIF":
-        images = _few_colours(images)
+        images = _with_shared_palette(images)
     first, rest = images[0], images[1:]
     options = {
         "GIF": {"duration": round(100 / rate_hz) * 10, "optimize": False, "disposal": 1},
@@ -108,7 +108,7 @@ def _save(held: list[np.ndarray], draft: Path, kind: str, rate_hz: float) -> Non
     first.save(draft, kind, save_all=True, append_images=rest, loop=0, **options)
 
 
-def _few_colours(images: list[Image.Image]) -> list[Image.Image]:
+def _with_shared_palette(images: list[Image.Image]) -> list[Image.Image]:
     """Return the images in one palette of their own, so that colours do not flicker."""
     some = images[:: -(-len(images) // GIF_SAMPLES)]
     strip = Image.new("RGB", (some[0].width, some[0].height * len(some)))
@@ -119,7 +119,7 @@ def _few_colours(images: list[Image.Image]) -> list[Image.Image]:
 
 
 @contextmanager
-def _whole(target: Path) -> Iterator[Path]:
+def _atomic_file(target: Path) -> Iterator[Path]:
     """Give a file beside the target, which becomes the target when the block ends well."""
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -143,7 +143,7 @@ def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[
     running: list[subprocess.Popen[bytes]] = []
     with tempfile.TemporaryFile() as told:
         try:
-            yield _sending(running, program, draft, suffix, rate_hz, told)
+            yield _frame_sender(running, program, draft, suffix, rate_hz, told)
             if not running:
                 raise UsageError(f"{target}: a moving picture needs at least one frame")
             running[0].communicate()
@@ -157,7 +157,7 @@ def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[
                 process.wait()
 
 
-def _sending(
+def _frame_sender(
     running: list[subprocess.Popen[bytes]],
     program: str,
     draft: Path,

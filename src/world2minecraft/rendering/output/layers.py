@@ -25,7 +25,7 @@ from world2minecraft.rendering.picture import Picture
 
 
 @dataclass(frozen=True)
-class FileChoice:
+class FileFormats:
     """How layers become files: suffixes, quality, and what a metre of 16-bit depth is."""
 
     colour_suffix: str = ".png"
@@ -40,17 +40,17 @@ class Layer:
 
     title: str
     needs: str | None
-    make: Callable[[Picture, BlockVolume, FileChoice], bytes]
-    suffix: Callable[[FileChoice], str]
+    make: Callable[[Picture, BlockVolume, FileFormats], bytes]
+    suffix: Callable[[FileFormats], str]
 
 
-def _state(picture: Picture, volume: BlockVolume, choice: FileChoice) -> bytes:
+def _state(picture: Picture, volume: BlockVolume, choice: FileFormats) -> bytes:
     index = picture.block_index
     rows = volume.states.reshape(-1)[np.maximum(index, 0)]
     return number_bytes(np.where(index >= 0, rows, 0).astype(np.uint16))
 
 
-def _png(choice: FileChoice) -> str:
+def _png(choice: FileFormats) -> str:
     return ".png"
 
 
@@ -128,7 +128,7 @@ LAYERS: dict[str, Layer] = {
 GROUPS = {"id": ("state", "class", "instance"), "all": tuple(LAYERS)}
 
 
-def layers_named(text: str) -> tuple[str, ...]:
+def parse_layers(text: str) -> tuple[str, ...]:
     """Return the layers that a list such as ``rgb,depth,id`` names, each once, in its order.
 
     Raises:
@@ -144,18 +144,18 @@ def layers_named(text: str) -> tuple[str, ...]:
     return tuple(names)
 
 
-def needs_of(names: Iterable[str]) -> tuple[str, ...]:
+def required_outputs(names: Iterable[str]) -> tuple[str, ...]:
     """Return what the renderer must make for layers."""
     return tuple(sorted({need for name in names if (need := LAYERS[name].needs)}))
 
 
-def file_name(stem: str, name: str, choice: FileChoice) -> str:
+def file_name(stem: str, name: str, choice: FileFormats) -> str:
     """Return the file of a layer: ``STEM.png`` for colour, ``STEM.depth.png`` for the rest."""
     suffix = LAYERS[name].suffix(choice)
     return f"{stem}{suffix}" if name == "rgb" else f"{stem}.{name}{suffix}"
 
 
-def table_of_names(volume: BlockVolume) -> dict[str, Any]:
+def id_names(volume: BlockVolume) -> dict[str, Any]:
     """Return what the numbers of id layers mean, as it goes into ``names.json``."""
     return {
         "state": {str(n): state for n, state in enumerate(volume.palette)},

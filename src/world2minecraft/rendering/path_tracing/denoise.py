@@ -27,7 +27,7 @@ _SOFT = 0.015  # Of the light: a difference that is nothing.
 Bands = Callable[[Callable[[tuple[int, int]], None], int], None]
 
 
-def filtered(
+def denoise_light(
     light: np.ndarray,
     squares: np.ndarray,
     count: np.ndarray,
@@ -48,7 +48,7 @@ def filtered(
     grain = np.zeros(light.shape[:2], np.float32)
     now, then = light.copy(), light.copy()
     rows = len(light)
-    run(lambda band: find_grain(light, squares, count, guides, band, now, grain), rows)
+    run(lambda band: estimate_variance(light, squares, count, guides, band, now, grain), rows)
     other = grain.copy()
     for sweep in range(sweeps):
         step = 1 << sweep
@@ -56,7 +56,7 @@ def filtered(
         def one(
             band: tuple[int, int], step=step, now=now, then=then, grain=grain, other=other
         ) -> None:
-            smooth(now, grain, count, guides, step, band, then, other)
+            filter_pass(now, grain, count, guides, step, band, then, other)
 
         run(one, rows)
         now, then, grain, other = then, now, other, grain
@@ -79,7 +79,7 @@ def same_surface(guides, v, u, y, x):
 
 
 @lean
-def find_grain(light, squares, count, guides, rows, cut, grain):
+def estimate_variance(light, squares, count, guides, rows, cut, grain):
     """Cut single pixels that outshine all around them; find the variance of the others' means."""
     height, width = grain.shape
     for v in range(rows[0], rows[1]):
@@ -109,7 +109,7 @@ def find_grain(light, squares, count, guides, rows, cut, grain):
 
 
 @lean
-def smooth(light, grain, count, guides, step, rows, out_light, out_grain):
+def filter_pass(light, grain, count, guides, step, rows, out_light, out_grain):
     """Do one sweep over a band of rows: 5 x 5 pixels, ``step`` apart."""
     normal = guides[1]
     height, width = grain.shape
@@ -140,7 +140,7 @@ def smooth(light, grain, count, guides, step, rows, out_light, out_grain):
                     for _ in range(_RELIEF):
                         relief *= relief
                     off = abs(luminance(r, g, c) - own) * differ
-                    weight = relief * np.exp(-off) * bell(a) * bell(b)
+                    weight = relief * np.exp(-off) * spline_weight(a) * spline_weight(b)
                     red, green, blue = red + weight * r, green + weight * g, blue + weight * c
                     rough += weight * weight * grain[y, x]
                     weights += weight
@@ -151,7 +151,7 @@ def smooth(light, grain, count, guides, step, rows, out_light, out_grain):
 
 
 @inlined
-def bell(n):
+def spline_weight(n):
     """Return the weight of a tap of the cubic spline: 3/8, 1/4, 1/16."""
     n = abs(n)
     return 0.375 if n == 0 else (0.25 if n == 1 else 0.0625)

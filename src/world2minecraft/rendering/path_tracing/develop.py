@@ -9,14 +9,14 @@ from world2minecraft.rendering.path_tracing.denoise import (
     GLOSS_SWEEPS,
     SWEEPS,
     Bands,
-    filtered,
+    denoise_light,
     same_surface,
 )
 from world2minecraft.rendering.path_tracing.film import Film
 
 KEY = 0.36  # What the geometric mean of the surfaces' light is exposed to, by day.
-ADAPTS = 0.85  # How much of the way there: what is dim stays a little dim.
-LEAST, MOST = 0.25, 60.0
+ADAPTATION = 0.85  # How much of the way there: what is dim stays a little dim.
+MIN_EXPOSURE, MAX_EXPOSURE = 0.25, 60.0
 SEEN_POWER = 0.5  # Sky and lamps themselves are opened up half as far as what they light.
 
 
@@ -34,20 +34,24 @@ def surface_light(film: Film, denoise: bool, run: Bands) -> np.ndarray:
     guides = (film.place, film.normal, film.out, film.far)
     own = np.ascontiguousarray(film.samples[..., 0])
     squares = film.squares[..., 0] / np.maximum(own, 1)
-    light = filtered(_over(film.light, film.share), squares, own, guides, SWEEPS, run)
+    light = denoise_light(
+        _divide_by_share(film.light, film.share), squares, own, guides, SWEEPS, run
+    )
     result = film.share / count * light
     _add_other(light, own, film, guides, result)
     if film.gloss_share.any():
         every = np.ascontiguousarray(film.samples[..., 1])
         squares = film.squares[..., 1] / np.maximum(every, 1)
-        gloss = _over(film.gloss, film.gloss_share)
+        gloss = _divide_by_share(film.gloss, film.gloss_share)
         result += (
-            film.gloss_share / count * filtered(gloss, squares, every, guides, GLOSS_SWEEPS, run)
+            film.gloss_share
+            / count
+            * denoise_light(gloss, squares, every, guides, GLOSS_SWEEPS, run)
         )
     return result
 
 
-def _over(light: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _divide_by_share(light: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Return light over share, where there is enough of it to tell."""
     return light / np.maximum(share, 1e-6)
 
@@ -95,7 +99,7 @@ def picture_exposure(light: np.ndarray, film: Film, daylight: float) -> float:
     bright = light[shows].astype(np.float64) @ LUMINANCE
     mean = np.exp(np.log(np.maximum(bright, 1e-4)).mean())
     key = KEY * (0.5 + 0.5 * daylight)
-    return float(np.clip((key / mean) ** ADAPTS, LEAST, MOST))
+    return float(np.clip((key / mean) ** ADAPTATION, MIN_EXPOSURE, MAX_EXPOSURE))
 
 
 @lean

@@ -23,16 +23,16 @@ from world2minecraft.rendering.scene_tables import (
 )
 
 BRICK = 8  # Cells.
-MOST_NEAR = 12  # Lamps in a brick's list.
-LEAST_SHARE = 0.004  # Of a brick's light; lamps that give less are left out of its list.
+MAX_NEARBY = 12  # Lamps in a brick's list.
+MIN_LIGHT_SHARE = 0.004  # Of a brick's light; lamps that give less are left out of its list.
 POWER = 8.0  # Light of a lamp of level 15: a quarter of full daylight at 3 cells.
 WARM = np.array([1.0, 0.84, 0.60])  # What lamps of pale textures shine like.
 _UNSEEN = np.array([0.25, 0.25, 0.25, 0.75, 0.75, 0.75])  # Where a block shines that has no box.
-_LEAST_AREA = 0.02  # Square cells.
+_MIN_AREA = 0.02  # Square cells.
 _NEAREST = 3.0  # Cells: a brick's own lamps are taken to be so far.
 
 
-class Lamps(NamedTuple):
+class Emitters(NamedTuple):
     """L shining boxes; ``b`` counts the three pairs of faces: -x +x, -y +y, -z +z of the box."""
 
     row_of_cell: np.ndarray  # int32 [X, Y, Z]: the first of a cell's rows, -1 for none
@@ -54,16 +54,16 @@ class Lamps(NamedTuple):
     bricks: np.ndarray  # int64 [3]
 
 
-def lamps_of(scene: BlockScene) -> Lamps:
+def emitters_of(scene: BlockScene) -> Emitters:
     """Return the lamps of a scene; make them once where many photos are taken of it."""
     tables = scene.tables
-    cells, elements, level = _shining(scene, element_levels(tables, scene.material))
+    cells, elements, level = _find_emitters(scene, element_levels(tables, scene.material))
     corner, edges = _boxes(tables, cells, elements)
     area = np.linalg.norm(np.cross(edges[:, [1, 2, 0]], edges[:, [2, 0, 1]]), axis=2)
     out = _unit_normals(tables, elements)
     thick = np.abs((edges * out).sum(axis=2))
-    light = _light(scene, level, cells, elements, area)
-    shown = _shown(tables, cells, elements)
+    light = _radiance(scene, level, cells, elements, area)
+    shown = _visible_faces(tables, cells, elements)
     bits = (shown[:, None] >> np.arange(6)) & 1
     faces = (bits * np.repeat(area, 2, axis=1)).sum(axis=1)
     row_of_cell = np.full(tables.space.shape, -1, np.int32)
@@ -76,7 +76,7 @@ def lamps_of(scene: BlockScene) -> Lamps:
     power = light.mean(axis=1) * faces
     bricks = -(-np.array(tables.space.shape, np.int64) // BRICK)
     start, near = _near_lists(bricks, centre, power)
-    return Lamps(
+    return Emitters(
         row_of_cell, row_of_element, cells, elements, corner, edges, out, thick, area, shown,
         centre, np.linalg.norm(edges, axis=2).sum(axis=1) / 2, light, power, start, near, bricks,
     )  # fmt: skip
@@ -89,7 +89,7 @@ def element_levels(tables: SceneTables, material: np.ndarray) -> np.ndarray:
     return np.maximum(tables.emission, faces.max(axis=1, initial=0))
 
 
-def _shining(scene: BlockScene, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _find_emitters(scene: BlockScene, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return flat cells (-1 for standing things), elements (-1 for unseen) and levels of lamps.
 
     A cell's level is what its block gives, in the game's count, else what its elements say. All
@@ -127,11 +127,13 @@ def _boxes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a corner [L, 3] and the edges [L, 3, 3] of boxes, in the grid."""
     unseen = elements < 0
-    boxes = np.where(unseen[:, None], _UNSEEN, _of(tables.boxes, elements)).astype(np.float64)
+    boxes = np.where(unseen[:, None], _UNSEEN, _rows_of_elements(tables.boxes, elements)).astype(
+        np.float64
+    )
     low, high = np.split(boxes, 2, axis=1)
     edges = np.eye(3) * (high - low)[:, :, None]
     corner = low.copy()
-    for n in np.flatnonzero(_turns(tables, elements) >= 0):
+    for n in np.flatnonzero(_turn_rows(tables, elements) >= 0):
         inverse = np.linalg.inv(
             np.vstack([tables.turns[tables.traits[elements[n], TURN]], [0, 0, 0, 1]])
         )
@@ -141,27 +143,27 @@ def _boxes(
     return corner + np.where(cells[:, None] >= 0, places, 0), edges
 
 
-def _of(values: np.ndarray, elements: np.ndarray) -> np.ndarray:
+def _rows_of_elements(values: np.ndarray, elements: np.ndarray) -> np.ndarray:
     """Return the rows of elements; any row for one that is -1."""
     return values[np.maximum(elements, 0)] if len(values) else np.zeros((len(elements), 6))
 
 
-def _turns(tables: SceneTables, elements: np.ndarray) -> np.ndarray:
+def _turn_rows(tables: SceneTables, elements: np.ndarray) -> np.ndarray:
     """Return the rows of ``turns`` of elements, -1 for none."""
     if not len(tables.traits):
         return np.full(len(elements), -1)
-    return np.where(elements >= 0, _of(tables.traits, elements)[:, TURN], -1)
+    return np.where(elements >= 0, _rows_of_elements(tables.traits, elements)[:, TURN], -1)
 
 
 def _unit_normals(tables: SceneTables, elements: np.ndarray) -> np.ndarray:
     """Return the unit normals [L, 3, 3] of the second faces, for flat boxes too."""
     out = np.broadcast_to(np.eye(3), (len(elements), 3, 3)).copy()
-    turns = _turns(tables, elements)
+    turns = _turn_rows(tables, elements)
     out[turns >= 0] = tables.normals[turns[turns >= 0]]
     return out
 
 
-def _light(
+def _radiance(
     scene: BlockScene, level: np.ndarray, cells: np.ndarray, elements: np.ndarray, area: np.ndarray
 ) -> np.ndarray:
     """Return the radiance of lamps, float64 [L, 3]."""
@@ -174,7 +176,7 @@ def _light(
     owner = np.where(cells >= 0, cells, -1 - elements.astype(np.int64))
     _, group = np.unique(owner, return_inverse=True)
     whole = np.bincount(group, weights=2 * area.sum(axis=1))[group]
-    strength = 4 * POWER * level**1.5 / np.maximum(whole, _LEAST_AREA)
+    strength = 4 * POWER * level**1.5 / np.maximum(whole, _MIN_AREA)
     return (0.5 * colour + 0.5 * WARM) * strength[:, None]
 
 
@@ -193,13 +195,16 @@ def _colour(scene: BlockScene, element: int) -> np.ndarray:
     return colour / max(float(colour.max()), 1e-6)
 
 
-def _shown(tables: SceneTables, cells: np.ndarray, elements: np.ndarray) -> np.ndarray:
+def _visible_faces(tables: SceneTables, cells: np.ndarray, elements: np.ndarray) -> np.ndarray:
     """Return a bit for each face that is there and has no whole cube before it, uint8 [L]."""
     places = np.stack(np.unravel_index(np.maximum(cells, 0), tables.space.shape), axis=1)
     shape = np.array(tables.space.shape)
-    boxes, layers = _of(tables.boxes, elements), _of(tables.layers, elements)
+    boxes, layers = (
+        _rows_of_elements(tables.boxes, elements),
+        _rows_of_elements(tables.layers, elements),
+    )
     shown = np.zeros(len(cells), np.uint8)
-    plain = (cells >= 0) & (elements >= 0) & (_turns(tables, elements) < 0)
+    plain = (cells >= 0) & (elements >= 0) & (_turn_rows(tables, elements) < 0)
     for side in range(6):
         axis = side // 2
         at_edge = boxes[:, axis + 3] >= 1 if side % 2 else boxes[:, axis] <= 0
@@ -217,8 +222,8 @@ def _near_lists(bricks, centre, power):
     """Return ``near_start`` and ``near``: for each brick the lamps that give most, best first."""
     total = bricks[0] * bricks[1] * bricks[2]
     start = np.zeros(total + 1, np.int32)
-    near = np.empty(total * min(MOST_NEAR, len(power)), np.int32)
-    best, rows = np.empty(MOST_NEAR), np.empty(MOST_NEAR, np.int32)
+    near = np.empty(total * min(MAX_NEARBY, len(power)), np.int32)
+    best, rows = np.empty(MAX_NEARBY), np.empty(MAX_NEARBY, np.int32)
     count = 0
     for brick in range(total):
         x = (brick // (bricks[1] * bricks[2]) + 0.5) * BRICK
@@ -231,14 +236,14 @@ def _near_lists(bricks, centre, power):
             whole += gives
             place = found
             while place > 0 and best[place - 1] < gives:
-                if place < MOST_NEAR:
+                if place < MAX_NEARBY:
                     best[place], rows[place] = best[place - 1], rows[place - 1]
                 place -= 1
-            if place < MOST_NEAR and gives > 0:
+            if place < MAX_NEARBY and gives > 0:
                 best[place], rows[place] = gives, row
-                found = min(found + 1, MOST_NEAR)
+                found = min(found + 1, MAX_NEARBY)
         for place in range(found):
-            if best[place] >= LEAST_SHARE * whole:
+            if best[place] >= MIN_LIGHT_SHARE * whole:
                 near[count] = rows[place]
                 count += 1
         start[brick + 1] = count

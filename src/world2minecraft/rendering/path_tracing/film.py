@@ -48,7 +48,7 @@ def luminance(r, g, b):
 
 
 @inlined
-def keep_middle(film, v, u, s):
+def store_center_surface(film, v, u, s):
     """Write what a pixel's middle looks at."""
     far = 0.0
     for n in range(3):
@@ -60,7 +60,7 @@ def keep_middle(film, v, u, s):
 
 
 @inlined
-def is_middle(film, v, u, s):
+def is_center_surface(film, v, u, s):
     """Tell whether a sample's first surface is the one in the pixel's middle."""
     cosine, off = 0.0, 0.0
     for n in range(3):
@@ -82,7 +82,7 @@ def add_sample(film, v, u, s):
     film.squares[v, u, 1] += value * value
     if s.own == 0:
         return
-    if not is_middle(film, v, u, s):
+    if not is_center_surface(film, v, u, s):
         for n in range(3):
             film.other_light[v, u, n] += s.spread[n]
             film.other_share[v, u, n] += s.spread_share[n]

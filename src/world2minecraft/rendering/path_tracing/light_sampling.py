@@ -23,7 +23,7 @@ def brick_of(lamps, at):
 
 
 @inlined
-def lamp_weight(lamps, row, at, out):
+def emitter_weight(lamps, row, at, out):
     """Return how much a lamp may give to a point, roughly; 0 where it lies all behind it."""
     x = lamps.centre[row, 0] - at[0]
     y = lamps.centre[row, 1] - at[1]
@@ -37,7 +37,7 @@ def lamp_weight(lamps, row, at, out):
 
 
 @inlined
-def choose_lamp(lamps, at, out, number):
+def choose_emitter(lamps, at, out, number):
     """Return ``(row, odds, number, total)``: a lamp near a point, -1 for none.
 
     ``number`` of [0, 1) decides; what is left of it comes back, even again. ``total`` is the sum of
@@ -47,7 +47,7 @@ def choose_lamp(lamps, at, out, number):
     total, row, weight = 0.0, -1, 0.0
     for place in range(lamps.near_start[brick], lamps.near_start[brick + 1]):
         other = lamps.near[place]
-        gives = lamp_weight(lamps, other, at, out)
+        gives = emitter_weight(lamps, other, at, out)
         if gives <= 0:
             continue
         total += gives
@@ -117,9 +117,9 @@ def face_odds(lamps, row, pair, at):
 
 
 @inlined
-def aim_at_lamp(lamps, s, pick, first, second):
+def sample_emitter(lamps, s, pick, first, second):
     """Set direction, distance, light and density of a lamp; tell whether there is one."""
-    row, odds, pick, s.weights = choose_lamp(lamps, s.at, s.out, pick)
+    row, odds, pick, s.weights = choose_emitter(lamps, s.at, s.out, pick)
     if row < 0:
         return False
     pair, side, face, before = choose_face(lamps, row, s.at, pick)
@@ -145,7 +145,7 @@ def aim_at_lamp(lamps, s, pick, first, second):
 
 
 @inlined
-def lamp_row(lamps, shape, s, element):
+def emitter_row(lamps, shape, s, element):
     """Return the row of the lamp that a path has met, -1 for none."""
     row = lamps.row_of_element[element]
     if row >= 0 or len(lamps.cell) == 0:
@@ -163,11 +163,11 @@ def lamp_row(lamps, shape, s, element):
 
 
 @inlined
-def density_of_aim(lamps, row, s):
+def sampling_density(lamps, row, s):
     """Return the density with which aiming, at the last bounce, takes the direction of a lamp."""
     if s.weights <= 0 or not is_near(lamps, row, s.from_at):
         return 0.0
-    weight = lamp_weight(lamps, row, s.from_at, s.from_out)
+    weight = emitter_weight(lamps, row, s.from_at, s.from_out)
     pair = s.face // 2
     odds, before = face_odds(lamps, row, pair, s.from_at)
     if odds <= 0:

@@ -9,35 +9,41 @@ import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
 from world2minecraft.rendering.light.sky import background_light
-from world2minecraft.rendering.path_tracing.film import add_sample, keep_middle, luminance
+from world2minecraft.rendering.path_tracing.film import add_sample, luminance, store_center_surface
 from world2minecraft.rendering.path_tracing.light_sampling import (
-    aim_at_lamp,
-    density_of_aim,
-    lamp_row,
+    emitter_row,
+    sample_emitter,
+    sampling_density,
 )
-from world2minecraft.rendering.path_tracing.rng import mixed, pair
+from world2minecraft.rendering.path_tracing.rng import hash_uint32, sample_pair
 from world2minecraft.rendering.path_tracing.scattering import (
     GLOSS,
+    MATT,
     SHARP_WIDTH,
-    SPREAD,
     UNDECIDED,
-    follow_gloss,
-    follow_matt,
+    copy_vector,
+    evaluate_gloss,
     glass_texel,
-    gloss_of,
     is_glass,
-    meet_surface,
-    pane_mirror,
-    put,
+    load_surface,
+    lobe_width,
+    pane_reflectance,
+    sample_gloss,
+    sample_matt,
     set_lobes,
-    width_of,
 )
-from world2minecraft.rendering.path_tracing.sky_light import lighting_sky, towards_sun
-from world2minecraft.rendering.ray_caster.ray import SOLID, begin, first_hit, ray_of_pixel, steep
+from world2minecraft.rendering.path_tracing.sky_light import sample_sun, sky_radiance
+from world2minecraft.rendering.ray_caster.ray import (
+    SOLID,
+    away_from_zero,
+    first_cell,
+    first_hit,
+    ray_of_pixel,
+)
 from world2minecraft.rendering.scene_tables import NO_FACE
 
-MOST_PANES = 12  # Of glass that one path passes.
-BRIGHTEST = 8.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
+MAX_PANES = 12  # Of glass that one path passes.
+MAX_INDIRECT = 8.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
 SEEN_GLOW = 2.2  # How bright a lamp itself is seen, beside its texture; what it gives is another.
 _OFF = 1e-4  # Cells: how far before a surface a new ray begins.
 _WIDE = 0.35  # How a beam widens that a matt surface sends on.
@@ -71,7 +77,7 @@ def trace_rows(
     width = film.far.shape[1]
     for v in range(rows[0], rows[1]):
         for u in range(width):
-            s.key = mixed(np.uint32(v * width + u) ^ mixed(np.uint32(seed)))
+            s.key = hash_uint32(np.uint32(v * width + u) ^ hash_uint32(np.uint32(seed)))
             # One more than the samples asks for the middle, which is found first.
             for sample in range(samples[0] - (1 if samples[0] == 0 else 0), samples[1]):
                 begin_path(pose, rays, u, v, sample, s)
@@ -81,7 +87,7 @@ def trace_rows(
                 if sample >= 0:
                     add_sample(film, v, u, s)
                 elif s.own == 1:
-                    keep_middle(film, v, u, s)
+                    store_center_surface(film, v, u, s)
 
 
 @inlined
@@ -90,7 +96,7 @@ def begin_path(pose, rays, u, v, sample, s):
     s.sample, s.use = sample, 1
     across, down = 0.5, 0.5
     if sample >= 0:
-        across, down = pair(s.key, sample, 0)
+        across, down = sample_pair(s.key, sample, 0)
     x, y = (u + across - rays[2]) / rays[0], (v + down - rays[3]) / rays[1]
     ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, 1.0)
     length = np.sqrt(dx * dx + dy * dy + dz * dz)
@@ -108,34 +114,34 @@ def begin_path(pose, rays, u, v, sample, s):
 def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
     """Follow a path to its end."""
     ox, oy, oz = s.o[0], s.o[1], s.o[2]
-    dx, dy, dz = steep(s.d[0]), steep(s.d[1]), steep(s.d[2])
+    dx, dy, dz = away_from_zero(s.d[0]), away_from_zero(s.d[1]), away_from_zero(s.d[2])
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    t, i, j, k, face = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     after = 0.0
-    for _ in range(depth + MOST_PANES):
+    for _ in range(depth + MAX_PANES):
         element = -1
         if i >= 0:
             t, i, j, k, face, element = first_hit(
                 tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
             )
         if i < 0 or face == NO_FACE:
-            meet_sky(sky, s)
+            add_sky_radiance(sky, s)
             return
         s.t, s.face, s.element = t, face, element
         s.cell[0], s.cell[1], s.cell[2] = i, j, k
-        meet_surface(tables, material, side_px, decode, s)
-        if s.clear and not mirrors(s, depth):
+        load_surface(tables, material, side_px, decode, s)
+        if s.clear and not reflects_on_glass(s, depth):
             after, face = t, NO_FACE
             continue
         if not s.clear:
             first = s.lobe == UNDECIDED
             if first:
-                put(s.first, s.at)
-                put(s.first_out, s.out)
+                copy_vector(s.first, s.at)
+                copy_vector(s.first_out, s.out)
                 s.own = 1
             if depth == 0:
                 return
-            meet_lamp(tables, lamps, s)
+            add_emitter_radiance(tables, lamps, s)
             if s.bounces == depth:
                 return
             set_lobes(s)
@@ -143,20 +149,20 @@ def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
                 for n in range(3):
                     s.spread_share[n] += s.share[n] * s.matt[n]
                     s.gloss_share[n] += s.share[n] * s.shine[n]
-            light_directly(tables, side_px, decode, lamps, sky, s)
-            if not go_on(s):
+            add_direct_light(tables, side_px, decode, lamps, sky, s)
+            if not sample_bounce(s):
                 return
         for n in range(3):
             s.o[n] = s.at[n] + _OFF * s.out[n]
         ox, oy, oz = s.o[0], s.o[1], s.o[2]
-        dx, dy, dz = steep(s.d[0]), steep(s.d[1]), steep(s.d[2])
+        dx, dy, dz = away_from_zero(s.d[0]), away_from_zero(s.d[1]), away_from_zero(s.d[2])
         rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-        t, i, j, k, face = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
         after = 0.0
 
 
 @inlined
-def keep(s, r, g, b, rare):
+def add_radiance(s, r, g, b, rare):
     """Add light to what the path brings, where its first surface says; cut what is rare."""
     if s.lobe == UNDECIDED:
         s.seen[0] += r
@@ -165,9 +171,13 @@ def keep(s, r, g, b, rare):
         return
     if rare:
         bright = luminance(r, g, b)
-        if bright > BRIGHTEST:
-            r, g, b = r * BRIGHTEST / bright, g * BRIGHTEST / bright, b * BRIGHTEST / bright
-    if s.lobe == SPREAD:
+        if bright > MAX_INDIRECT:
+            r, g, b = (
+                r * MAX_INDIRECT / bright,
+                g * MAX_INDIRECT / bright,
+                b * MAX_INDIRECT / bright,
+            )
+    if s.lobe == MATT:
         s.spread[0] += r
         s.spread[1] += g
         s.spread[2] += b
@@ -178,41 +188,41 @@ def keep(s, r, g, b, rare):
 
 
 @inlined
-def meet_sky(sky, s):
+def add_sky_radiance(sky, s):
     """Bring the light of the sky: the seen one by the eye or a mirror, else the one that lights."""
     if s.sharp:
         r, g, b = background_light(s.d[0], s.d[1], s.d[2], sky.background)
     else:
-        r, g, b = lighting_sky(s.d[0], s.d[1], s.d[2], sky)
-    keep(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
+        r, g, b = sky_radiance(s.d[0], s.d[1], s.d[2], sky)
+    add_radiance(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
 
 
 @inlined
-def meet_lamp(tables, lamps, s):
+def add_emitter_radiance(tables, lamps, s):
     """Bring the light of a lamp that the path has met."""
     if s.sharp:
         glow = SEEN_GLOW * s.level
         if glow > 0:
             r, g, b = s.colour[0] * glow, s.colour[1] * glow, s.colour[2] * glow
-            keep(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
+            add_radiance(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
         return
-    row = lamp_row(lamps, tables.space.shape, s, s.element)
+    row = emitter_row(lamps, tables.space.shape, s, s.element)
     if row >= 0:
-        part = s.last / (s.last + density_of_aim(lamps, row, s))
+        part = s.last / (s.last + sampling_density(lamps, row, s))
         r, g, b = lamps.light[row, 0], lamps.light[row, 1], lamps.light[row, 2]
-        keep(s, part * s.share[0] * r, part * s.share[1] * g, part * s.share[2] * b, True)
+        add_radiance(s, part * s.share[0] * r, part * s.share[1] * g, part * s.share[2] * b, True)
 
 
 @inlined
-def mirrors(s, depth):
+def reflects_on_glass(s, depth):
     """Pass a pane, or have its mirror followed (True); the share and the ray are set."""
-    mirror = pane_mirror(s)
+    mirror = pane_reflectance(s)
     odds = 0.0
     if s.lobe == UNDECIDED and depth > 0:
         for n in range(3):
             s.gloss_share[n] += s.share[n] * mirror
         odds = min(max(mirror, _MIRROR_ODDS), 0.5)
-        number, _ = pair(s.key, s.sample, s.use)
+        number, _ = sample_pair(s.key, s.sample, s.use)
         s.use += 1
         if number < odds:
             s.lobe, s.bounces = GLOSS, s.bounces + 1
@@ -229,36 +239,36 @@ def mirrors(s, depth):
 
 
 @inlined
-def light_directly(tables, side_px, decode, lamps, sky, s):
+def add_direct_light(tables, side_px, decode, lamps, sky, s):
     """Aim at the sun and at one lamp, and bring what reaches the surface."""
     s.weights, s.aim_odds, only = 0.0, 1.0, -1
     has_sun, has_lamps = sky.sun_r + sky.sun_g + sky.sun_b > 0, len(lamps.cell) > 0
-    pick, other = pair(s.key, s.sample, s.use + 1)
+    pick, other = sample_pair(s.key, s.sample, s.use + 1)
     if s.bounces > 0 and has_sun and has_lamps:  # One of both is enough for what is sent on.
         s.aim_odds, only = 0.5, 0 if other < 0.5 else 1
     for which in range(2):
         if which == 0:
             if not has_sun or only == 1:
                 continue
-            first, second = pair(s.key, s.sample, s.use)
-            s.to[0], s.to[1], s.to[2] = towards_sun(sky, first, second)
+            first, second = sample_pair(s.key, s.sample, s.use)
+            s.to[0], s.to[1], s.to[2] = sample_sun(sky, first, second)
             s.far, s.density, s.unseen = np.inf, 1.0, 1
             s.aimed[0], s.aimed[1] = np.pi * sky.sun_r, np.pi * sky.sun_g
             s.aimed[2] = np.pi * sky.sun_b
         else:
-            first, second = pair(s.key, s.sample, s.use + 2)
-            if not has_lamps or not aim_at_lamp(lamps, s, pick, first, second) or only == 0:
+            first, second = sample_pair(s.key, s.sample, s.use + 2)
+            if not has_lamps or not sample_emitter(lamps, s, pick, first, second) or only == 0:
                 continue
             s.density *= s.aim_odds
         above = s.out[0] * s.to[0] + s.out[1] * s.to[1] + s.out[2] * s.to[2]
         cosine = s.normal[0] * s.to[0] + s.normal[1] * s.to[1] + s.normal[2] * s.to[2]
-        if above <= 0 or cosine <= 0 or not is_free(tables, side_px, decode, s):
+        if above <= 0 or cosine <= 0 or not is_unoccluded(tables, side_px, decode, s):
             continue
         matt = (1.0 - s.gloss_odds) * cosine / np.pi
         part = 1.0 if s.unseen else s.density / (s.density + matt)
         gloss, gloss_part, lobe = 0.0, 0.0, s.lobe
-        if s.gloss_odds > 0 and width_of(s) >= SHARP_WIDTH:
-            gloss, density = gloss_of(s, s.to[0], s.to[1], s.to[2])
+        if s.gloss_odds > 0 and lobe_width(s) >= SHARP_WIDTH:
+            gloss, density = evaluate_gloss(s, s.to[0], s.to[1], s.to[2])
             density *= s.gloss_odds
             gloss_part = 1.0 if s.unseen else s.density / (s.density + density)
         part *= cosine / (np.pi * s.aim_odds)
@@ -267,27 +277,27 @@ def light_directly(tables, side_px, decode, lamps, sky, s):
         for kind in range(2):
             if kind == 1 and gloss <= 0:
                 break
-            s.lobe = (SPREAD if kind == 0 else GLOSS) if lobe == UNDECIDED else lobe
+            s.lobe = (MATT if kind == 0 else GLOSS) if lobe == UNDECIDED else lobe
             for n in range(3):
                 s.to[n] = s.share[n] * s.aimed[n] * s.way[n]
                 s.to[n] *= part * s.matt[n] if kind == 0 else gloss * s.shine[n]
-            keep(s, s.to[0], s.to[1], s.to[2], s.bounces > 1)
+            add_radiance(s, s.to[0], s.to[1], s.to[2], s.bounces > 1)
         s.lobe = lobe
         s.bounces -= 1
     s.use += 3
 
 
 @inlined
-def is_free(tables, side_px, decode, s):
+def is_unoccluded(tables, side_px, decode, s):
     """Tell whether nothing but glass lies on the way to what is aimed at; ``way`` is its tint."""
     ox, oy, oz = s.at[0] + _OFF * s.out[0], s.at[1] + _OFF * s.out[1], s.at[2] + _OFF * s.out[2]
-    dx, dy, dz = steep(s.to[0]), steep(s.to[1]), steep(s.to[2])
+    dx, dy, dz = away_from_zero(s.to[0]), away_from_zero(s.to[1]), away_from_zero(s.to[2])
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
     s.way[0], s.way[1], s.way[2] = 1.0, 1.0, 1.0
     until = s.far - 3 * _OFF
-    t, i, j, k, face = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     after = 0.0
-    for _ in range(MOST_PANES):
+    for _ in range(MAX_PANES):
         if i < 0:
             return True
         t, i, j, k, face, n = first_hit(
@@ -310,15 +320,15 @@ def is_free(tables, side_px, decode, s):
 
 
 @inlined
-def go_on(s):
+def sample_bounce(s):
     """Choose a lobe and a direction; tell whether the path goes on."""
-    pick, stay = pair(s.key, s.sample, s.use)
-    first, second = pair(s.key, s.sample, s.use + 1)
+    pick, stay = sample_pair(s.key, s.sample, s.use)
+    first, second = sample_pair(s.key, s.sample, s.use + 1)
     s.use += 2
     s.wide += s.widens * s.t
     if pick < s.gloss_odds:
-        width = width_of(s)
-        share, density = follow_gloss(s, first, second)
+        width = lobe_width(s)
+        share, density = sample_gloss(s, first, second)
         if density <= 0:  # The mirror sends it into the surface.
             return False
         s.last = density * s.gloss_odds
@@ -329,15 +339,15 @@ def go_on(s):
         if s.lobe == UNDECIDED:
             s.lobe = GLOSS
     else:
-        s.last = follow_matt(s, first, second) * (1.0 - s.gloss_odds)
+        s.last = sample_matt(s, first, second) * (1.0 - s.gloss_odds)
         s.sharp, s.widens = 0, _WIDE
         for n in range(3):
             s.share[n] *= s.matt[n] / (1.0 - s.gloss_odds)
         if s.lobe == UNDECIDED:
-            s.lobe = SPREAD
+            s.lobe = MATT
     s.bounces += 1
-    put(s.from_at, s.at)
-    put(s.from_out, s.out)
+    copy_vector(s.from_at, s.at)
+    copy_vector(s.from_out, s.out)
     if s.d[0] * s.out[0] + s.d[1] * s.out[1] + s.d[2] * s.out[2] <= 0:
         return False
     if s.bounces > 1:  # Weak paths end at random, and the others count for them.

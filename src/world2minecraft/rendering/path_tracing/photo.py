@@ -19,7 +19,7 @@ from world2minecraft.rendering.path_tracing.develop import (
     screen_colours,
     surface_light,
 )
-from world2minecraft.rendering.path_tracing.emitters import Lamps, lamps_of
+from world2minecraft.rendering.path_tracing.emitters import Emitters, emitters_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
 from world2minecraft.rendering.path_tracing.scattering import new_path
@@ -28,10 +28,10 @@ from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
 
 OUTPUTS = ("depth", "semantic", "instance", "opaque", "normal")
-MOST_SAMPLES = 4096
-MOST_DEPTH = 64
-BAND = 8  # Rows that a thread takes at a time.
-PASS = 4  # Samples a pixel between two looks at the clock.
+MAX_SAMPLES = 4096
+MAX_DEPTH = 64
+BAND_ROWS = 8  # Rows that a thread takes at a time.
+PASS_SAMPLES = 4  # Samples a pixel between two looks at the clock.
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ def render_photo(
     denoise: bool = True,
     budget_s: float | None = None,
     progress: Progress = silent,
-    lamps: Lamps | None = None,
+    lamps: Emitters | None = None,
 ) -> Photo:
     """Take a photo of a scene.
 
@@ -83,7 +83,7 @@ def render_photo(
     """
     _check(camera, samples, depth)
     sky = sky_light(light)
-    lamps = lamps_of(scene) if lamps is None else lamps
+    lamps = emitters_of(scene) if lamps is None else lamps
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
     film = new_film(camera.height_px, camera.width_px)
@@ -95,17 +95,17 @@ def render_photo(
         )  # fmt: skip
 
     with _Bands(threads) as run:
-        done = _in_passes(band, run, len(film.far), samples, budget_s, progress)
+        done = _trace_passes(band, run, len(film.far), samples, budget_s, progress)
         surfaces = surface_light(film, denoise, run)
     picture = render_volume(scene, camera, camera_to_room, outputs=OUTPUTS, threads=threads)
-    return _developed(picture, light, film, surfaces, done)
+    return _develop(picture, light, film, surfaces, done)
 
 
 def _check(camera: Camera, samples: int, depth: int) -> None:
-    if not 1 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
-    if not 1 <= depth <= MOST_DEPTH:
-        raise ValueError(f"depth may be 1 to {MOST_DEPTH}, not {depth}")
+    if not 1 <= samples <= MAX_SAMPLES:
+        raise ValueError(f"samples may be 1 to {MAX_SAMPLES}, not {samples}")
+    if not 1 <= depth <= MAX_DEPTH:
+        raise ValueError(f"depth may be 1 to {MAX_DEPTH}, not {depth}")
     if camera.width_px * camera.height_px > MAX_PIXELS // 8:
         most = f"{MAX_PIXELS // 8:,}"
         raise ValueError(
@@ -127,7 +127,7 @@ class _Bands:
             self._pool.terminate()
 
     def __call__(self, band: Callable[[tuple[int, int]], None], rows: int) -> None:
-        bands = pairwise([*range(0, rows, BAND), rows])
+        bands = pairwise([*range(0, rows, BAND_ROWS), rows])
         if self._pool is None:
             for one in bands:
                 band(one)
@@ -135,7 +135,7 @@ class _Bands:
             self._pool.map(band, bands, chunksize=1)
 
 
-def _in_passes(
+def _trace_passes(
     band: Callable[[tuple[int, int], tuple[int, int]], None],
     run: _Bands,
     rows: int,
@@ -146,7 +146,7 @@ def _in_passes(
     """Trace pass by pass; return how many samples each pixel got."""
     start, done = time.monotonic(), 0
     while done < samples:
-        until = min(done + PASS, samples)
+        until = min(done + PASS_SAMPLES, samples)
         run(lambda one, of=(done, until): band(one, of), rows)
         done = until
         spent = time.monotonic() - start
@@ -157,7 +157,7 @@ def _in_passes(
     return done
 
 
-def _developed(
+def _develop(
     picture: Picture, light: LookLight, film: Film, surfaces: np.ndarray, done: int
 ) -> Photo:
     exposure = light.exposure

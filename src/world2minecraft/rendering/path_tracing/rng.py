@@ -15,7 +15,7 @@ _SHARE = 1.0 / 4294967296.0
 
 
 @inlined
-def mixed(x):
+def hash_uint32(x):
     """Return a hash of a uint32."""
     x = _U(x)
     x = _U(x ^ _U(x >> _U(16)))
@@ -26,7 +26,7 @@ def mixed(x):
 
 
 @inlined
-def reversed_bits(x):
+def reverse_bits(x):
     """Return a uint32 with its bits in reverse order."""
     x = _U(_U(x >> _U(16)) | _U(x << _U(16)))
     x = _U(_U((x & _U(0x00FF00FF)) << _U(8)) | _U((x & _U(0xFF00FF00)) >> _U(8)))
@@ -36,18 +36,18 @@ def reversed_bits(x):
 
 
 @inlined
-def scrambled(x, seed):
+def owen_scramble(x, seed):
     """Return a uint32, given with its bits reversed, scrambled as Owen does, in right order."""
     x = _U(x ^ _U(x * _U(0x3D20ADEA)))
     x = _U(x + seed)
     x = _U(x * _U(_U(seed >> _U(16)) | _U(1)))
     x = _U(x ^ _U(x * _U(0x05526C56)))
     x = _U(x ^ _U(x * _U(0x53A22864)))
-    return reversed_bits(x)
+    return reverse_bits(x)
 
 
 @inlined
-def second_dimension(x):
+def sobol_second_dimension(x):
     """Return the second coordinate, its bits reversed, of a place in Sobol's sequence.
 
     Pascal's triangle modulo 2 as a matrix of bits, applied by halves.
@@ -60,7 +60,7 @@ def second_dimension(x):
 
 
 @inlined
-def pair(pixel_key, sample, use):
+def sample_pair(pixel_key, sample, use):
     """Return two numbers of [0, 1) for a use of a sample; uses count from 0.
 
     Args:
@@ -68,12 +68,12 @@ def pair(pixel_key, sample, use):
         sample: which sample of the pixel.
         use: what the numbers are for; each use has numbers of its own.
     """
-    key = mixed(_U(pixel_key) ^ mixed(_U(use) + _U(0x9E3779B9)))
+    key = hash_uint32(_U(pixel_key) ^ hash_uint32(_U(use) + _U(0x9E3779B9)))
     if use >= EVEN_USES:
-        first = mixed(key ^ mixed(_U(sample) + _U(0x85EBCA6B)))
-        return first * _SHARE, mixed(first + key) * _SHARE
+        first = hash_uint32(key ^ hash_uint32(_U(sample) + _U(0x85EBCA6B)))
+        return first * _SHARE, hash_uint32(first + key) * _SHARE
     # A nested shuffle of the order lets pairs of different uses know nothing of each other.
-    place = scrambled(reversed_bits(_U(sample)), key)
-    x = scrambled(place, mixed(key + _U(1)))
-    y = scrambled(second_dimension(place), mixed(key + _U(2)))
+    place = owen_scramble(reverse_bits(_U(sample)), key)
+    x = owen_scramble(place, hash_uint32(key + _U(1)))
+    y = owen_scramble(sobol_second_dimension(place), hash_uint32(key + _U(2)))
     return x * _SHARE, y * _SHARE

@@ -8,8 +8,8 @@ would cost rays and show nothing.
 import numpy as np
 
 from world2minecraft.core.jit import inlined
-from world2minecraft.rendering.path_tracing.sky_light import around
-from world2minecraft.rendering.ray_caster.ray import SOLID, carried, texel_at
+from world2minecraft.rendering.path_tracing.sky_light import tangent_frame
+from world2minecraft.rendering.ray_caster.ray import SOLID, texel_at, transform
 from world2minecraft.rendering.ray_caster.shading import normal_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, PANE, TURN
 
@@ -18,7 +18,7 @@ from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, PANE, TURN
 # Lengths are cells of the grid, directions unit vectors, colours linear.
 
 # Where the light of a path goes: found at its first surface that is no glass.
-UNDECIDED, SPREAD, GLOSS = 0, 1, 2
+UNDECIDED, MATT, GLOSS = 0, 1, 2
 
 _NUMBER, _WHOLE, _POINT = np.float64, np.int64, (np.float64, (3,))
 PATH = np.dtype(
@@ -58,7 +58,7 @@ def new_path() -> np.ndarray:
 
 
 @inlined
-def put(to, vector):
+def copy_vector(to, vector):
     """Copy three numbers; numba's own way would want to allocate."""
     to[0], to[1], to[2] = vector[0], vector[1], vector[2]
 
@@ -81,13 +81,13 @@ def glass_texel(tables, side_px, n, face, i, j, k, x, y, z):
     if not flags & ABSOLUTE:
         x, y, z = x - i, y - j, z - k
     if turn >= 0:
-        x, y, z = carried(tables.turns, turn, x, y, z, 1.0)
+        x, y, z = transform(tables.turns, turn, x, y, z, 1.0)
     column, row = texel_at(tables.uv, n, face, x, y, z, side_px)
     return row * side_px + column
 
 
 @inlined
-def meet_surface(tables, material, side_px, decode, s):
+def load_surface(tables, material, side_px, decode, s):
     """Fill the path's surface from what ``first_hit`` gave: t, cell, face and element."""
     i, j, k = s.cell[0], s.cell[1], s.cell[2]
     n = s.element
@@ -101,9 +101,9 @@ def meet_surface(tables, material, side_px, decode, s):
     if flags & ABSOLUTE:
         x, y, z = s.at[0], s.at[1], s.at[2]
     if turn >= 0:
-        x, y, z = carried(tables.turns, turn, x, y, z, 1.0)
+        x, y, z = transform(tables.turns, turn, x, y, z, 1.0)
     s.out[0], s.out[1], s.out[2] = normal_of(tables, turn, s.face)
-    put(s.normal, s.out)
+    copy_vector(s.normal, s.out)
     cosine = abs(s.out[0] * s.d[0] + s.out[1] * s.d[1] + s.out[2] * s.d[2])
     m = tables.uv[n, s.face]
     u = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
@@ -125,11 +125,11 @@ def meet_surface(tables, material, side_px, decode, s):
     s.rough, s.metal = more[2] / 255.0, more[3] / 255.0
     s.level = max(tables.emission[n], more[4] / 255.0)
     if more[0] != _FLAT or more[1] != _FLAT:
-        lean_normal(tables, turn, m, (more[0] - 128) / 127.0, (more[1] - 128) / 127.0, s)
+        apply_normal_map(tables, turn, m, (more[0] - 128) / 127.0, (more[1] - 128) / 127.0, s)
 
 
 @inlined
-def lean_normal(tables, turn, m, p, q, s):
+def apply_normal_map(tables, turn, m, p, q, s):
     """Turn the path's normal by a normal map: p along u, q along v (down)."""
     for axis in range(3):
         nx, ny, nz = normal_of(tables, turn, 2 * axis + 1)
@@ -140,13 +140,13 @@ def lean_normal(tables, turn, m, p, q, s):
     length = np.sqrt(s.normal[0] ** 2 + s.normal[1] ** 2 + s.normal[2] ** 2)
     facing = s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2]
     if facing > -0.02 * length:  # It would be seen from behind.
-        put(s.normal, s.out)
+        copy_vector(s.normal, s.out)
         return
     for axis in range(3):
         s.normal[axis] /= length
 
 
-LEAST_WIDTH = 0.02  # Of the glossy lobe: what is smoother is followed as if it were this.
+MIN_WIDTH = 0.02  # Of the glossy lobe: what is smoother is followed as if it were this.
 SHARP_WIDTH = 0.05  # Below it lamps are found by following the gloss alone.
 _DULL, _FADE = 0.50, 0.15  # Width from which no gloss is left, and how it fades before.
 _MIRROR = 0.04  # What glass and lacquer mirror straight ahead.
@@ -161,13 +161,13 @@ def fresnel(base, cosine):
 
 
 @inlined
-def width_of(s):
+def lobe_width(s):
     """Return the width of the glossy lobe, GGX's alpha."""
-    return max(s.rough * s.rough, LEAST_WIDTH)
+    return max(s.rough * s.rough, MIN_WIDTH)
 
 
 @inlined
-def pane_mirror(s):
+def pane_reflectance(s):
     """Return what a pane of glass mirrors, both of its faces counted."""
     cosine = -(s.out[0] * s.d[0] + s.out[1] * s.d[1] + s.out[2] * s.d[2])
     once = fresnel(_MIRROR, cosine)
@@ -178,7 +178,7 @@ def pane_mirror(s):
 def set_lobes(s):
     """Fill the shares of both lobes, and how often the glossy one is followed."""
     cosine = -(s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2])
-    width = width_of(s)
+    width = lobe_width(s)
     glossy = min(max((_DULL - width) / _FADE, 0.0), 1.0)
     gloss_light, matt_light = 0.0, 0.0
     lacquer = glossy * fresnel(_MIRROR, cosine)
@@ -195,7 +195,7 @@ def set_lobes(s):
 
 
 @inlined
-def shadowing(cosine, width):
+def smith_shadowing(cosine, width):
     """Return Smith's share of small mirrors that are seen at an angle."""
     if cosine <= 0:
         return 0.0
@@ -204,12 +204,12 @@ def shadowing(cosine, width):
 
 
 @inlined
-def gloss_of(s, x, y, z):
+def evaluate_gloss(s, x, y, z):
     """Return ``(value, density)`` of the glossy lobe towards a direction, cosine counted.
 
     The value is without the lobe's share, ``shine``.
     """
-    width = width_of(s)
+    width = lobe_width(s)
     seen = -(s.normal[0] * s.d[0] + s.normal[1] * s.d[1] + s.normal[2] * s.d[2])
     lit = s.normal[0] * x + s.normal[1] * y + s.normal[2] * z
     if seen <= 0 or lit <= 0:
@@ -220,14 +220,14 @@ def gloss_of(s, x, y, z):
     square = width * width
     under = up * up * (square - 1.0) + 1.0
     spread = square / (np.pi * under * under)
-    density = shadowing(seen, width) * spread / (4.0 * seen)
-    return density * shadowing(lit, width), density
+    density = smith_shadowing(seen, width) * spread / (4.0 * seen)
+    return density * smith_shadowing(lit, width), density
 
 
 @inlined
-def follow_matt(s, first, second):
+def sample_matt(s, first, second):
     """Point the ray anywhere above the surface, by the cosine; return the density of that."""
-    ax, ay, az, bx, by, bz = around(s.normal[0], s.normal[1], s.normal[2])
+    ax, ay, az, bx, by, bz = tangent_frame(s.normal[0], s.normal[1], s.normal[2])
     radius, turn = np.sqrt(first), 2 * np.pi * second
     p, q, up = radius * np.cos(turn), radius * np.sin(turn), np.sqrt(max(1.0 - first, 1e-9))
     s.d[0] = p * ax + q * bx + up * s.normal[0]
@@ -237,13 +237,13 @@ def follow_matt(s, first, second):
 
 
 @inlined
-def follow_gloss(s, first, second):
+def sample_gloss(s, first, second):
     """Point the ray as a small mirror sends it; return ``(share, density)``, share without shine.
 
     The mirror is drawn among those that the eye sees (Heitz 2018).
     """
-    width = width_of(s)
-    ax, ay, az, bx, by, bz = around(s.normal[0], s.normal[1], s.normal[2])
+    width = lobe_width(s)
+    ax, ay, az, bx, by, bz = tangent_frame(s.normal[0], s.normal[1], s.normal[2])
     vx = -(s.d[0] * ax + s.d[1] * ay + s.d[2] * az)
     vy = -(s.d[0] * bx + s.d[1] * by + s.d[2] * bz)
     vz = -(s.d[0] * s.normal[0] + s.d[1] * s.normal[1] + s.d[2] * s.normal[2])
@@ -251,7 +251,7 @@ def follow_gloss(s, first, second):
     sx, sy, sz = width * vx, width * vy, vz
     length = np.sqrt(sx * sx + sy * sy + sz * sz)
     sx, sy, sz = sx / length, sy / length, sz / length
-    tx, ty, tz, wx, wy, wz = around(sx, sy, sz)
+    tx, ty, tz, wx, wy, wz = tangent_frame(sx, sy, sz)
     radius, turn = np.sqrt(first), 2 * np.pi * second
     # A disc square to the eye, its half behind the horizon pressed together. (t, w) is any frame;
     # the one below has its first axis level.
@@ -273,7 +273,7 @@ def follow_gloss(s, first, second):
     ux = lx * ax + ly * bx + lz * s.normal[0]
     uy = lx * ay + ly * by + lz * s.normal[1]
     uz = lx * az + ly * bz + lz * s.normal[2]
-    _, density = gloss_of(s, ux, uy, uz)
-    share = shadowing(lz, width)
+    _, density = evaluate_gloss(s, ux, uy, uz)
+    share = smith_shadowing(lz, width)
     s.d[0], s.d[1], s.d[2] = ux, uy, uz
     return share, density

@@ -1,4 +1,4 @@
-"""The sun and the sky as sources of light, from the hour that a ``LookLight`` names.
+"""The sun and the sky as sources of light, from the hour that a ``LightSettings`` names.
 
 The sky that is seen is the one of ``rendering.light.sky``; the sky that lights is the same,
 each channel scaled so that open ground in the shade gets what the hour says.
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import inlined
-from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.settings import LightSettings
 from world2minecraft.rendering.light.sky import (
     DISC,
     DISC_COSINE,
@@ -35,7 +35,7 @@ class SkyLight(NamedTuple):
     disc_cosine: float  # of the disc that light comes from
 
 
-def sky_light(light: LookLight) -> SkyLight:
+def sky_light(light: LightSettings) -> SkyLight:
     """Return the sky and the sun of a light's hour.
 
     Raises:
@@ -53,7 +53,7 @@ def sky_light(light: LookLight) -> SkyLight:
     return SkyLight(background, scale_r, scale_g, scale_b, red, green, blue, SUN_COSINE)
 
 
-def even_sky(red: float, green: float, blue: float) -> SkyLight:
+def uniform_sky(red: float, green: float, blue: float) -> SkyLight:
     """Return a sky that is the same everywhere, with no sun: a white furnace."""
     colour = (red, green, blue)
     background = Background._make([*colour, *colour, *colour, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
@@ -69,7 +69,7 @@ def _open_light(zenith: tuple[float, ...], horizon: tuple[float, ...]) -> np.nda
 
 
 @inlined
-def lighting_sky(dx, dy, dz, sky):
+def sky_radiance(dx, dy, dz, sky):
     """Return the linear light that comes from a direction of the sky, without the sun's disc."""
     r, g, b = background_light(dx, dy, dz, sky.background)
     bg = sky.background
@@ -81,7 +81,7 @@ def lighting_sky(dx, dy, dz, sky):
 
 
 @inlined
-def around(x, y, z):
+def tangent_frame(x, y, z):
     """Return two unit vectors square to a unit vector and to each other."""
     sign = 1.0 if z >= 0 else -1.0
     a = -1.0 / (sign + z)
@@ -90,10 +90,10 @@ def around(x, y, z):
 
 
 @inlined
-def towards_sun(sky, first, second):
+def sample_sun(sky, first, second):
     """Return a unit direction into the sun's disc from two numbers of [0, 1)."""
     bg = sky.background
-    ax, ay, az, bx, by, bz = around(bg.sun_x, bg.sun_y, bg.sun_z)
+    ax, ay, az, bx, by, bz = tangent_frame(bg.sun_x, bg.sun_y, bg.sun_z)
     cosine = 1.0 - first * (1.0 - sky.disc_cosine)
     sine = np.sqrt(max(0.0, 1.0 - cosine * cosine))
     p, q = sine * np.cos(2 * np.pi * second), sine * np.sin(2 * np.pi * second)

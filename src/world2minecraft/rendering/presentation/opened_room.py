@@ -8,14 +8,14 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import carry_camera, invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.cutaway import (
-    side_by_side,
-    storeys_of,
+    arrange_side_by_side,
+    split_storeys,
     without_ceiling,
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.plain_models import PlainLooks
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.plain_models import PlainModels
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
@@ -37,13 +37,13 @@ class OpenedBuild:
     _cuts: dict[tuple[int, int], BlockVolume] = field(init=False, default_factory=dict)
 
     def __post_init__(self):
-        storeys = storeys_of(self.volume)
+        storeys = split_storeys(self.volume)
         self._parts = [without_partitions(without_ceiling(one)) for one in storeys]
 
     @property
     def whole(self) -> BlockVolume:
         """All that is seen of it from any side."""
-        return side_by_side(self._parts)
+        return arrange_side_by_side(self._parts)
 
     def best_start_deg(self, elevation_deg: float) -> float:
         """Return where a circle should begin: at the corner that shows most of the furniture."""
@@ -56,9 +56,9 @@ class OpenedBuild:
         shot = orbit_shots(self.whole, camera, 1, start_deg=start_deg, elevation_deg=elevation_deg)[
             0
         ]
-        scene = prepare_scene(self.seen_by(shot.camera_to_room), PlainLooks())
+        scene = prepare_scene(self.seen_by(shot.camera_to_room), PlainModels())
         options = DrawOptions(outputs=("semantic", "instance"))
-        picture = next(frames_of(scene, [shot], options))
+        picture = next(draw_shots(scene, [shot], options))
         if picture.instance is None or picture.semantic is None:
             return 0.0
         is_object = picture.semantic >= SemanticClass.CHAIR
@@ -73,5 +73,5 @@ class OpenedBuild:
         near = (1 if forward[0] < 0 else -1, 1 if forward[2] < 0 else -1)
         if near not in self._cuts:
             cut = [without_near_walls(one, *near) for one in self._parts]
-            self._cuts[near] = side_by_side(cut)
+            self._cuts[near] = arrange_side_by_side(cut)
         return self._cuts[near]

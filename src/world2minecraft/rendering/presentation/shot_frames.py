@@ -19,13 +19,13 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.pool import RenderPool
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rendering.light_parameters import DAY, Paper, exposure_of
+from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.views.cameras import Shot
 
 GPU = "world2minecraft.rendering.gpu"  # Loaded late: most machines have no use for it.
-LEAST_A_JOB = 16  # Pictures: a process takes some seconds to begin.
+MIN_PICTURES_PER_JOB = 16  # Pictures: a process takes some seconds to begin.
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,12 @@ class DrawOptions:
     light: LookLight = DAY
     samples: int = 1
     threads: int = 1
-    background: Paper | None = None
+    background: Backdrop | None = None
     device: str = "cpu"
     jobs: int = 1
 
 
-def frames(
+def draw_frames(
     scene: BlockScene,
     cameras: Camera | Iterable[Camera],
     poses: Iterable[np.ndarray],
@@ -69,7 +69,7 @@ def frames(
     each = repeat(cameras) if isinstance(cameras, Camera) else cameras
     if how.jobs > 1:
         shots = list(zip(each, poses, strict=False))
-        jobs = min(how.jobs, len(shots) // LEAST_A_JOB)
+        jobs = min(how.jobs, len(shots) // MIN_PICTURES_PER_JOB)
         if jobs > 1:
             yield from _by_processes(scene, shots, replace(how, jobs=jobs))
             return
@@ -127,15 +127,15 @@ def _gpu_module(device: str) -> ModuleType | None:
         raise UsageError(f"device {device!r} is not in this version; cpu is") from None
 
 
-def frames_of(
+def draw_shots(
     scene: BlockScene, shots: Collection[Shot], options: DrawOptions | None = None
 ) -> Iterator[Picture]:
-    """Take the pictures of shots; see ``frames``."""
+    """Take the pictures of shots; see ``draw_frames``."""
     cameras, poses = [shot.camera for shot in shots], [shot.camera_to_room for shot in shots]
-    return frames(scene, cameras, poses, options)
+    return draw_frames(scene, cameras, poses, options)
 
 
-def exposed(scene: BlockScene, light: LookLight, shots: Sequence[Shot]) -> BlockScene:
+def with_common_exposure(scene: BlockScene, light: LookLight, shots: Sequence[Shot]) -> BlockScene:
     """Return the scene, opened up as far as the light around the cameras wants it.
 
     One exposure for all shots: pictures of one tour belong together.

@@ -9,10 +9,14 @@ from scipy.ndimage import gaussian_filter
 
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.rendering.block_elements import LookSource
+from world2minecraft.rendering.block_elements import ModelSource
 from world2minecraft.rendering.light_parameters import NEUTRAL
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, exposed, frames
+from world2minecraft.rendering.presentation.shot_frames import (
+    DrawOptions,
+    draw_frames,
+    with_common_exposure,
+)
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.views.cameras import Shot
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
@@ -108,7 +112,7 @@ def turntable(
     count: int,
     *,
     options: DrawOptions | None = None,
-    looks: LookSource | None = None,
+    looks: ModelSource | None = None,
     texture_px: int = 16,
     rate_hz: float = 24.0,
     opened: bool | None = None,
@@ -142,8 +146,8 @@ def turntable(
         some = [shots[n] for n in run]
         scene = prepare_scene(volumes[shots.index(some[0])], looks, texture_px=texture_px)
         if exposure is None:  # One for the whole turn.
-            exposure = exposed(scene, how.light, some).exposure
-        pictures = frames(
+            exposure = with_common_exposure(scene, how.light, some).exposure
+        pictures = draw_frames(
             replace(scene, exposure=exposure), fine, [one.camera_to_room for one in some], how
         )
         for shot, picture in zip(some, pictures, strict=True):

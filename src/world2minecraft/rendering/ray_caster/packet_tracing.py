@@ -9,19 +9,19 @@ and then each pixel goes on alone from the box that was reached.
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.rendering.ray_caster.ray import OUTSIDE, steep, within
+from world2minecraft.rendering.ray_caster.ray import OUTSIDE, away_from_zero, floor_clamped
 from world2minecraft.rendering.scene_tables import FULL, NO_FACE
 
 # What a bundle meets.
-ALONE = 0  # Each ray goes on alone.
+DIVERGED = 0  # Each ray goes on alone.
 PLANE = 1  # Full cubes behind one plane.
-NOTHING = 2  # It leaves the grid.
-MOST_BEHIND = 64  # Cells of a plane that are looked at.
-MOST_BOXES = 64  # Of air, in a row.
+MISS = 2  # It leaves the grid.
+MAX_PLANE_CELLS = 64  # Cells of a plane that are looked at.
+MAX_BOXES = 64  # Of air, in a row.
 
 
 @lean
-def follow(space, bounds, corners, cells):
+def trace_packet(space, bounds, corners, cells):
     """Return ``(mode, face, layer)`` of a bundle: the face by which it enters ``layer``.
 
     Args:
@@ -36,26 +36,26 @@ def follow(space, bounds, corners, cells):
     row = _box_of_origins(space, bounds, corners)
     face, layer = NO_FACE, 0
     if row < 0:
-        return ALONE, NO_FACE, 0
+        return DIVERGED, NO_FACE, 0
     low, high = cells[2], cells[3]
-    for _ in range(MOST_BOXES):
+    for _ in range(MAX_BOXES):
         ahead = _common_exit(bounds, row, corners, low, high)
         if ahead == NO_FACE:
-            return ALONE, face, layer
+            return DIVERGED, face, layer
         axis = ahead // 2
         behind = int(bounds[row, axis + 3]) if ahead % 2 == 0 else int(bounds[row, axis]) - 1
         if behind < 0 or behind >= space.shape[axis]:
-            return NOTHING, ahead, behind
+            return MISS, ahead, behind
         low[axis], high[axis] = behind, behind
-        kind = _kind_behind(space, bounds, low, high)
+        kind = _uniform_kind(space, bounds, low, high)
         if kind != FULL and kind < 0:
-            return ALONE, face, layer
+            return DIVERGED, face, layer
         for axis in range(3):
             cells[0, axis], cells[1, axis] = low[axis], high[axis]
         if kind == FULL:
             return PLANE, ahead, behind
         row, face, layer = kind, ahead, behind
-    return ALONE, face, layer
+    return DIVERGED, face, layer
 
 
 @inlined
@@ -91,7 +91,7 @@ def _common_exit(bounds, row, corners, low, high):
     for corner in range(4):
         nearest, face = np.inf, NO_FACE
         for axis in range(3):
-            d = steep(corners[corner, axis + 3])
+            d = away_from_zero(corners[corner, axis + 3])
             t = (bounds[row, axis + 3 if d > 0 else axis] - corners[corner, axis]) / d
             if t < nearest:
                 nearest, face = t, 2 * axis + (0 if d > 0 else 1)
@@ -101,14 +101,14 @@ def _common_exit(bounds, row, corners, low, high):
             return NO_FACE
         for axis in range(3):
             at = corners[corner, axis] + nearest * corners[corner, axis + 3]
-            cell = within(at, int(bounds[row, axis]), int(bounds[row, axis + 3]))
+            cell = floor_clamped(at, int(bounds[row, axis]), int(bounds[row, axis + 3]))
             low[axis] = cell if corner == 0 else min(low[axis], cell)
             high[axis] = cell if corner == 0 else max(high[axis], cell)
     return common
 
 
 @inlined
-def _kind_behind(space, bounds, low, high):
+def _uniform_kind(space, bounds, low, high):
     """Return the box that holds all cells from ``low`` to ``high``, FULL, or OUTSIDE."""
     first = space[low[0], low[1], low[2]]
     if first >= 0:
@@ -119,7 +119,7 @@ def _kind_behind(space, bounds, low, high):
     if first != FULL:
         return OUTSIDE
     count = (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1)
-    if count > MOST_BEHIND:
+    if count > MAX_PLANE_CELLS:
         return OUTSIDE
     for i in range(low[0], high[0] + 1):
         for j in range(low[1], high[1] + 1):

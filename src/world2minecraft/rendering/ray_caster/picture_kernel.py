@@ -8,21 +8,21 @@ by ``rendering.ray_caster.shading``. Glass is gone through front to back, so tha
 import numpy as np
 
 from world2minecraft.core.jit import inner, lean
-from world2minecraft.rendering.ray_caster.packet_tracing import ALONE, NOTHING, PLANE, follow
-from world2minecraft.rendering.ray_caster.plane_tiles import draw_plane
+from world2minecraft.rendering.ray_caster.packet_tracing import DIVERGED, MISS, PLANE, trace_packet
+from world2minecraft.rendering.ray_caster.plane_tiles import draw_plane_tile
 from world2minecraft.rendering.ray_caster.ray import (
-    begin,
+    away_from_zero,
+    first_cell,
     first_hit,
-    is_clear,
+    floor_clamped,
+    is_see_through,
     ray_of_pixel,
-    steep,
-    within,
 )
 from world2minecraft.rendering.ray_caster.shading import (
+    MAX_GLASS_PANES,
     MEMO,
-    MOST_GLASS,
-    OFF,
-    main_face,
+    SURFACE_OFFSET,
+    dominant_face,
     normal_of,
     shade_hit,
     write_pixel,
@@ -80,12 +80,12 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
                 ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x / rays[0], y / rays[1], spread)
                 row = corners[corner]
                 row[0], row[1], row[2], row[3], row[4], row[5] = ox, oy, oz, dx, dy, dz
-            mode, side, layer = follow(tables.space, tables.bounds, corners, cells)
+            mode, side, layer = trace_packet(tables.space, tables.bounds, corners, cells)
             sun = 0.0
             if mode == PLANE and plain and sunny:
                 sun = sun_on_tile(tables, lit, corners, cells[4:], side, layer)
             if mode == PLANE and plain and sun >= 0:
-                draw_plane(
+                draw_plane_tile(
                     tables, side_px, pose, rays, lamp, memo[4], face, cells, sun, side, layer,
                     u_tile, u_end, v_tile, v_end, out.wanted & COLOUR != 0,
                     out.wanted & SEMANTIC != 0, out.wanted & INSTANCE != 0, out,
@@ -115,12 +115,12 @@ def sun_on_tile(tables, lit, corners, cells, side, layer):
         row = corners[corner]
         t = (layer + side % 2 - row[axis]) / row[axis + 3]
         row[0], row[1], row[2] = row[0] + t * row[3], row[1] + t * row[4], row[2] + t * row[5]
-        row[axis] = layer + side % 2 + (OFF if side % 2 else -OFF)
+        row[axis] = layer + side % 2 + (SURFACE_OFFSET if side % 2 else -SURFACE_OFFSET)
         row[3], row[4], row[5] = lit.sun_x, lit.sun_y, lit.sun_z
-    mode, _, _ = follow(tables.space, tables.bounds, corners, cells)
-    if mode == ALONE:
+    mode, _, _ = trace_packet(tables.space, tables.bounds, corners, cells)
+    if mode == DIVERGED:
         return -1.0
-    return cosine if mode == NOTHING else 0.0
+    return cosine if mode == MISS else 0.0
 
 
 @inner
@@ -130,22 +130,22 @@ def draw_pixel(
     """Draw one pixel; the arguments are those of ``draw_rows``, and what its tile has found."""
     x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
     ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
-    dx, dy, dz = steep(dx), steep(dy), steep(dz)
+    dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
     scale = memo[4]  # Blocks a metre.
     block_px = rays[0] / scale
     length = np.sqrt((x * x + y * y) * spread + 1.0)
     t, i, j, k = 0.0, 0, 0, 0
     element = -1
-    if mode == NOTHING:
+    if mode == MISS:
         side = NO_FACE
     elif side != NO_FACE:  # From the plane that the tile has come to.
-        t, i, j, k = on_plane(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        t, i, j, k = enter_layer(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     else:
-        t, i, j, k, side = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        t, i, j, k, side = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     red, green, blue, clear, after = 0.0, 0.0, 0.0, 1.0, 0.0
-    for pane in range(MOST_GLASS):
-        if pane > 0 or (mode == ALONE and i >= 0):
+    for pane in range(MAX_GLASS_PANES):
+        if pane > 0 or (mode == DIVERGED and i >= 0):
             t, i, j, k, side, element = first_hit(
                 tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, side, after
             )
@@ -155,7 +155,7 @@ def draw_pixel(
                 return
         if side == NO_FACE:
             break
-        glass = is_clear(tables, side_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz)
+        glass = is_see_through(tables, side_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz)
         if out.wanted & COLOUR:
             r, g, b, alpha = shade_hit(
                 tables, side_px, lamp, memo, block_px / t if spread > 0 else block_px,
@@ -168,7 +168,7 @@ def draw_pixel(
             break
         side, after = NO_FACE, t
     if out.wanted & OPAQUE:
-        write_behind(tables, out, v, u, t, i, j, k, side, element)
+        write_opaque_hit(tables, out, v, u, t, i, j, k, side, element)
     if out.wanted & COLOUR:
         if side == NO_FACE:
             write_sky(lamp, out.colour, v, u, dx, dy, dz, red, green, blue, clear)
@@ -198,7 +198,7 @@ def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
     out.face[v, u] = side
     if turn >= 0:
         nx, ny, nz = normal_of(tables, turn, side)
-        out.face[v, u] = main_face(nx, ny, nz)
+        out.face[v, u] = dominant_face(nx, ny, nz)
     if out.wanted & NORMAL:
         out.normal[v, u, 0], out.normal[v, u, 1], out.normal[v, u, 2] = normal_of(
             tables, turn, side
@@ -206,7 +206,7 @@ def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
 
 
 @inner
-def write_behind(tables, out, v, u, t, i, j, k, side, element):
+def write_opaque_hit(tables, out, v, u, t, i, j, k, side, element):
     """Write what lies behind all glass."""
     at, owner = owner_of_hit(tables, element, i, j, k)
     none = side == NO_FACE
@@ -228,13 +228,13 @@ def owner_of_hit(tables, element, i, j, k):
 
 
 @inner
-def on_plane(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+def enter_layer(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     """Return ``(t, i, j, k)`` where a ray enters a layer of cells by a face."""
     plane = layer + side % 2
     t = (plane - ox) * rx if side < 2 else ((plane - oy) * ry if side < 4 else (plane - oz) * rz)
     return (
         t,
-        within(ox + t * dx, cells[0, 0], cells[1, 0] + 1),
-        within(oy + t * dy, cells[0, 1], cells[1, 1] + 1),
-        within(oz + t * dz, cells[0, 2], cells[1, 2] + 1),
+        floor_clamped(ox + t * dx, cells[0, 0], cells[1, 0] + 1),
+        floor_clamped(oy + t * dy, cells[0, 1], cells[1, 1] + 1),
+        floor_clamped(oz + t * dz, cells[0, 2], cells[1, 2] + 1),
     )

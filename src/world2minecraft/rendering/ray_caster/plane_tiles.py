@@ -8,20 +8,20 @@ pixel by pixel, without the search.
 import numpy as np
 
 from world2minecraft.core.jit import inner_call
-from world2minecraft.rendering.light.pixel_light import glow_light
-from world2minecraft.rendering.light.tone_mapping import finish
-from world2minecraft.rendering.ray_caster.ray import within
-from world2minecraft.rendering.ray_caster.shading import MOST_TEXELS
+from world2minecraft.rendering.light.pixel_light import emission_light
+from world2minecraft.rendering.light.tone_mapping import tone_map_pixel
+from world2minecraft.rendering.ray_caster.ray import floor_clamped
+from world2minecraft.rendering.ray_caster.shading import MAX_TEXELS
 from world2minecraft.rendering.scene_tables import EVEN, FLAGS, UNSHADED
 
-# What ``face_of_cell`` tells, by the place (p, q) on the face: red, green and blue light as
+# What ``prepare_face`` tells, by the place (p, q) on the face: red, green and blue light as
 # a + b p + c q + d p q from 0, 4 and 8 on; the texture's u and v as a + b p + c q from 12 and 15
 # on; at 18 the light that it has of itself; its tint from 19 on.
 FACE_NUMBERS = 22
 
 
 @inner_call
-def draw_plane(
+def draw_plane_tile(
     tables, side_px, pose, rays, lamp, scale, face, cells, sun, side, layer, u_tile, u_end, v_tile,
     v_end, with_colour, with_semantic, with_instance, out,
 ):  # fmt: skip
@@ -50,13 +50,13 @@ def draw_plane(
             t = away * (1.0 / d)
             at_p = b[3] + t * (b[0] * x + b[1] * y + b[2])
             at_q = c[3] + t * (c[0] * x + c[1] * y + c[2])
-            here_p, here_q = within(at_p, low_p, high_p), within(at_q, low_q, high_q)
+            here_p, here_q = floor_clamped(at_p, low_p, high_p), floor_clamped(at_q, low_q, high_q)
             if here_p != cell_p or here_q != cell_q:
                 cell_p, cell_q = here_p, here_q
                 i = layer if axis == 0 else cell_p
                 j = layer if axis == 1 else (cell_p if axis == 0 else cell_q)
                 k = layer if axis == 2 else cell_q
-                texture, index = face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour)
+                texture, index = prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour)
                 semantic, instance = tables.semantic[index], tables.instance[index]
             length = np.sqrt(x * x + y * y + 1.0)
             out.depth[v, u], out.distance[v, u] = t, t * length
@@ -72,7 +72,7 @@ def draw_plane(
             w = face[15] + face[16] * fp + face[17] * fq
             size, start = side_px, 0
             many = coarse * t * t / max(abs(d) / (length * scale), 0.04)
-            while many > MOST_TEXELS and size > 1:
+            while many > MAX_TEXELS and size > 1:
                 start += size * size
                 size //= 2
                 many *= 0.25
@@ -85,7 +85,7 @@ def draw_plane(
             green = max(own, face[4] + face[5] * fp + face[6] * fq + face[7] * both)
             blue = max(own, face[8] + face[9] * fp + face[10] * fq + face[11] * both)
             decode = lamp.tone.decode
-            out.colour[v, u, 0], out.colour[v, u, 1], out.colour[v, u, 2] = finish(
+            out.colour[v, u, 0], out.colour[v, u, 1], out.colour[v, u, 2] = tone_map_pixel(
                 decode[np.uint64(texel[0])] * face[19] * red,
                 decode[np.uint64(texel[1])] * face[20] * green,
                 decode[np.uint64(texel[2])] * face[21] * blue,
@@ -94,7 +94,7 @@ def draw_plane(
 
 
 @inner_call
-def face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour):
+def prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour):
     """Fill ``face`` with what belongs to one face of a cell; return its texture and its index."""
     first, shape = tables.window[0], tables.window[1]
     index = np.int32(((i - first[0]) * shape[1] + j - first[1]) * shape[2] + k - first[2])
@@ -135,5 +135,5 @@ def face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour):
         face[13 + 3 * row], face[14 + 3 * row] = m[p], m[q]
     face[18] = 0.0
     if tables.emission[n] > 0:
-        face[18] = glow_light(15.0 * tables.emission[n], lamp.lit)
+        face[18] = emission_light(15.0 * tables.emission[n], lamp.lit)
     return np.uint64(tables.layers[n, side]), index

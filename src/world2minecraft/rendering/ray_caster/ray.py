@@ -3,7 +3,7 @@
 Coordinates are those of the grid: cell (i, j, k) spans [i, i + 1]. ``t`` counts in lengths of the
 direction; a direction whose camera z is 1 gives z-depth. Scalars are float64: on a CPU that costs
 no time in scalar code, and the ids come out exact. Directions have no component of exactly 0
-(``steep``), so that their reciprocals are finite.
+(``away_from_zero``), so that their reciprocals are finite.
 """
 
 import numpy as np
@@ -21,26 +21,26 @@ from world2minecraft.rendering.scene_tables import (
     TURN,
 )
 
-OUTSIDE = -3  # What ``walk`` gives as kind where the ray has left the grid.
+OUTSIDE = -3  # What ``cross_air`` gives as kind where the ray has left the grid.
 SOLID = 250  # Alpha of a texel of glass from which on nothing is seen behind it.
 _TINY = 1e-12
 _SLACK = 1e-9  # Cells: how far a standing box may be met outside the cell that lists it.
 
 
 @inlined
-def steep(d):
+def away_from_zero(d):
     """Return a direction's component, moved away from 0."""
     return d if abs(d) > _TINY else _TINY
 
 
 @inlined
-def within(value, low, high):
+def floor_clamped(value, low, high):
     """Return the whole number under a coordinate, from ``low`` to ``high`` - 1."""
     return min(max(int(np.floor(value)), low), high - 1)
 
 
 @inlined
-def onward(cell, found, d):
+def not_behind(cell, found, d):
     """Return the cell that was found on a ray, or the one before where that lies behind it.
 
     On an edge between cells rounding, or an eye that stands right on it, may point back: two boxes
@@ -82,7 +82,7 @@ def enter_grid(shape, ox, oy, oz, rx, ry, rz):
 
 
 @inlined
-def begin(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+def first_cell(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     """Return ``(t, i, j, k, face)`` of the first cell of a ray; i is -1 where it misses all."""
     nx, ny, nz = shape
     if 0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz:
@@ -90,14 +90,14 @@ def begin(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     t, face = enter_grid(shape, ox, oy, oz, rx, ry, rz)
     if face == NO_FACE:
         return 0.0, -1, 0, 0, NO_FACE
-    i = within(ox + t * dx, 0, nx)
-    j = within(oy + t * dy, 0, ny)
-    k = within(oz + t * dz, 0, nz)
+    i = floor_clamped(ox + t * dx, 0, nx)
+    j = floor_clamped(oy + t * dy, 0, ny)
+    k = floor_clamped(oz + t * dz, 0, nz)
     return t, i, j, k, face
 
 
 @inner
-def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
+def cross_air(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
     """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first that is none."""
     nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
     # Whole numbers without a sign: no code for counting from the end, and one comparison each.
@@ -114,21 +114,21 @@ def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
         t = min(tx, ty, tz)
         if t == tx:
             i, face = (x1, 0) if dx > 0 else (x0 - 1, 1)
-            j = onward(j, within(oy + t * dy, y0, y1), dy)
-            k = onward(k, within(oz + t * dz, z0, z1), dz)
+            j = not_behind(j, floor_clamped(oy + t * dy, y0, y1), dy)
+            k = not_behind(k, floor_clamped(oz + t * dz, z0, z1), dz)
         elif t == ty:
             j, face = (y1, 2) if dy > 0 else (y0 - 1, 3)
-            i = onward(i, within(ox + t * dx, x0, x1), dx)
-            k = onward(k, within(oz + t * dz, z0, z1), dz)
+            i = not_behind(i, floor_clamped(ox + t * dx, x0, x1), dx)
+            k = not_behind(k, floor_clamped(oz + t * dz, z0, z1), dz)
         else:
             k, face = (z1, 4) if dz > 0 else (z0 - 1, 5)
-            i = onward(i, within(ox + t * dx, x0, x1), dx)
-            j = onward(j, within(oy + t * dy, y0, y1), dy)
+            i = not_behind(i, floor_clamped(ox + t * dx, x0, x1), dx)
+            j = not_behind(j, floor_clamped(oy + t * dy, y0, y1), dy)
     return t, i, j, k, face, OUTSIDE
 
 
 @inlined
-def meet_box(boxes, n, ox, oy, oz, rx, ry, rz):
+def intersect_box(boxes, n, ox, oy, oz, rx, ry, rz):
     """Return ``(t, leave, face)`` where a ray enters box n from outside; ``NO_FACE`` for never."""
     ax, bx = (boxes[n, 0] - ox) * rx, (boxes[n, 3] - ox) * rx
     ay, by = (boxes[n, 1] - oy) * ry, (boxes[n, 4] - oy) * ry
@@ -146,7 +146,7 @@ def meet_box(boxes, n, ox, oy, oz, rx, ry, rz):
 
 
 @inlined
-def carried(turns, row, x, y, z, w):
+def transform(turns, row, x, y, z, w):
     """Carry a point (w = 1) or a direction (w = 0) by a row of ``turns``."""
     m = turns[row]
     return (
@@ -166,7 +166,7 @@ def texel_at(uv, n, face, x, y, z, side_px):
 
 
 @inner_call
-def meet_cell(
+def intersect_elements(
     looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent, side_px,
     i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
 ):  # fmt: skip
@@ -185,12 +185,12 @@ def meet_cell(
         if flags & ABSOLUTE:
             px, py, pz = ox, oy, oz
         if turn >= 0:
-            px, py, pz = carried(turns, turn, px, py, pz, 1.0)
-            ex, ey, ez = carried(turns, turn, dx, dy, dz, 0.0)
-            ex, ey, ez = steep(ex), steep(ey), steep(ez)
-            t, _, face = meet_box(boxes, n, px, py, pz, 1 / ex, 1 / ey, 1 / ez)
+            px, py, pz = transform(turns, turn, px, py, pz, 1.0)
+            ex, ey, ez = transform(turns, turn, dx, dy, dz, 0.0)
+            ex, ey, ez = away_from_zero(ex), away_from_zero(ey), away_from_zero(ez)
+            t, _, face = intersect_box(boxes, n, px, py, pz, 1 / ex, 1 / ey, 1 / ez)
         else:
-            t, _, face = meet_box(boxes, n, px, py, pz, rx, ry, rz)
+            t, _, face = intersect_box(boxes, n, px, py, pz, rx, ry, rz)
         if face == NO_FACE or t <= after or t > best or t <= 0:
             continue
         if flags & ABSOLUTE and t > until + _SLACK:
@@ -199,7 +199,7 @@ def meet_cell(
             layer = layers[n, face]
             if layer < 0:
                 continue
-            if flags & JOINS and joined(looks, i, j, k, face):
+            if flags & JOINS and joins_neighbour(looks, i, j, k, face):
                 continue
             if not (translucent[layer] or flags & PANE):
                 column, row = texel_at(uv, n, face, px + t * ex, py + t * ey, pz + t * ez, side_px)
@@ -210,7 +210,7 @@ def meet_cell(
 
 
 @inlined
-def joined(looks, i, j, k, face):
+def joins_neighbour(looks, i, j, k, face):
     """Tell whether the neighbour before a face looks the same."""
     a, b, c = i, j, k
     step = 1 if face % 2 else -1
@@ -227,7 +227,7 @@ def joined(looks, i, j, k, face):
 
 
 @inlined
-def leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+def next_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     """Return ``(t, i, j, k, face)`` of the next cell after one."""
     tx = ((i + 1 if dx > 0 else i) - ox) * rx
     ty = ((j + 1 if dy > 0 else j) - oy) * ry
@@ -250,16 +250,16 @@ def first_hit(
     for nothing. A cube or box that holds the origin is ignored: there is no near plane.
     """
     while True:
-        t, i, j, k, face, kind = walk(
+        t, i, j, k, face, kind = cross_air(
             tables.space, tables.bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face
         )
         if kind == OUTSIDE:
             return 0.0, 0, 0, 0, NO_FACE, -1
         if kind == FULL and face != NO_FACE and t > after:
             return t, i, j, k, face, -1
-        until, a, b, c, ahead = leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        until, a, b, c, ahead = next_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz)
         if kind == BOXES:
-            near, side, element = meet_cell(
+            near, side, element = intersect_elements(
                 tables.looks, tables.look_start, tables.refs, tables.boxes, tables.traits,
                 tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent, side_px,
                 i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
@@ -270,7 +270,7 @@ def first_hit(
 
 
 @inner
-def is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
+def is_see_through(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
     """Tell whether one sees through a hit: it is glass, and its texture is not solid there."""
     if element < 0:
         return False
@@ -281,6 +281,6 @@ def is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz)
     if not flags & ABSOLUTE:
         x, y, z = x - i, y - j, z - k
     if tables.traits[element, TURN] >= 0:
-        x, y, z = carried(tables.turns, tables.traits[element, TURN], x, y, z, 1.0)
+        x, y, z = transform(tables.turns, tables.traits[element, TURN], x, y, z, 1.0)
     column, row = texel_at(tables.uv, element, face, x, y, z, side_px)
     return tables.texels[layer, row * side_px + column, 3] < SOLID

@@ -10,15 +10,21 @@ import numpy as np
 
 from world2minecraft.core.jit import inlined, inner, inner_call, lean
 from world2minecraft.rendering.light.pixel_light import (
-    LitParameters,
+    LightCoefficients,
     direction_shade,
-    glow_light,
-    lit_colour,
+    emission_light,
+    light_multipliers,
     to_linear,
 )
 from world2minecraft.rendering.light.sky import Background, background_light
-from world2minecraft.rendering.light.tone_mapping import Tone, finish
-from world2minecraft.rendering.ray_caster.ray import begin, carried, first_hit, is_clear, steep
+from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
+from world2minecraft.rendering.ray_caster.ray import (
+    away_from_zero,
+    first_cell,
+    first_hit,
+    is_see_through,
+    transform,
+)
 from world2minecraft.rendering.scene_tables import (
     ABSOLUTE,
     EVEN,
@@ -29,17 +35,17 @@ from world2minecraft.rendering.scene_tables import (
     UNSHADED,
 )
 
-MEMO = 20  # Numbers; see ``find_light``.
-MOST_GLASS = 32  # Panes that one ray goes through.
-MOST_TEXELS = 2.25  # For a pixel, before the next mip level takes over.
-OFF = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
+MEMO = 20  # Numbers; see ``cache_corner_light``.
+MAX_GLASS_PANES = 32  # Panes that one ray goes through.
+MAX_TEXELS = 2.25  # For a pixel, before the next mip level takes over.
+SURFACE_OFFSET = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
 _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
 
 
-class Lamp(NamedTuple):
+class ShadingParameters(NamedTuple):
     """What the kernels know of light and of how it becomes sRGB."""
 
-    lit: LitParameters
+    lit: LightCoefficients
     corners: np.ndarray  # float32 [16384, 3]: the light that each entry of the lattice stands for
     shades: np.ndarray  # float64 [6]: of each face of a block
     tone: Tone
@@ -69,52 +75,52 @@ def shade_hit(
     if flags & ABSOLUTE:
         ex, ey, ez = gx, gy, gz
     if turn >= 0:
-        ex, ey, ez = carried(tables.turns, turn, ex, ey, ez, 1.0)
+        ex, ey, ez = transform(tables.turns, turn, ex, ey, ez, 1.0)
         nx, ny, nz = normal_of(tables, turn, side)
-        face = main_face(nx, ny, nz)
+        face = dominant_face(nx, ny, nz)
         cosine = abs(nx * dx + ny * dy + nz * dz) / speed
-        shade = turned_shade(nx, ny, nz, cosine, lamp.lit)
+        shade = face_shade(nx, ny, nz, cosine, lamp.lit)
     else:
         cosine = abs(dx if side < 2 else (dy if side < 4 else dz)) / speed
         shade = lamp.shades[np.uint64(side)]
         if lamp.lit.headlight > 0:
             nx, ny, nz = normal_of(tables, -1, side)
-            shade = turned_shade(nx, ny, nz, cosine, lamp.lit)
+            shade = face_shade(nx, ny, nz, cosine, lamp.lit)
     if flags & UNSHADED:
         shade = 1.0
     r, g, b, alpha = texel_colour(tables, side_px, lamp.tone, n, side, ex, ey, ez, block_px, cosine)
-    find_light(tables.light, lamp.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
+    cache_corner_light(tables.light, lamp.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
     p, q = (py if face < 2 else px), (py if face >= 4 else pz)
     p, q = min(max(p, 0.0), 1.0), min(max(q, 0.0), 1.0)
-    red = shade * between(memo, 8, p, q)
-    green = shade * between(memo, 12, p, q)
-    blue = shade * between(memo, 16, p, q)
+    red = shade * bilinear(memo, 8, p, q)
+    green = shade * bilinear(memo, 12, p, q)
+    blue = shade * bilinear(memo, 16, p, q)
     if lamp.lit.sun_r > 0:
-        sun = sun_on(tables, side_px, lamp.lit, turn, side, gx, gy, gz)
+        sun = sun_cosine(tables, side_px, lamp.lit, turn, side, gx, gy, gz)
         red, green, blue = (
             red + sun * lamp.lit.sun_r,
             green + sun * lamp.lit.sun_g,
             blue + sun * lamp.lit.sun_b,
         )
     if tables.emission[n] > 0:
-        own = glow_light(15.0 * tables.emission[n], lamp.lit)
+        own = emission_light(15.0 * tables.emission[n], lamp.lit)
         red, green, blue = max(own, red), max(own, green), max(own, blue)
     return r * red, g * green, b * blue, alpha
 
 
 @inlined
-def turned_shade(nx, ny, nz, cosine, lit):
+def face_shade(nx, ny, nz, cosine, lit):
     """Return the shade of a face by its normal, linear."""
     shade = direction_shade(nx, ny, nz, cosine, lit)
     return to_linear(shade) if lit.screen > 0 else shade
 
 
-def shades_of(lit: LitParameters) -> np.ndarray:
+def block_face_shades(lit: LightCoefficients) -> np.ndarray:
     """Return the shade of each face of a block, linear, float64 [6]."""
-    return np.array([turned_shade(x, y, z, 1.0, lit) for x, y, z in FACE_NORMALS.astype(float)])
+    return np.array([face_shade(x, y, z, 1.0, lit) for x, y, z in FACE_NORMALS.astype(float)])
 
 
-def corner_lights(lit: LitParameters) -> np.ndarray:
+def corner_lights(lit: LightCoefficients) -> np.ndarray:
     """Return the linear light of each entry of the light lattice, float32 [16384, 3]."""
     result = np.empty((1 << 14, 3), np.float32)
     _fill_corners(result, lit)
@@ -125,18 +131,25 @@ def corner_lights(lit: LitParameters) -> np.ndarray:
 def _fill_corners(result, lit):
     for word in range(len(result)):
         sky, block, dark = (word & 63) * 0.25, (word >> 6 & 63) * 0.25, float(word >> 12)
-        r, g, b = lit_colour(sky, block, dark, 1.0, 0.0, lit)
+        r, g, b = light_multipliers(sky, block, dark, 1.0, 0.0, lit)
         result[word, 0], result[word, 1], result[word, 2] = r, g, b
 
 
 @inner
-def sun_on(tables, side_px, lit, turn, side, gx, gy, gz):
+def sun_cosine(tables, side_px, lit, turn, side, gx, gy, gz):
     """Return the cosine of the sun on a face, 0 where it does not shine."""
     nx, ny, nz = normal_of(tables, turn, side)
     cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
     if cosine <= 0:
         return 0.0
-    free = sun_reaches(tables, side_px, lit, gx + OFF * nx, gy + OFF * ny, gz + OFF * nz)
+    free = is_sunlit(
+        tables,
+        side_px,
+        lit,
+        gx + SURFACE_OFFSET * nx,
+        gy + SURFACE_OFFSET * ny,
+        gz + SURFACE_OFFSET * nz,
+    )
     return cosine if free else 0.0
 
 
@@ -155,7 +168,7 @@ def normal_of(tables, turn, side):
 
 
 @inlined
-def main_face(nx, ny, nz):
+def dominant_face(nx, ny, nz):
     """Return the face of a block that looks most like a normal."""
     x, y, z = abs(nx), abs(ny), abs(nz)
     if x >= y and x >= z:
@@ -166,7 +179,7 @@ def main_face(nx, ny, nz):
 
 
 @inlined
-def between(memo, at, p, q):
+def bilinear(memo, at, p, q):
     """Return the value at (p, q) between four corners."""
     return (1 - p) * ((1 - q) * memo[at] + q * memo[at + 1]) + p * (
         (1 - q) * memo[at + 2] + q * memo[at + 3]
@@ -183,7 +196,7 @@ def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
     size, start = side_px, 0
     many = side_px / block_px  # Texels a pixel; a face seen edge-on has more one way.
     many = many * many / max(cosine, 0.04)
-    while many > MOST_TEXELS and size > 1:
+    while many > MAX_TEXELS and size > 1:
         start += size * size
         size //= 2
         many *= 0.25
@@ -200,7 +213,7 @@ def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
 
 
 @inner
-def find_light(light, corners, memo, i, j, k, face, even, px, py, pz):
+def cache_corner_light(light, corners, memo, i, j, k, face, even, px, py, pz):
     """Fill the memo with the light at the corners of a block's face, unless it has them.
 
     ``memo``: the cell, face and layer that it belongs to, then red at four corners from 8 on,
@@ -229,20 +242,20 @@ def find_light(light, corners, memo, i, j, k, face, even, px, py, pz):
 
 
 @inner_call
-def sun_reaches(tables, side_px, lit, ox, oy, oz):
+def is_sunlit(tables, side_px, lit, ox, oy, oz):
     """Tell whether nothing but glass lies between a point and the sun."""
-    dx, dy, dz = steep(lit.sun_x), steep(lit.sun_y), steep(lit.sun_z)
+    dx, dy, dz = away_from_zero(lit.sun_x), away_from_zero(lit.sun_y), away_from_zero(lit.sun_z)
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    t, i, j, k, face = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     if i < 0:
         return True
-    for _ in range(MOST_GLASS):
+    for _ in range(MAX_GLASS_PANES):
         t, i, j, k, face, element = first_hit(
             tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, t
         )
         if face == NO_FACE:
             return True
-        if not is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
+        if not is_see_through(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
             return False
         face = NO_FACE
     return False
@@ -251,7 +264,7 @@ def sun_reaches(tables, side_px, lit, ox, oy, oz):
 @inner
 def write_pixel(lamp, colour, v, u, red, green, blue):
     """Write a linear colour as sRGB."""
-    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = finish(red, green, blue, lamp.tone)
+    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(red, green, blue, lamp.tone)
 
 
 @inner

@@ -14,16 +14,16 @@ from world2minecraft.rendering.block_elements import (
     FACE_AXES,
     FACE_NAMES,
     Element,
-    FaceLook,
+    ElementFace,
     face_uv,
 )
 from world2minecraft.rendering.resource_packs.json_checks import (
-    mapping,
-    number,
-    numbers,
-    quarter,
-    shown,
-    text,
+    as_number,
+    as_numbers,
+    as_object,
+    as_quarter_turn,
+    as_text,
+    describe_value,
 )
 from world2minecraft.rendering.resource_packs.tints import Tint
 
@@ -35,7 +35,7 @@ from world2minecraft.rendering.resource_packs.tints import Tint
 OVER, TIMES = "+", "*"  # In names of joined textures: a*rrggbb+b; no resource's name has them.
 
 
-def merged(elements: Sequence[Element]) -> tuple[Element, ...]:
+def merge_coincident(elements: Sequence[Element]) -> tuple[Element, ...]:
     """Return the elements with those of one box joined where their faces can be."""
     done: list[Element] = []
     places: dict[tuple, int] = {}  # Of each box, the last element that fills it.
@@ -46,7 +46,7 @@ def merged(elements: Sequence[Element]) -> tuple[Element, ...]:
             done.append(element)
         else:
             faces = zip(done[at].faces, element.faces, strict=True)
-            done[at] = replace(done[at], faces=tuple(_joined(a, b) for a, b in faces))
+            done[at] = replace(done[at], faces=tuple(_overlay_face(a, b) for a, b in faces))
     return tuple(done)
 
 
@@ -63,13 +63,13 @@ def _can_join(a: Element, b: Element) -> bool:
     )
 
 
-def _joined(below: FaceLook | None, above: FaceLook | None) -> FaceLook | None:
+def _overlay_face(below: ElementFace | None, above: ElementFace | None) -> ElementFace | None:
     if below is None or above is None:
         return below or above
-    return FaceLook(_tinted(below) + OVER + _tinted(above), below.uv)
+    return ElementFace(_tinted_name(below) + OVER + _tinted_name(above), below.uv)
 
 
-def _tinted(face: FaceLook) -> str:
+def _tinted_name(face: ElementFace) -> str:
     if face.tint is None:
         return face.texture
     return face.texture + TIMES + "".join(f"{value:02x}" for value in face.tint)
@@ -133,7 +133,7 @@ def is_quarter(matrix: np.ndarray) -> bool:
     return bool(np.allclose(lengths, lengths.round(), atol=1e-9) and lengths.round().sum() == 3)
 
 
-def carry(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Element:
+def apply_quarter_turn(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Element:
     """Return an element moved by a quarter turn.
 
     Args:
@@ -149,7 +149,7 @@ def carry(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Elemen
     ends = np.array([element.low, element.high]) @ matrix[:3, :3].T + matrix[:3, 3]
     ends = np.where(np.abs(ends - ends.round(6)) < 1e-9, ends.round(6), ends)
     back = np.linalg.inv(matrix)
-    moved: list[FaceLook | None] = [None] * 6
+    moved: list[ElementFace | None] = [None] * 6
     for side, face in enumerate(faces):
         if face is not None:
             moved[side_after(side, matrix)] = replace(face, uv=face.uv @ back)
@@ -162,7 +162,7 @@ def side_after(side: int, matrix: np.ndarray) -> int:
     return int((_NORMALS @ (matrix[:3, :3] @ _NORMALS[side])).argmax())
 
 
-def _locked(side: int, face: FaceLook | None, matrix: np.ndarray) -> FaceLook | None:
+def _locked(side: int, face: ElementFace | None, matrix: np.ndarray) -> ElementFace | None:
     """Return a face whose texture stays as the world lies while the face is turned."""
     if face is None:
         return None
@@ -207,10 +207,10 @@ def element_of(
     Raises:
         ValueError: it is not as the format says.
     """
-    start = np.array(numbers(raw.get("from"), "from", 3, LOWEST, HIGHEST)) / 16
-    end = np.array(numbers(raw.get("to"), "to", 3, LOWEST, HIGHEST)) / 16
+    start = np.array(as_numbers(raw.get("from"), "from", 3, LOWEST, HIGHEST)) / 16
+    end = np.array(as_numbers(raw.get("to"), "to", 3, LOWEST, HIGHEST)) / 16
     low, high = tuple(np.minimum(start, end).tolist()), tuple(np.maximum(start, end).tolist())
-    faces = mapping(raw.get("faces", {}), "faces")
+    faces = as_object(raw.get("faces", {}), "faces")
     element = Element(
         low,
         high,
@@ -219,26 +219,26 @@ def element_of(
             for side, name in enumerate(FACE_NAMES)
         ),
         shade=raw.get("shade", True) is not False,
-        emission=int(number(raw.get("light_emission", 0), "light_emission", 0, 15)),
+        emission=int(as_number(raw.get("light_emission", 0), "light_emission", 0, 15)),
     )
     turn = _rotation(raw.get("rotation"))
     if turn is None:
         return element
     if is_quarter(turn):
-        return carry(element, turn)
+        return apply_quarter_turn(element, turn)
     return Element(low, high, element.faces, turn, element.shade, element.emission)
 
 
-def _face(side: int, raw: Any, box, texture_of, tint_of) -> FaceLook:
-    face = mapping(raw, f"face {FACE_NAMES[side]}")
+def _face(side: int, raw: Any, box, texture_of, tint_of) -> ElementFace:
+    face = as_object(raw, f"face {FACE_NAMES[side]}")
     rect = None
     if face.get("uv") is not None:
-        u0, v0, u1, v1 = numbers(face["uv"], "uv", 4, -1024, 1024)
+        u0, v0, u1, v1 = as_numbers(face["uv"], "uv", 4, -1024, 1024)
         rect = (u0, v0, u1, v1)
-    rotation = quarter(face.get("rotation", 0), "rotation of a face")
-    index = int(number(face.get("tintindex", -1), "tintindex"))
-    return FaceLook(
-        texture_of(text(face.get("texture"), "texture of a face")),
+    rotation = as_quarter_turn(face.get("rotation", 0), "rotation of a face")
+    index = int(as_number(face.get("tintindex", -1), "tintindex"))
+    return ElementFace(
+        texture_of(as_text(face.get("texture"), "texture of a face")),
         _uv(side, box[0], box[1], rect, rotation),
         tint_of(index) if index >= 0 else None,
     )
@@ -259,17 +259,17 @@ def _rotation(raw: Any) -> np.ndarray | None:
     """
     if raw is None:
         return None
-    rotation = mapping(raw, "rotation")
+    rotation = as_object(raw, "rotation")
     axis = rotation.get("axis")
     if axis is not None:
         if axis not in ("x", "y", "z"):
-            raise ValueError(f"axis of a rotation must be x, y or z, not {shown(axis)}")
-        angle = number(rotation.get("angle", 0), "angle", -3600, 3600)
+            raise ValueError(f"axis of a rotation must be x, y or z, not {describe_value(axis)}")
+        angle = as_number(rotation.get("angle", 0), "angle", -3600, 3600)
         angles = tuple(angle if name == axis else 0.0 for name in "xyz")
     else:
-        angles = tuple(number(rotation.get(name, 0), name, -3600, 3600) for name in "xyz")
+        angles = tuple(as_number(rotation.get(name, 0), name, -3600, 3600) for name in "xyz")
     if not any(angles):
         return None
     x_deg, y_deg, z_deg = angles
-    origin = np.array(numbers(rotation.get("origin", [8, 8, 8]), "origin", 3)) / 16
+    origin = np.array(as_numbers(rotation.get("origin", [8, 8, 8]), "origin", 3)) / 16
     return free_turn((x_deg, y_deg, z_deg), origin, rotation.get("rescale", False) is True)

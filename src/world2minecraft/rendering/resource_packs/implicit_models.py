@@ -17,10 +17,14 @@ from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     BlockModel,
     Element,
-    FaceLook,
+    ElementFace,
     face_uv,
 )
-from world2minecraft.rendering.resource_packs.elements import carry, free_turn, quarter_turn
+from world2minecraft.rendering.resource_packs.elements import (
+    apply_quarter_turn,
+    free_turn,
+    quarter_turn,
+)
 from world2minecraft.rendering.resource_packs.tints import Tint
 from world2minecraft.rendering.texture import Texture
 
@@ -66,7 +70,7 @@ def _face(side: int, high: tuple[float, float, float], still: str, flow: str, ti
     """Return a face: still above and below, flowing at the sides."""
     uv = face_uv(side, (0.0, 0.0, 0.0), high)
     flows = side not in (2, 3) and flow != still
-    return FaceLook(flow if flows else still, uv * _FLOW_SCALE if flows else uv, tint)
+    return ElementFace(flow if flows else still, uv * _FLOW_SCALE if flows else uv, tint)
 
 
 # Endings of names that say a shape, and those of what it may be made of.
@@ -187,7 +191,7 @@ def _box(box: list[float], textures: dict[str, str], state: BlockState, tint: Ti
     low, high = (box[0], box[1], box[2]), (box[3], box[4], box[5])
     top_only = state.name.endswith(("grass_block", "cauldron"))
     faces = tuple(
-        FaceLook(
+        ElementFace(
             textures[name],
             face_uv(side, low, high),
             tint if name == "up" or not top_only else None,
@@ -198,7 +202,7 @@ def _box(box: list[float], textures: dict[str, str], state: BlockState, tint: Ti
     if (low, high) != ((0, 0, 0), (1, 1, 1)):
         return element
     turn = AXES.get(state.get("axis")) or FACINGS.get(state.get("facing"))
-    return carry(element, quarter_turn(*turn)) if turn else element
+    return apply_quarter_turn(element, quarter_turn(*turn)) if turn else element
 
 
 def _cross(names: Sequence[str], state: BlockState, named: Names, tint: Tint) -> BlockModel | None:
@@ -212,9 +216,9 @@ def _cross(names: Sequence[str], state: BlockState, named: Names, tint: Tint) ->
     if texture is None:
         return None
     low, high = (0.05, 0.0, 0.5), (0.95, 1.0, 0.5)
-    faces: list[FaceLook | None] = [None] * 6
+    faces: list[ElementFace | None] = [None] * 6
     for side in (4, 5):  # The whole picture, though the plane is a little narrower.
-        faces[side] = FaceLook(texture, face_uv(side, low, high, (0, 0, 16, 16)), tint)
+        faces[side] = ElementFace(texture, face_uv(side, low, high, (0, 0, 16, 16)), tint)
     turns = (free_turn((0, angle, 0), np.full(3, 0.5), rescale=True) for angle in (45.0, -45.0))
     planes = tuple(Element(low, high, tuple(faces), turn, shade=False) for turn in turns)
     return BlockModel(planes, ambient_occlusion=False)

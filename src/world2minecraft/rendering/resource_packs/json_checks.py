@@ -9,29 +9,29 @@ from typing import Any
 
 _NAMESPACE = re.compile(r"[a-z0-9_.-]+")
 _PATH = re.compile(r"[a-z0-9_./-]+")
-MOST_NAME = 200  # Letters of a resource's name; the game's longest has about 60.
+MAX_NAME_LENGTH = 200  # Letters of a resource's name; the game's longest has about 60.
 
 
-def mapping(value: Any, what: str) -> dict[str, Any]:
+def as_object(value: Any, what: str) -> dict[str, Any]:
     """Return ``value`` if it is a JSON object, else raise ValueError."""
     if not isinstance(value, dict):
-        raise ValueError(f"{what} must be an object, not {shown(value)}")
+        raise ValueError(f"{what} must be an object, not {describe_value(value)}")
     return value
 
 
-def listing(value: Any, what: str, most: int) -> list[Any]:
+def as_list(value: Any, what: str, most: int) -> list[Any]:
     """Return ``value`` if it is a JSON list of at most ``most`` items, else raise ValueError."""
     if not isinstance(value, list):
-        raise ValueError(f"{what} must be a list, not {shown(value)}")
+        raise ValueError(f"{what} must be a list, not {describe_value(value)}")
     if len(value) > most:
         raise ValueError(f"{what} has {len(value):,} items; at most {most:,} are read")
     return value
 
 
-def number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float:
+def as_number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float:
     """Return ``value`` as a float if it is a number from ``low`` to ``high``."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError(f"{what} must be a number, not {shown(value)}")
+        raise ValueError(f"{what} must be a number, not {describe_value(value)}")
     if not (math.isfinite(value) if isinstance(value, float) else abs(value) < 1e9):
         raise ValueError(f"{what} must be a finite number")
     if not low <= value <= high:
@@ -39,48 +39,50 @@ def number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float
     return float(value)
 
 
-def numbers(value: Any, what: str, count: int, low: float = -1e6, high: float = 1e6) -> list[float]:
+def as_numbers(
+    value: Any, what: str, count: int, low: float = -1e6, high: float = 1e6
+) -> list[float]:
     """Return a list of ``count`` numbers from ``low`` to ``high``."""
-    items = listing(value, what, most=count)
+    items = as_list(value, what, most=count)
     if len(items) != count:
         raise ValueError(f"{what} must have {count} numbers, not {len(items)}")
-    return [number(item, what, low, high) for item in items]
+    return [as_number(item, what, low, high) for item in items]
 
 
-def quarter(value: Any, what: str) -> int:
+def as_quarter_turn(value: Any, what: str) -> int:
     """Return ``value`` if it is a multiple of 90, as 0, 90, 180 or 270."""
-    angle = number(value, what)
+    angle = as_number(value, what)
     if angle % 90:
         raise ValueError(f"{what} must be a multiple of 90, not {angle:g}")
     return int(angle) % 360
 
 
-def text(value: Any, what: str) -> str:
+def as_text(value: Any, what: str) -> str:
     """Return ``value`` if it is a text."""
     if not isinstance(value, str):
-        raise ValueError(f"{what} must be a text, not {shown(value)}")
+        raise ValueError(f"{what} must be a text, not {describe_value(value)}")
     return value
 
 
-def resource(name: str, what: str) -> tuple[str, str]:
+def parse_resource_name(name: str, what: str) -> tuple[str, str]:
     """Return (namespace, path) of a resource's name such as ``minecraft:block/stone``.
 
     Raises:
         ValueError: it is no name, or its path leads out of the pack.
 
     Example:
-        >>> resource("block/stone", "the model")
+        >>> parse_resource_name("block/stone", "the model")
         ('minecraft', 'block/stone')
     """
     space, colon, path = name.rpartition(":")
     space = space if colon and space else "minecraft"
-    right = len(name) <= MOST_NAME and _NAMESPACE.fullmatch(space) and _PATH.fullmatch(path)
+    right = len(name) <= MAX_NAME_LENGTH and _NAMESPACE.fullmatch(space) and _PATH.fullmatch(path)
     if not right or any(part in ("", ".", "..") for part in (space, *path.split("/"))):
-        raise ValueError(f"{what} {shown(name)} is no name such as minecraft:block/stone")
+        raise ValueError(f"{what} {describe_value(name)} is no name such as minecraft:block/stone")
     return space, path
 
 
-def shown(value: Any) -> str:
+def describe_value(value: Any) -> str:
     """Return a short text of any value, for a message."""
     if isinstance(value, (dict, list)):
         return "an object" if isinstance(value, dict) else "a list"

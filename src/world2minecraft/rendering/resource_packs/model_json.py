@@ -5,27 +5,27 @@ from dataclasses import dataclass
 from typing import Any
 
 from world2minecraft.rendering.resource_packs.json_checks import (
-    listing,
-    mapping,
-    number,
-    quarter,
-    resource,
-    shown,
-    text,
+    as_list,
+    as_number,
+    as_object,
+    as_quarter_turn,
+    as_text,
+    describe_value,
+    parse_resource_name,
 )
-from world2minecraft.rendering.resource_packs.pack_files import Resources
+from world2minecraft.rendering.resource_packs.pack_files import PackStack
 
 # A blockstates file and a block's properties become the models that are drawn, each turned.
 #
 # Where a file leaves the choice to chance (a list with weights), the heaviest is taken, the first of
 # equals: a look belongs to a state here, not to a place, so that all blocks of a state look alike.
 
-MOST_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
-MOST_DEPTH = 16  # Of conditions within conditions.
+MAX_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
+MAX_CONDITION_DEPTH = 16  # Of conditions within conditions.
 
 
 @dataclass(frozen=True)
-class Part:
+class ModelPart:
     """A model and how it is turned: degrees about x first, then y, then z."""
 
     model: str
@@ -35,7 +35,7 @@ class Part:
     uv_lock: bool = False
 
 
-def parts_of(root: Mapping[str, Any], properties: Mapping[str, str]) -> tuple[Part, ...]:
+def select_parts(root: Mapping[str, Any], properties: Mapping[str, str]) -> tuple[ModelPart, ...]:
     """Return the parts that a state is drawn as; none where a multipart has none for it.
 
     Args:
@@ -45,13 +45,13 @@ def parts_of(root: Mapping[str, Any], properties: Mapping[str, str]) -> tuple[Pa
     Raises:
         ValueError: the file is not as the format says, or no variant is for these properties.
     """
-    parts: list[Part] = []
+    parts: list[ModelPart] = []
     if "variants" in root:
-        parts.append(_chosen(_variant(mapping(root["variants"], "variants"), properties)))
-    for one in listing(root.get("multipart", []), "multipart", MOST_CASES):
-        case = mapping(one, "a case of multipart")
+        parts.append(_heaviest(_variant(as_object(root["variants"], "variants"), properties)))
+    for one in as_list(root.get("multipart", []), "multipart", MAX_CASES):
+        case = as_object(one, "a case of multipart")
         if "when" not in case or _holds(case["when"], properties, 0):
-            parts.append(_chosen(case.get("apply")))
+            parts.append(_heaviest(case.get("apply")))
     if "variants" not in root and "multipart" not in root:
         raise ValueError("has neither variants nor multipart")
     return tuple(parts)
@@ -62,7 +62,7 @@ def _variant(variants: dict[str, Any], properties: Mapping[str, str]) -> Any:
         if all(_agrees(pair, properties) for pair in key.split(",")):
             return value
     said = ",".join(f"{key}={value}" for key, value in sorted(properties.items()))
-    raise ValueError(f"has no variant for {shown(said)}")
+    raise ValueError(f"has no variant for {describe_value(said)}")
 
 
 def _agrees(pair: str, properties: Mapping[str, str]) -> bool:
@@ -73,12 +73,12 @@ def _agrees(pair: str, properties: Mapping[str, str]) -> bool:
 
 def _holds(when: Any, properties: Mapping[str, str], depth: int) -> bool:
     """Return whether a condition holds: properties, ``OR`` and ``AND`` lists, one in another."""
-    if depth > MOST_DEPTH:
+    if depth > MAX_CONDITION_DEPTH:
         raise ValueError("its conditions are nested too deep")
-    for key, wanted in mapping(when, "when").items():
+    for key, wanted in as_object(when, "when").items():
         if key in ("OR", "AND"):
             several = [
-                _holds(one, properties, depth + 1) for one in listing(wanted, key, MOST_CASES)
+                _holds(one, properties, depth + 1) for one in as_list(wanted, key, MAX_CASES)
             ]
             if not (any(several) if key == "OR" else all(several)):
                 return False
@@ -93,30 +93,30 @@ def _is_one_of(wanted: Any, value: str | None) -> bool:
         wanted = "true" if wanted else "false"
     if isinstance(wanted, int):
         wanted = str(wanted)
-    words = text(wanted, "a value of when")
+    words = as_text(wanted, "a value of when")
     if words.startswith("!"):
         return value not in words[1:].split("|")
     return value in words.split("|")
 
 
-def _chosen(entry: Any) -> Part:
+def _heaviest(entry: Any) -> ModelPart:
     """Return the heaviest entry of a list, the first of equals; or the only one."""
     if isinstance(entry, list):
         if not entry:
             raise ValueError("has an empty list of models")
-        entries = [mapping(one, "a model of a list") for one in listing(entry, "models", 10_000)]
-        weights = [number(one.get("weight", 1), "weight") for one in entries]
+        entries = [as_object(one, "a model of a list") for one in as_list(entry, "models", 10_000)]
+        weights = [as_number(one.get("weight", 1), "weight") for one in entries]
         entry = entries[weights.index(max(weights))]
-    entry = mapping(entry, "a variant")
-    return Part(
-        text(entry.get("model"), "model"),
-        *(quarter(entry.get(axis, 0), axis) for axis in "xyz"),
+    entry = as_object(entry, "a variant")
+    return ModelPart(
+        as_text(entry.get("model"), "model"),
+        *(as_quarter_turn(entry.get(axis, 0), axis) for axis in "xyz"),
         uv_lock=entry.get("uvlock", False) is True,
     )
 
 
-MOST_PARENTS = 32  # The game's deepest chain has 5.
-MOST_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
+MAX_PARENTS = 32  # The game's deepest chain has 5.
+MAX_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
 _CURE = "give the client jar of the game before the pack"
 
 
@@ -133,7 +133,7 @@ class FlatModel:
     in_code: bool
 
 
-def flatten(name: str, resources: Resources) -> FlatModel:
+def flatten_model(name: str, resources: PackStack) -> FlatModel:
     """Return the model of a name such as ``minecraft:block/stone`` merged with its parents.
 
     The child's elements replace the parents'; textures merge, the child's first.
@@ -146,7 +146,7 @@ def flatten(name: str, resources: Resources) -> FlatModel:
     elements: Any = None
     occlusion: Any = None
     for model in chain:
-        for key, value in mapping(model.get("textures", {}), "textures").items():
+        for key, value in as_object(model.get("textures", {}), "textures").items():
             textures.setdefault(key, value)
         elements = model.get("elements") if elements is None else elements
         occlusion = model.get("ambientocclusion") if occlusion is None else occlusion
@@ -154,30 +154,30 @@ def flatten(name: str, resources: Resources) -> FlatModel:
             raise ValueError(f"model {name} is in a mod's own format, which is not read")
     if not elements:
         return FlatModel((), textures, True, in_code=True)
-    boxes = [mapping(one, "an element") for one in listing(elements, "elements", MOST_ELEMENTS)]
+    boxes = [as_object(one, "an element") for one in as_list(elements, "elements", MAX_ELEMENTS)]
     return FlatModel(tuple(boxes), textures, occlusion is not False, in_code=False)
 
 
-def _chain(name: str, resources: Resources) -> list[dict[str, Any]]:
+def _chain(name: str, resources: PackStack) -> list[dict[str, Any]]:
     """Return the objects of a model and its parents, the child first."""
     chain: list[dict[str, Any]] = []
     seen: set[tuple[str, str]] = set()
     at: str | None = name
     while at is not None:
-        space, path = resource(at, "model")
+        space, path = parse_resource_name(at, "model")
         if path.startswith("builtin/"):  # What the game draws in code; there is no file.
             return chain
         if (space, path) in seen:
             raise ValueError(f"model {name} is its own parent")
-        if len(seen) == MOST_PARENTS:
-            raise ValueError(f"model {name} has more than {MOST_PARENTS} parents")
+        if len(seen) == MAX_PARENTS:
+            raise ValueError(f"model {name} has more than {MAX_PARENTS} parents")
         seen.add((space, path))
         model = resources.object(f"assets/{space}/models/{path}.json")
         if model is None:
             which = f"{name}: its parent {space}:{path}" if chain else f"{space}:{path}"
             raise ValueError(f"model {which} is in none of the packs, or cannot be read; {_CURE}")
         chain.append(model)
-        at = None if model.get("parent") is None else text(model["parent"], "parent")
+        at = None if model.get("parent") is None else as_text(model["parent"], "parent")
     return chain
 
 
@@ -191,7 +191,7 @@ def texture_of(face: str, textures: Mapping[str, Any]) -> str:
     """
     key, seen = face.removeprefix("#"), set()
     if not face.startswith("#") and key not in textures:
-        return ":".join(resource(key, "texture"))
+        return ":".join(parse_resource_name(key, "texture"))
     while key not in seen:
         seen.add(key)
         value = textures.get(key)
@@ -199,8 +199,8 @@ def texture_of(face: str, textures: Mapping[str, Any]) -> str:
             value = value.get("sprite")
         if value is None:
             raise ValueError(f"texture #{key[:40]} is not set")
-        value = text(value, f"texture {key[:40]}")
+        value = as_text(value, f"texture {key[:40]}")
         if not value.startswith("#"):
-            return ":".join(resource(value, "texture"))
+            return ":".join(parse_resource_name(value, "texture"))
         key = value[1:]
     raise ValueError(f"texture #{key[:40]} leads back to itself")

@@ -16,16 +16,16 @@ from typing import Any
 from world2minecraft.core.archives import UNREADABLE
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
-from world2minecraft.rendering.resource_packs.json_checks import number, resource
+from world2minecraft.rendering.resource_packs.json_checks import as_number, parse_resource_name
 
 # One pack, opened: a folder, a zip or a jar. In: a path. Out: its files by their names.
 #
 # Nothing is unpacked to disk, and a name that a pack's file holds is only a key here, so that no
 # name can lead out of it. Sizes are checked before bytes are read.
 
-MOST_FILES = 400_000  # A client jar has about 30,000; a large pack of mods 150,000.
-MOST_DIRECTORY_BYTES = 128 << 20  # Of a zip's own list of files.
-MOST_RATIO = 200  # Unpacked to packed, of files over a megabyte; JSON packs to a thirtieth.
+MAX_FILES = 400_000  # A client jar has about 30,000; a large pack of mods 150,000.
+MAX_DIRECTORY_BYTES = 128 << 20  # Of a zip's own list of files.
+MAX_RATIO = 200  # Unpacked to packed, of files over a megabyte; JSON packs to a thirtieth.
 _END, _END_64, _LOCATOR_64 = b"PK\x05\x06", b"PK\x06\x06", b"PK\x06\x07"
 _LOOKS = re.compile(r"assets/[^/]+/(blockstates|models|textures)/.")
 _KEPT = re.compile(r"(?:.*/)?(?:assets/[^/]+/(?:blockstates|models|textures)/.*|pack\.mcmeta)")
@@ -68,8 +68,8 @@ def _folder(folder: Path) -> PackFiles:
     for parent, folders, files in os.walk(folder):
         folders.sort()
         seen += len(files) + len(folders)
-        if seen > MOST_FILES:
-            raise LimitError(folder, f"holds more than {MOST_FILES:,} files; name one pack in it")
+        if seen > MAX_FILES:
+            raise LimitError(folder, f"holds more than {MAX_FILES:,} files; name one pack in it")
         inner = Path(parent).relative_to(folder).as_posix()
         for file in files:
             name = file if inner == "." else f"{inner}/{file}"
@@ -91,14 +91,14 @@ def _is_plain(path: Path) -> bool:
 def _zip(path: Path) -> PackFiles:
     """List a zip's files, its own directory's size checked before it is read."""
     try:
-        if _directory_bytes(path) > MOST_DIRECTORY_BYTES:
-            raise LimitError(path, f"lists more than {MOST_FILES:,} files")
+        if _directory_bytes(path) > MAX_DIRECTORY_BYTES:
+            raise LimitError(path, f"lists more than {MAX_FILES:,} files")
         archive = zipfile.ZipFile(path)
     except UNREADABLE as error:
         raise DamagedFileError(path, f"is no zip that can be read ({error})") from error
     entries = {one.filename: one for one in archive.infolist() if not one.is_dir()}
-    if len(entries) > MOST_FILES:
-        raise LimitError(path, f"lists {len(entries):,} files; at most {MOST_FILES:,} are read")
+    if len(entries) > MAX_FILES:
+        raise LimitError(path, f"lists {len(entries):,} files; at most {MAX_FILES:,} are read")
 
     def read(name: str, most_bytes: int) -> bytes:
         return _unpacked(archive, entries[name], most_bytes)
@@ -133,7 +133,7 @@ def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most_bytes: int)
     size, packed = entry.file_size, max(entry.compress_size, 1)
     if size > most_bytes:
         raise ValueError(f"has {size:,} bytes; at most {most_bytes:,} are read")
-    if size > 1 << 20 and size / packed > MOST_RATIO:
+    if size > 1 << 20 and size / packed > MAX_RATIO:
         raise ValueError(f"unpacks to {size // packed:,} times its size; that is no real file")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ValueError("is packed in a way that no pack is")
@@ -173,14 +173,14 @@ def _hint(source: Path, inner: list[str]) -> str:
     return ", but a data pack" if (source / "data").is_dir() else ""
 
 
-MOST_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
-MOST_JSON_BYTES_OF_ALL = 256 << 20  # The game's models and blockstates have 10 MB together.
-MOST_PROBLEMS = 48  # What one can still read; the rest is counted.
+MAX_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
+MAX_TOTAL_JSON_BYTES = 256 << 20  # The game's models and blockstates have 10 MB together.
+MAX_PROBLEMS = 48  # What one can still read; the rest is counted.
 # The format of resource packs whose rules are followed, that of 1.21.11: it chooses overlays.
 RESOURCE_FORMAT = 75
 
 
-class Resources:
+class PackStack:
     """The files of several packs. ``problems`` holds short sentences, ``problem_count`` all."""
 
     def __init__(self, paths: Sequence[str | Path]):
@@ -224,7 +224,7 @@ class Resources:
         """Return the JSON object in a file, None where no pack has one that can be read."""
         if name not in self._json:
             self._json[name] = None
-            for where, data in self.versions(name, MOST_JSON_BYTES):
+            for where, data in self.versions(name, MAX_JSON_BYTES):
                 value = self._parsed(where, data)
                 if value is not None:
                     self._json[name] = value
@@ -235,14 +235,14 @@ class Resources:
         """Write a problem down, once."""
         if problem not in self._known:
             self.problem_count += 1
-            if len(self.problems) < MOST_PROBLEMS:
+            if len(self.problems) < MAX_PROBLEMS:
                 self.problems.append(problem)
                 self._known.add(problem)
 
     def _parsed(self, where: str, data: bytes) -> dict[str, Any] | None:
         self._json_bytes += len(data)
-        if self._json_bytes > MOST_JSON_BYTES_OF_ALL:
-            self.note(f"more than {MOST_JSON_BYTES_OF_ALL:,} bytes of JSON; the rest is left out")
+        if self._json_bytes > MAX_TOTAL_JSON_BYTES:
+            self.note(f"more than {MAX_TOTAL_JSON_BYTES:,} bytes of JSON; the rest is left out")
             return None
         try:
             value = json.loads(data.decode("utf-8-sig"))
@@ -260,7 +260,7 @@ class Resources:
         if "pack.mcmeta" not in pack.names:
             return []
         try:
-            root = self._parsed("pack.mcmeta", pack.read("pack.mcmeta", MOST_JSON_BYTES)) or {}
+            root = self._parsed("pack.mcmeta", pack.read("pack.mcmeta", MAX_JSON_BYTES)) or {}
             entries = root.get("overlays", {}).get("entries", [])
             chosen = [_entry_folder(entry) for entry in entries if _is_for_now(entry)]
         except (ValueError, AttributeError, TypeError, InputError) as error:
@@ -270,7 +270,7 @@ class Resources:
 
 
 def _entry_folder(entry: dict[str, Any]) -> str:
-    return resource(entry.get("directory", ""), "overlay")[1] + "/"
+    return parse_resource_name(entry.get("directory", ""), "overlay")[1] + "/"
 
 
 def _is_for_now(entry: dict[str, Any]) -> bool:
@@ -285,4 +285,4 @@ def _is_for_now(entry: dict[str, Any]) -> bool:
     else:
         low, high = entry.get("min_format", 0), entry.get("max_format", 9999)
     low, high = (one[0] if isinstance(one, list) and one else one for one in (low, high))
-    return number(low, "format") <= RESOURCE_FORMAT <= number(high, "format")
+    return as_number(low, "format") <= RESOURCE_FORMAT <= as_number(high, "format")

@@ -1,4 +1,4 @@
-"""``PackLooks``: a user's resource packs and client jars as a source of looks.
+"""``ResourcePackModels``: a user's resource packs and client jars as a source of looks.
 
 A state becomes its blockstates file's parts, each part its model, each model its elements, turned.
 What cannot be read is noted and left to the next source.
@@ -14,9 +14,9 @@ from world2minecraft.minecraft.block_states import BlockState, complete, parse_s
 from world2minecraft.minecraft.visual_shapes import is_luminous
 from world2minecraft.rendering.block_elements import BlockModel, Element
 from world2minecraft.rendering.resource_packs.elements import (
-    carry,
+    apply_quarter_turn,
     element_of,
-    merged,
+    merge_coincident,
     quarter_turn,
 )
 from world2minecraft.rendering.resource_packs.implicit_models import (
@@ -26,27 +26,27 @@ from world2minecraft.rendering.resource_packs.implicit_models import (
     other_names,
 )
 from world2minecraft.rendering.resource_packs.model_json import (
-    MOST_ELEMENTS,
-    Part,
-    flatten,
-    parts_of,
+    MAX_ELEMENTS,
+    ModelPart,
+    flatten_model,
+    select_parts,
     texture_of,
 )
-from world2minecraft.rendering.resource_packs.pack_files import Resources
+from world2minecraft.rendering.resource_packs.pack_files import PackStack
 from world2minecraft.rendering.resource_packs.textures import (
     CLEAR,
-    LARGEST_PX,
+    MAX_PX,
     PackTextures,
-    is_clear,
+    names_clear_material,
 )
 from world2minecraft.rendering.resource_packs.tints import Colour, checked_tints, tint_rule
 from world2minecraft.rendering.texture import Texture
 
 FULL_LIGHT = 15
-MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
+MAX_TOTAL_ELEMENTS = 200_000  # A thousand states of the game have about 5,000.
 
 
-class PackLooks:
+class ResourcePackModels:
     """The looks of a stack of resource packs, client jars and mods' jars.
 
     ``problems`` holds one short sentence for each file that could not be read, the first of them;
@@ -66,11 +66,11 @@ class PackLooks:
         paths: Sequence[str | Path],
         *,
         tints: Mapping[str, Colour] | None = None,
-        most_px: int = LARGEST_PX,
+        most_px: int = MAX_PX,
     ):
         if most_px < 1 or most_px & (most_px - 1):
             raise UsageError(f"most_px must be a power of two such as 64, not {most_px}")
-        self._resources = Resources(paths)
+        self._resources = PackStack(paths)
         self._textures = PackTextures(self._resources, most_px)
         self._tints = checked_tints(tints, self._textures.map_colour)
         self._element_count = 0
@@ -124,7 +124,7 @@ class PackLooks:
             root = self._resources.object(name)
             if root is not None:
                 try:
-                    return self._drawn(state, parts_of(root, dict(state.properties)))
+                    return self._drawn(state, select_parts(root, dict(state.properties)))
                 except ValueError as error:
                     self._resources.note(f"{state.name}: {error}")
                     break
@@ -137,26 +137,28 @@ class PackLooks:
         has_file = self._resources.has(f"assets/{space}/textures/{path}.png")
         return self.texture(name) if has_file else None
 
-    def _drawn(self, state: BlockState, parts: tuple[Part, ...]) -> BlockModel | None:
+    def _drawn(self, state: BlockState, parts: tuple[ModelPart, ...]) -> BlockModel | None:
         """Return the parts' elements as one model; None where the game draws a part in code."""
         tint_of = tint_rule(state, self._tints)
-        ending = CLEAR if is_clear(state.name) else ""
+        ending = CLEAR if names_clear_material(state.name) else ""
         elements: list[Element] = []
         occlusion = True
         for part in parts:
-            flat = flatten(part.model, self._resources)
+            flat = flatten_model(part.model, self._resources)
             turn = quarter_turn(part.x_deg, part.y_deg, part.z_deg)
             named = partial(_texture_name, textures=flat.textures, ending=ending)
             for raw in flat.elements:
-                elements.append(carry(element_of(raw, named, tint_of), turn, part.uv_lock))
+                elements.append(
+                    apply_quarter_turn(element_of(raw, named, tint_of), turn, part.uv_lock)
+                )
             occlusion = occlusion and flat.ambient_occlusion
-            if len(elements) > MOST_ELEMENTS:
-                raise ValueError(f"its models have more than {MOST_ELEMENTS:,} elements together")
+            if len(elements) > MAX_ELEMENTS:
+                raise ValueError(f"its models have more than {MAX_ELEMENTS:,} elements together")
         self._element_count += len(elements)
-        if self._element_count > MOST_ELEMENTS_OF_ALL:
-            raise ValueError(f"comes after {MOST_ELEMENTS_OF_ALL:,} elements of other blocks")
+        if self._element_count > MAX_TOTAL_ELEMENTS:
+            raise ValueError(f"comes after {MAX_TOTAL_ELEMENTS:,} elements of other blocks")
         self._check_textures(elements)
-        return BlockModel(merged(elements), occlusion) if elements else None
+        return BlockModel(merge_coincident(elements), occlusion) if elements else None
 
     def _check_textures(self, elements: Sequence[Element]) -> None:
         """Raise ValueError where a face's texture cannot be read."""
@@ -175,4 +177,4 @@ def _shining(model: BlockModel) -> BlockModel:
 def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str:
     """Return the name of a face's texture, marked where the block is of clear stuff."""
     name = texture_of(face, textures)
-    return name if not ending or is_clear(name) else name + ending
+    return name if not ending or names_clear_material(name) else name + ending

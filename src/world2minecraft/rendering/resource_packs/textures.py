@@ -12,9 +12,14 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.rendering.resource_packs.elements import OVER, TIMES
-from world2minecraft.rendering.resource_packs.json_checks import listing, mapping, number, resource
-from world2minecraft.rendering.resource_packs.pack_files import Resources
-from world2minecraft.rendering.texture import MOST_PX, Texture
+from world2minecraft.rendering.resource_packs.json_checks import (
+    as_list,
+    as_number,
+    as_object,
+    parse_resource_name,
+)
+from world2minecraft.rendering.resource_packs.pack_files import PackStack
+from world2minecraft.rendering.texture import MAX_SIDE_PX, Texture
 
 # Textures laid one over another, each times a colour: what joined elements are drawn with.
 
@@ -22,7 +27,7 @@ from world2minecraft.rendering.texture import MOST_PX, Texture
 FLAT = {"normal": (128, 128, 255), "roughness": 204, "metal": 0, "emission": 0}
 
 
-def joined(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
+def overlay_textures(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
     """Return one texture of several, the first at the bottom.
 
     Args:
@@ -31,28 +36,28 @@ def joined(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
     side = max(texture.colour.shape[0] for texture, _ in layers)
     done: Texture | None = None
     for texture, tint in layers:
-        above = _tinted(_scaled(texture, side), np.array(tint))
-        done = above if done is None else _over(done, above)
+        above = _tint(_upscale(texture, side), np.array(tint))
+        done = above if done is None else _blend_over(done, above)
     if done is None:
         raise ValueError("there is no layer")
     return done
 
 
-def _scaled(texture: Texture, side: int) -> Texture:
+def _upscale(texture: Texture, side: int) -> Texture:
     """Return a texture with each pixel repeated; sides are powers of two."""
     times = side // texture.colour.shape[0]
     maps = {
-        name: None if (held := getattr(texture, name)) is None else _grown(held, times)
+        name: None if (held := getattr(texture, name)) is None else _repeat_pixels(held, times)
         for name in FLAT
     }
-    return replace(texture, colour=_grown(texture.colour, times), **maps)
+    return replace(texture, colour=_repeat_pixels(texture.colour, times), **maps)
 
 
-def _grown(pixels: np.ndarray, times: int) -> np.ndarray:
+def _repeat_pixels(pixels: np.ndarray, times: int) -> np.ndarray:
     return pixels.repeat(times, axis=0).repeat(times, axis=1)
 
 
-def _tinted(texture: Texture, tint: np.ndarray) -> Texture:
+def _tint(texture: Texture, tint: np.ndarray) -> Texture:
     """Return a texture times a colour, multiplied in linear light."""
     if (tint == 255).all():
         return texture
@@ -71,7 +76,7 @@ def _srgb(light: np.ndarray) -> np.ndarray:
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def _over(below: Texture, above: Texture) -> Texture:
+def _blend_over(below: Texture, above: Texture) -> Texture:
     """Return one texture over another; each map is that of the one that is seen."""
     cover = above.colour[..., 3:] / 255
     if not above.translucent:
@@ -131,7 +136,7 @@ def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 # PNG bytes become pixels: the first frame of an animation, as a square of a power of two.
 
-MOST_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
+MAX_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
 _HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 
 
@@ -150,8 +155,8 @@ def decode_png(data: bytes) -> np.ndarray:
         ValueError: it is no PNG, is damaged or too large.
     """
     width, height = png_size(data)
-    if not 0 < width * height <= MOST_PIXELS:
-        raise ValueError(f"has {width} x {height} pixels; at most {MOST_PIXELS:,} are read")
+    if not 0 < width * height <= MAX_PIXELS:
+        raise ValueError(f"has {width} x {height} pixels; at most {MAX_PIXELS:,} are read")
     try:
         with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
             if image.mode.startswith("I"):  # 16 bits of grey.
@@ -178,8 +183,8 @@ def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.n
     wide, tall = animation.get("width"), animation.get("height")
     if wide is None and tall is None:
         wide = tall = min(width, height)
-    wide = int(number(width if wide is None else wide, "width of a frame", 1, width))
-    tall = int(number(height if tall is None else tall, "height of a frame", 1, height))
+    wide = int(as_number(width if wide is None else wide, "width of a frame", 1, width))
+    tall = int(as_number(height if tall is None else tall, "height of a frame", 1, height))
     index = _first_index(animation.get("frames"))
     columns, rows = width // wide, height // tall
     if index >= columns * rows:
@@ -191,16 +196,16 @@ def first_frame(pixels: np.ndarray, animation: Mapping[str, Any] | None) -> np.n
 def _first_index(frames: Any) -> int:
     if frames is None or frames == []:
         return 0
-    first = listing(frames, "frames", 100_000)[0]
+    first = as_list(frames, "frames", 100_000)[0]
     if isinstance(first, dict):
-        first = mapping(first, "a frame").get("index")
-    return int(number(first, "index of a frame", 0, 100_000))
+        first = as_object(first, "a frame").get("index")
+    return int(as_number(first, "index of a frame", 0, 100_000))
 
 
 def side_for(pixels: np.ndarray, most_px: int) -> int:
     """Return the side of the square texture for a frame: a power of two that holds it."""
     longest = max(pixels.shape[:2])
-    return min(1 << (longest - 1).bit_length(), most_px, MOST_PX)
+    return min(1 << (longest - 1).bit_length(), most_px, MAX_SIDE_PX)
 
 
 def resampled(pixels: np.ndarray, side_px: int) -> np.ndarray:
@@ -234,18 +239,18 @@ def _area_weights(count: int, side_px: int) -> np.ndarray:
     return np.clip(np.minimum(high, old + 1) - np.maximum(low, old), 0, None) / (high - low)
 
 
-MOST_PNG_BYTES = 32 << 20
-MOST_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
-LEAST_PX, LARGEST_PX = 16, 128  # The sides that the renderer's textures have.
+MAX_PNG_BYTES = 32 << 20
+MAX_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
+MIN_PX, MAX_PX = 16, 128  # The sides that the renderer's textures have.
 SAMPLE = 100  # How many textures are looked at for their usual size.
 CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
 _CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
 # A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
-LEAST_CLEAR_SHARE = 0.15
+MIN_CLEAR_SHARE = 0.15
 HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts as it.
 
 
-def is_clear(name: str) -> bool:
+def names_clear_material(name: str) -> bool:
     """Return whether a block's or texture's name says that one sees through its stuff."""
     return _CLEAR_WORDS.search(name) is not None
 
@@ -258,15 +263,15 @@ def _power(value: int) -> int:
 class PackTextures:
     """The textures of a stack of packs, each read once."""
 
-    def __init__(self, resources: Resources, most_px: int):
+    def __init__(self, resources: PackStack, most_px: int):
         self._resources, self._most_px = resources, most_px
         self._read: dict[str, Texture | None] = {}
 
     def get(self, name: str) -> Texture | None:
         """Return the texture of a name that a model of these packs uses, or None."""
         if name not in self._read:
-            if len(self._read) >= MOST_TEXTURES:
-                self._resources.note(f"more than {MOST_TEXTURES:,} textures; the rest is left out")
+            if len(self._read) >= MAX_TEXTURES:
+                self._resources.note(f"more than {MAX_TEXTURES:,} textures; the rest is left out")
                 return None
             parts = name.split(OVER)
             self._read[name] = self._one(name) if len(parts) == 1 else self._joined(parts)
@@ -277,18 +282,18 @@ class PackTextures:
         names = self._resources.pictures()
         sides: Counter[int] = Counter()
         for name in names[:: max(1, len(names) // SAMPLE)]:
-            for _, data in self._resources.versions(name, MOST_PNG_BYTES):
+            for _, data in self._resources.versions(name, MAX_PNG_BYTES):
                 try:
-                    sides[min(max(_power(png_size(data)[0]), LEAST_PX), LARGEST_PX)] += 1
+                    sides[min(max(_power(png_size(data)[0]), MIN_PX), MAX_PX)] += 1
                 except ValueError:
                     continue  # It is said where it is used.
                 break
-        return max(sides, key=lambda side: (sides[side], side), default=LEAST_PX)
+        return max(sides, key=lambda side: (sides[side], side), default=MIN_PX)
 
     def map_colour(self, name: str, column: int, row: int) -> tuple[int, int, int] | None:
         """Return a pixel of a colour map of 256 x 256 px; None where no pack has that map."""
         file = f"assets/minecraft/textures/colormap/{name}.png"
-        for where, data in self._resources.versions(file, MOST_PNG_BYTES):
+        for where, data in self._resources.versions(file, MAX_PNG_BYTES):
             try:
                 pixels = decode_png(data)
             except ValueError as error:
@@ -303,18 +308,18 @@ class PackTextures:
         """Return a texture from its file, None where no pack has one that can be read."""
         plain = name.removesuffix(CLEAR)
         try:
-            space, path = resource(plain, "texture")
+            space, path = parse_resource_name(plain, "texture")
         except ValueError:
             return None
         file = f"assets/{space}/textures/{path}.png"
         animation = self._animation(file)
-        for where, data in self._resources.versions(file, MOST_PNG_BYTES):
+        for where, data in self._resources.versions(file, MAX_PNG_BYTES):
             try:
                 frame = first_frame(decode_png(data), animation)
             except ValueError as error:
                 self._resources.note(f"{where}: {error}")
                 continue
-            clear = name.endswith(CLEAR) or is_clear(path)
+            clear = name.endswith(CLEAR) or names_clear_material(path)
             return self._texture(frame, file, animation, clear)
         return None
 
@@ -324,7 +329,7 @@ class PackTextures:
         if root is None or "animation" not in root:
             return None
         try:
-            return mapping(root["animation"], "animation")
+            return as_object(root["animation"], "animation")
         except ValueError as error:
             self._resources.note(f"{name}: {error}")
             return None
@@ -343,14 +348,14 @@ class PackTextures:
             roughness,
             metal,
             emission,
-            translucent=clear and share >= LEAST_CLEAR_SHARE,
+            translucent=clear and share >= MIN_CLEAR_SHARE,
         )
 
     def _beside(self, file: str, ending: str, animation, side: int) -> np.ndarray | None:
         """Return the pixels of a map beside a texture, uint8 [N, N, 4], or None."""
         name = file.removesuffix(".png") + ending + ".png"
         own = self._animation(name) or animation
-        for where, data in self._resources.versions(name, MOST_PNG_BYTES):
+        for where, data in self._resources.versions(name, MAX_PNG_BYTES):
             try:
                 pixels = decode_png(data)
                 strip = own is not None and pixels.shape[0] != pixels.shape[1]
@@ -371,4 +376,4 @@ class PackTextures:
             if texture is None or (tint and not re.fullmatch("[0-9a-f]{6}", tint)):
                 return None
             layers.append((texture, tuple(bytes.fromhex(tint or "ffffff"))))
-        return joined(layers)
+        return overlay_textures(layers)

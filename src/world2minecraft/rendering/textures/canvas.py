@@ -50,7 +50,7 @@ def canvas_of(size_px: int, seed: int) -> Canvas:
     return Canvas(size_px, seed, *_centres(size_px))
 
 
-def hashed(seed: int, salt: int, index: np.ndarray) -> np.ndarray:
+def hash_values(seed: int, salt: int, index: np.ndarray) -> np.ndarray:
     """Return a value in [-1, 1) for each integer index, the same on every machine."""
     start = (seed + salt * MIX[2]) & MASK
     mixed = (index.astype(np.uint64) + np.uint64(start)) * np.uint64(MIX[0])
@@ -62,7 +62,7 @@ def hashed(seed: int, salt: int, index: np.ndarray) -> np.ndarray:
 
 def pick(canvas: Canvas, identity: np.ndarray, salt: int) -> np.ndarray:
     """Return a value in [-1, 1) for each piece of a layout, by its identity."""
-    return hashed(canvas.seed, salt, identity)
+    return hash_values(canvas.seed, salt, identity)
 
 
 def noise(
@@ -79,7 +79,7 @@ def noise(
     """
     left, right, part = _cell(canvas.x if x is None else x, across)
     above, below, share = _cell(canvas.y if y is None else y, down)
-    values = hashed(canvas.seed, salt, np.arange(across * down)).reshape(down, across)
+    values = hash_values(canvas.seed, salt, np.arange(across * down)).reshape(down, across)
     top = values[above, left] * (1 - part) + values[above, right] * part
     bottom = values[below, left] * (1 - part) + values[below, right] * part
     return top * (1 - share) + bottom * share

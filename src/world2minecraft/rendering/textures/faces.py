@@ -8,7 +8,7 @@ from world2minecraft.rendering.textures.canvas import (
     SIDE,
     Canvas,
     fractal,
-    hashed,
+    hash_values,
     noise,
     relief,
     smooth,
@@ -47,19 +47,19 @@ def books(canvas: Canvas, recipe: Recipe) -> Surface:
     y = canvas.y % 8
     board = (y < SHELF) | (canvas.x < 1) | (canvas.x > 15)
     identity, left, right = _spines(canvas)
-    random = hashed(canvas.seed, 1, identity)
+    random = hash_values(canvas.seed, 1, identity)
     tall = 7.0 - np.where(random > 0.55, 1.0, 0.0) - np.where(random < -0.7, 0.5, 0.0)
     gap = (8.0 - y > tall) | (identity % 16 == 15)
     edge = np.minimum(canvas.x - left, right - canvas.x)
     spine = ~board & ~gap
-    tone = np.where(spine, 0.16 * hashed(canvas.seed, 2, identity), 0.0)
+    tone = np.where(spine, 0.16 * hash_values(canvas.seed, 2, identity), 0.0)
     tone = tone + spine * (
         0.12 * smooth(edge, 0.0, 0.6)
         - 0.1
         - 0.22 * (canvas.x > right - max(0.25, 0.7 - canvas.joint / 2)) * (right - left > 1)
     )
-    band = spine & (np.abs(8.0 - y - 1.6) < 0.5) & (hashed(canvas.seed, 3, identity) > 0.0)
-    band |= spine & (np.abs(8.0 - y - 5.0) < 0.5) & (hashed(canvas.seed, 4, identity) > 0.3)
+    band = spine & (np.abs(8.0 - y - 1.6) < 0.5) & (hash_values(canvas.seed, 3, identity) > 0.0)
+    band |= spine & (np.abs(8.0 - y - 5.0) < 0.5) & (hash_values(canvas.seed, 4, identity) > 0.3)
     tone = tone + 0.42 * band - 0.75 * (gap & ~board)
     tone = np.where(
         board, 0.1 * fibre(canvas, canvas.x, canvas.y, 5) + 0.12 * (y < 0.5) - 0.06, tone
@@ -120,7 +120,7 @@ def _barrel(canvas: Canvas, recipe: Recipe) -> Surface:
     """Return staves along v with two hoops of the accent."""
     column = np.floor(canvas.x / 4)
     joint = canvas.x - column * 4 > 4 - canvas.joint
-    shade = hashed(canvas.seed, 2, column.astype(np.int64))
+    shade = hash_values(canvas.seed, 2, column.astype(np.int64))
     hoop = (np.abs(canvas.y - 3.0) < 1.0) | (np.abs(canvas.y - 13.0) < 1.0)
     grain = fibre(canvas, canvas.y, canvas.x, 3)
     tone = (0.1 * grain + 0.08 * shade - 0.3 * joint) * ~hoop

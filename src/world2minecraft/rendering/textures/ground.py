@@ -7,7 +7,7 @@ from world2minecraft.rendering.textures.canvas import (
     Canvas,
     contour,
     fractal,
-    hashed,
+    hash_values,
     noise,
     pick,
     relief,
@@ -185,7 +185,7 @@ def fire(canvas: Canvas, recipe: Recipe) -> Surface:
     rise = SIDE - canvas.y
     solid, heart = np.zeros(rise.shape, bool), np.zeros(rise.shape)
     edge = np.zeros(rise.shape)
-    random = hashed(canvas.seed, 1, np.arange(len(FLAMES) * 2)).reshape(-1, 2)
+    random = hash_values(canvas.seed, 1, np.arange(len(FLAMES) * 2)).reshape(-1, 2)
     for (foot, tall, wide), (lean, phase) in zip(FLAMES, random, strict=True):
         part = np.clip(rise / tall, 0, 1)
         sway = (1.2 * lean + 0.9 * np.sin(rise * 0.55 + 3 * phase)) * part

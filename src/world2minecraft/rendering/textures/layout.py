@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.rendering.textures.canvas import SIDE, Canvas, hashed, smooth
+from world2minecraft.rendering.textures.canvas import SIDE, Canvas, hash_values, smooth
 
 
 class Pieces(NamedTuple):
@@ -77,7 +77,7 @@ def stones(canvas: Canvas, count: int, salt: int, jitter: float = 0.7) -> Pieces
 
 
 def _jitter(canvas: Canvas, cell: np.ndarray, salt: int, jitter: float) -> np.ndarray:
-    return hashed(canvas.seed, salt, cell) * 0.5 * jitter
+    return hash_values(canvas.seed, salt, cell) * 0.5 * jitter
 
 
 def rim(canvas: Canvas) -> np.ndarray:

@@ -8,7 +8,7 @@ from world2minecraft.rendering.textures.canvas import (
     SIDE,
     Canvas,
     fractal,
-    hashed,
+    hash_values,
     noise,
     pick,
     smooth,
@@ -122,7 +122,7 @@ def scatter(canvas: Canvas, count: int, length: float, width: float, salt: int) 
     """Return ``count`` pointed leaves; ``length`` and ``width`` are halves, in sixteenths."""
     identity = np.full(canvas.x.shape, -1, np.int64)
     along, across = np.zeros(canvas.x.shape), np.zeros(canvas.x.shape)
-    random = hashed(canvas.seed, salt, np.arange(count * 4)).reshape(count, 4)
+    random = hash_values(canvas.seed, salt, np.arange(count * 4)).reshape(count, 4)
     for index, (middle_x, middle_y, turn, size) in enumerate(random):
         x = (canvas.x[0] - SIDE / 2 * middle_x) % SIDE - SIDE / 2
         y = ((canvas.y[:, 0] - SIDE / 2 * middle_y) % SIDE - SIDE / 2)[:, None]
@@ -166,7 +166,7 @@ def blades(canvas: Canvas, recipe: Recipe) -> Surface:
     count, tall, sway = BLADES[recipe.word("kind")]
     solid = np.zeros(canvas.x.shape, bool)
     tone, tip = np.zeros(canvas.x.shape), np.zeros(canvas.x.shape)
-    random = hashed(canvas.seed, 1, np.arange(count * 4)).reshape(count, 4)
+    random = hash_values(canvas.seed, 1, np.arange(count * 4)).reshape(count, 4)
     rise = SIDE - canvas.y
     for index, (start, lean, length, shade) in enumerate(random):
         foot = (index + 0.5 + 0.5 * start) * SIDE / count

@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.errors import UnknownNameError, UsageError
 
 PREFIX = "own:"
-MOST_LETTERS = 400  # A longer recipe is a mistake or a trap.
+MAX_LENGTH = 400  # A longer recipe is a mistake or a trap.
 COLOUR = re.compile("#[0-9a-f]{6}")
 EXAMPLE = "own:planks#a2824e?boards=4"
 
@@ -101,7 +101,7 @@ def split_recipe(text: str) -> tuple[str, tuple[str, ...], dict[str, str]]:
     Raises:
         UsageError: the text is no recipe.
     """
-    if len(text) > MOST_LETTERS or not text.startswith(PREFIX):
+    if len(text) > MAX_LENGTH or not text.startswith(PREFIX):
         raise UsageError(f"no recipe of a texture: {text[:60]!r}; write one such as {EXAMPLE}")
     head, mark, tail = text[len(PREFIX) :].partition("?")
     generator, hash_mark, colours = head.partition("#")

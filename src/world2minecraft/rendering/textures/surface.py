@@ -17,8 +17,8 @@ WARMTH = np.array([1.04, 1.0, 0.95])  # Light is a little warmer than shadow.
 MEAN_MARGIN = 1.0  # White and black may miss their mean by this, so that they are not flat.
 # Shares of the way to black or white that the main colour goes to make room for accents: in light,
 # and apart from it in each of red, green and blue.
-MOST_LIGHT, MOST_HUE = 0.4, 0.08
-LEAST_MAIN = 0.2  # Of all texels; fewer of the main colour would be too far from it.
+MAX_LIGHT, MAX_HUE = 0.4, 0.08
+MIN_MAIN_SHARE = 0.2  # Of all texels; fewer of the main colour would be too far from it.
 ROUNDS = 24  # Of a bisection over -1 to 1.
 SLOPE = 0.6  # Of the normals, times the height's.
 
@@ -51,7 +51,7 @@ def texture_from(canvas: Canvas, recipe: Recipe, surface: Surface) -> Texture:
         alpha = np.where(alpha < 128, 0, 255).astype(np.uint8)
     seen = alpha > 0
     colour, give = _colours(canvas, recipe, surface)
-    settled = settle_mean(colour[seen], give[seen], recipe.ink(0), surface.bold)
+    settled = match_mean(colour[seen], give[seen], recipe.ink(0), surface.bold)
     rgba = np.empty((*alpha.shape, 4), np.uint8)
     rgba[..., :3] = np.array(recipe.colours[0], np.uint8)  # Holes too, for filters that mix them.
     rgba[seen, :3] = np.rint(settled)
@@ -92,7 +92,7 @@ def _colours(canvas: Canvas, recipe: Recipe, surface: Surface) -> tuple[np.ndarr
     return np.clip(lit, 0.0, 255.0), give
 
 
-def settle_mean(
+def match_mean(
     colour: np.ndarray, give: np.ndarray, target: np.ndarray, bold: bool = False
 ) -> np.ndarray:
     """Return colours, float64 [M, 3] in 0 to 255, moved so that their mean is the target's.
@@ -109,15 +109,15 @@ def settle_mean(
     goal = np.clip(target, MEAN_MARGIN, 255.0 - MEAN_MARGIN)
     share = _share(colour, give[:, None], goal)
     if not bold:
-        light = np.clip(share.mean(), -MOST_LIGHT, MOST_LIGHT)
-        share = light + np.clip(share - share.mean(), -MOST_HUE, MOST_HUE)
-        share = share * (give.mean() > LEAST_MAIN)
-    moved = _moved(colour, share, give[:, None])
+        light = np.clip(share.mean(), -MAX_LIGHT, MAX_LIGHT)
+        share = light + np.clip(share - share.mean(), -MAX_HUE, MAX_HUE)
+        share = share * (give.mean() > MIN_MAIN_SHARE)
+    moved = _shift(colour, share, give[:, None])
     every = np.ones((len(give), 1))
-    return _moved(moved, _share(moved, every, goal), every)
+    return _shift(moved, _share(moved, every, goal), every)
 
 
-def _moved(colour: np.ndarray, share: np.ndarray, give: np.ndarray) -> np.ndarray:
+def _shift(colour: np.ndarray, share: np.ndarray, give: np.ndarray) -> np.ndarray:
     """Return colours that went a share of the way to white, or to black where it is negative."""
     return colour + give * np.abs(share) * (np.where(share > 0, 255.0, 0.0) - colour)
 
@@ -127,7 +127,7 @@ def _share(colour: np.ndarray, give: np.ndarray, goal: np.ndarray) -> np.ndarray
     low, high = np.full(3, -1.0), np.full(3, 1.0)
     for _ in range(ROUNDS):
         middle = (low + high) / 2
-        above = np.rint(_moved(colour, middle, give)).mean(axis=0) > goal
+        above = np.rint(_shift(colour, middle, give)).mean(axis=0) > goal
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     return low  # Rounding makes the mean jump by up to a level: stay on one side.
 

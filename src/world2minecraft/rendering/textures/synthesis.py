@@ -16,7 +16,7 @@ from world2minecraft.rendering.textures.recipe import (
 from world2minecraft.rendering.textures.surface import texture_from
 
 SIZES_PX = (16, 32, 64, 128)
-MOST_CACHED = 512  # Textures; 88 MB at 128 px.
+MAX_CACHED = 512  # Textures; 88 MB at 128 px.
 
 
 def recipe_of(generator: str, *colours: tuple[int, int, int], **options: float | str) -> str:
@@ -85,7 +85,7 @@ def texture_of(recipe: str, size_px: int = 16) -> Texture:
     return _made(parse_recipe(recipe).text, size_px)
 
 
-@lru_cache(maxsize=MOST_CACHED)
+@lru_cache(maxsize=MAX_CACHED)
 def _made(text: str, size_px: int) -> Texture:
     recipe = parse_recipe(text)
     canvas = canvas_of(size_px, recipe.seed)

@@ -21,7 +21,7 @@ from world2minecraft.core.types import Camera
 # A camera from a picture's size and one of: vertical FOV, horizontal FOV, intrinsics.
 
 GAME_FOV_DEG = 70.0  # The game's usual field of view; the game's is vertical.
-WIDEST_DEG = 170.0  # Wider, and a flat picture shows little but its edges.
+MAX_FOV_DEG = 170.0  # Wider, and a flat picture shows little but its edges.
 
 
 def camera_of(
@@ -56,7 +56,7 @@ def camera_of(
         )
     try:
         if intrinsics is not None:
-            fx_px, fy_px, cx_px, cy_px = _four(intrinsics)
+            fx_px, fy_px, cx_px, cy_px = _intrinsics_values(intrinsics)
             return Camera(width_px, height_px, fx_px, fy_px, cx_px, cy_px)
         across = horizontal_fov_deg is not None
         fov_deg = horizontal_fov_deg if horizontal_fov_deg is not None else vertical_fov_deg
@@ -72,14 +72,14 @@ def vertical_fov_deg_of(camera: Camera) -> float:
 
 
 def _focal_px(side_px: int, fov_deg: float) -> float:
-    if not 0 < fov_deg <= WIDEST_DEG:
+    if not 0 < fov_deg <= MAX_FOV_DEG:
         raise UsageError(
-            f"a field of view must be above 0 and up to {WIDEST_DEG:g} degrees, not {fov_deg:g}"
+            f"a field of view must be above 0 and up to {MAX_FOV_DEG:g} degrees, not {fov_deg:g}"
         )
     return float(focal_px_of_fov(side_px, fov_deg))
 
 
-def _four(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
+def _intrinsics_values(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
     """Return fx, fy, cx, cy of either form."""
     values = np.asarray(intrinsics, np.float64)
     if values.shape == (4,):
@@ -92,7 +92,7 @@ def _four(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
     return [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
 
 
-MOST_BLOCKS = 30_000_000  # The game's world ends there.
+MAX_COORDINATE = 30_000_000  # The game's world ends there.
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class GamePose:
 
     def __post_init__(self):
         values = (self.x, self.y, self.z, self.yaw_deg, self.pitch_deg)
-        if not np.isfinite(values).all() or max(map(abs, values[:3])) > MOST_BLOCKS:
+        if not np.isfinite(values).all() or max(map(abs, values[:3])) > MAX_COORDINATE:
             raise UsageError(f"a pose must be five numbers of the game's world, not {values}")
         if abs(self.pitch_deg) > 90:
             raise UsageError(f"pitch is -90 (up) to 90 (down) degrees, not {self.pitch_deg:g}")

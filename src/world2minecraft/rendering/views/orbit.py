@@ -10,7 +10,7 @@ ELEVATION_DEG = 28.0  # One sees the roof and the walls of a house.
 TURN_DEG = 34.0  # Where the circle begins: off the diagonal, so that two sides differ.
 MARGIN = 1.08
 CENTRINGS = 3  # What is near looks larger, so that the middle of a build is not that of its view.
-FARTHEST_M = 20_000.0
+MAX_DISTANCE_M = 20_000.0
 
 
 def orbit_shots(
@@ -85,4 +85,4 @@ def _fitting_distance_m(points_m: np.ndarray, way: np.ndarray, camera: Camera) -
     )
     needed = np.abs(seen[:, :2]) * MARGIN / np.maximum(half, 1e-6) - seen[:, 2:]
     nearest = -seen[:, 2].min() * 1.001 + 1e-3  # All points lie before the camera.
-    return float(min(max(needed.max(), nearest), FARTHEST_M))
+    return float(min(max(needed.max(), nearest), MAX_DISTANCE_M))

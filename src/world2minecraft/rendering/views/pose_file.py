@@ -28,7 +28,7 @@ from world2minecraft.rendering.views.cameras import (
 )
 
 MAX_BYTES = 256 << 20  # About a million poses.
-NEEDED = ("x", "y", "z", "yaw", "pitch")
+REQUIRED = ("x", "y", "z", "yaw", "pitch")
 
 
 @dataclass(frozen=True)
@@ -108,11 +108,11 @@ def _csv_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
 
 
 def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
-    missing = [key for key in NEEDED if key not in row]
+    missing = [key for key in REQUIRED if key not in row]
     if missing:
         raise DamagedFileError(source, f"line {number} has no {missing[0]}")
     try:
-        x, y, z, yaw, pitch = (float(row[key]) for key in NEEDED)
+        x, y, z, yaw, pitch = (float(row[key]) for key in REQUIRED)
         pose = GamePose(x, y, z, yaw, pitch, row["at"])
         frame = int(row["frame"]) if row.get("frame") is not None else None
         tour, scene = (str(row.get(key) or "") for key in ("tour_id", "scene_id"))

@@ -10,40 +10,40 @@ from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
-from world2minecraft.rendering.views.visibility import FAR_M, Hiding, look_around
+from world2minecraft.rendering.views.visibility import MAX_VIEW_M, ViewBlockers, cast_view_rays
 
-MOST_PLACES = 400_000  # Of a larger floor only the nearest part is walked.
-MOST_RATED = 1500  # Places that are rated as stops.
+MAX_PLACES = 400_000  # Of a larger floor only the nearest part is walked.
+MAX_RATED = 1500  # Places that are rated as stops.
 SPACING_M = 1.6  # Between stops,
-MOST_STOPS, LEAST_STOPS = 24, 4  # and so many of them, where there is room.
-LEAST_NEW = 0.12  # Of what one sees at a stop is new, else it is none.
+MAX_STOPS, MIN_STOPS = 24, 4  # and so many of them, where there is room.
+MIN_NEW_SHARE = 0.12  # Of what one sees at a stop is new, else it is none.
 PATCH_M = 0.5  # Side of the patches that count as seen.
 WALLED_SHARE = 0.8  # Of level rays that end at a wall, indoors.
 OUTSIDE_COST = 2.0  # What a place outdoors costs more.
 ELBOW_M = 0.7  # One keeps so far from walls where there is room.
 NARROW_COST = 2.5  # What a place at a wall costs more.
-LEAST_ROOM_M2 = 1.0  # A smaller roofed floor is no room.
+MIN_ROOM_M2 = 1.0  # A smaller roofed floor is no room.
 
 
-class Ways:
+class WalkRoutes:
     """The N places of the part of a floor that is worth walking, and the ways between them."""
 
-    def __init__(self, volume: BlockVolume, hiding: Hiding):
+    def __init__(self, volume: BlockVolume, hiding: ViewBlockers):
         """Find the places where a player walks, and keep the part that is worth it."""
         self.hiding = hiding
         graph = walk_graph(volume)
         scale = graph.blocks_per_metre
         eyes = graph.feet + np.array([0, eye_height_blocks(scale), 0])
-        free = ~_looked_up(self.hiding.hides, eyes, self.hiding)  # Nothing stands in the eye.
+        free = ~_values_at(self.hiding.hides, eyes, self.hiding)  # Nothing stands in the eye.
         free &= graph.headroom >= eye_height_blocks(scale)
-        graph = graph.part(np.flatnonzero(free)[:MOST_PLACES])
+        graph = graph.part(np.flatnonzero(free)[:MAX_PLACES])
         self.feet, self.indoors, self.room_m = graph.feet, np.zeros(len(graph), bool), np.zeros(0)
         if not len(graph):
             return
         share_m2 = _shares_m2(graph)
         indoors = _indoors(self.hiding, graph.feet)
         room_m = elbow_room_m(graph)
-        cost = _joined(graph, 1 + OUTSIDE_COST * ~indoors + _narrowness(room_m))
+        cost = _two_way_steps(graph, 1 + OUTSIDE_COST * ~indoors + _narrowness(room_m))
         kept = _best_part(cost, indoors, share_m2)
         self.feet, self.indoors, self.room_m = graph.feet[kept], indoors[kept], room_m[kept]
         self._graph = csr_array(cost[kept][:, kept])
@@ -52,12 +52,12 @@ class Ways:
         """Return places from which, together, the rooms are seen from all sides."""
         lit = self.indoors if self.indoors.any() else np.ones(len(self.feet), bool)
         few = np.flatnonzero(lit)
-        few = few[:: -(-len(few) // MOST_RATED)]
+        few = few[:: -(-len(few) // MAX_RATED)]
         up = eye_height_blocks(self.hiding.blocks_per_metre)
         eyes = self.feet[few] + np.array([0, up, 0])
         seen, worth = _seen_from(self.hiding, eyes)
         worth *= 0.4 + np.minimum(self.room_m[few], ELBOW_M)
-        return few[_covering(seen, worth, eyes / self.hiding.blocks_per_metre)]
+        return few[_choose_stops(seen, worth, eyes / self.hiding.blocks_per_metre)]
 
     def way(self, start: np.ndarray | None = None) -> np.ndarray:
         """Return a short way past all stops, as places, from the stop nearest to ``start``.
@@ -71,15 +71,15 @@ class Ways:
         firsts = range(len(stops))
         if start is not None:
             firsts = [int(np.linalg.norm(self.feet[stops] - start, axis=1).argmin())]
-        tours = [_shortened(_greedy(between, first), between) for first in firsts]
+        tours = [_two_opt(_nearest_neighbour_tour(between, first), between) for first in firsts]
         order = min(tours, key=lambda tour: _length(tour, between))
         way = [int(stops[order[0]])]
         for a, b in pairwise(order):
-            way += _walked(before[a], int(stops[a]), int(stops[b]))
+            way += _trace_back(before[a], int(stops[a]), int(stops[b]))
         return np.array(way)
 
 
-def _looked_up(values: np.ndarray, points: np.ndarray, hiding: Hiding) -> np.ndarray:
+def _values_at(values: np.ndarray, points: np.ndarray, hiding: ViewBlockers) -> np.ndarray:
     """Return the values, bool [X, Y, Z], of the cells of points, float64 [N, 3]; False outside."""
     cells = np.floor(points - np.array(hiding.corner) + [0, 1e-6, 0]).astype(np.int64)
     inside = ((cells >= 0) & (cells < values.shape)).all(axis=1)
@@ -93,46 +93,48 @@ def _shares_m2(graph: WalkGraph) -> np.ndarray:
     return 1 / count[which.reshape(-1)] / graph.blocks_per_metre**2
 
 
-def _indoors(hiding: Hiding, feet: np.ndarray) -> np.ndarray:
+def _indoors(hiding: ViewBlockers, feet: np.ndarray) -> np.ndarray:
     """Tell which places, feet [N, 3], have a roof and see walls in nearly all directions."""
-    result = _looked_up(hiding.roofed, feet, hiding)
+    result = _values_at(hiding.roofed, feet, hiding)
     asked = np.flatnonzero(result)
     eyes = feet[asked] + np.array([0, eye_height_blocks(hiding.blocks_per_metre), 0])
     for part in np.array_split(np.arange(len(asked)), -(-len(asked) // 4096) or 1):
         yaws_deg = np.arange(0.0, 360.0, 22.5)
-        around = look_around(hiding, eyes[part], yaws_deg, np.array([0.0]))
+        around = cast_view_rays(hiding, eyes[part], yaws_deg, np.array([0.0]))
         result[asked[part]] = (around.cell >= 0).mean(axis=(1, 2)) >= WALLED_SHARE
     return result
 
 
-def _seen_from(hiding: Hiding, eyes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _seen_from(hiding: ViewBlockers, eyes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return what each eye sees, patches with sides [N, R], 0 for nothing, and its open view."""
     yaws_deg, pitches_deg = np.arange(0.0, 360.0, 10.0), np.array([-10.0, 5.0, 25.0])
-    around = look_around(hiding, eyes, yaws_deg, pitches_deg)
+    around = cast_view_rays(hiding, eyes, yaws_deg, pitches_deg)
     patch = max(1, round(PATCH_M * hiding.blocks_per_metre))
     places = np.stack(np.unravel_index(np.maximum(around.cell, 0), hiding.hides.shape)) // patch
     coarse = tuple(-(-side // patch) for side in hiding.hides.shape)
     number = np.ravel_multi_index(tuple(places), coarse)
     sides = (yaws_deg // 90).astype(np.int64)[None, None]
     seen = np.where(around.cell >= 0, number * 4 + sides + 1, 0)
-    good = (around.far_m > 0.8) & (around.far_m < FAR_M)  # What is nearer is a wall in the face.
+    good = (around.far_m > 0.8) & (
+        around.far_m < MAX_VIEW_M
+    )  # What is nearer is a wall in the face.
     seen = np.where(good, seen, 0).reshape(len(eyes), -1)
     open_view = np.clip(around.far_m / 3.0, 0, 1).mean(axis=(1, 2))
     return seen, open_view
 
 
-def _covering(seen: np.ndarray, worth: np.ndarray, eyes_m: np.ndarray) -> np.ndarray:
+def _choose_stops(seen: np.ndarray, worth: np.ndarray, eyes_m: np.ndarray) -> np.ndarray:
     """Return few eyes that see most, one after another the one that sees most that is new."""
     known = np.zeros(int(seen.max(initial=0)) + 1, bool)
     known[0] = True
     chosen: list[int] = []
     apart = np.full(len(seen), np.inf)
-    while len(chosen) < MOST_STOPS:
+    while len(chosen) < MAX_STOPS:
         share = (~known[seen]).mean(axis=1)
         gain = share * worth
         gain[apart < SPACING_M] = 0
         best = int(gain.argmax())
-        if gain[best] <= 0 or (share[best] < LEAST_NEW and len(chosen) >= LEAST_STOPS):
+        if gain[best] <= 0 or (share[best] < MIN_NEW_SHARE and len(chosen) >= MIN_STOPS):
             break
         chosen.append(best)
         known[seen[best]] = True
@@ -144,7 +146,7 @@ def _narrowness(room_m: np.ndarray) -> np.ndarray:
     return NARROW_COST * np.maximum(0, 1 - room_m / ELBOW_M)
 
 
-def _joined(graph: WalkGraph, cost_of: np.ndarray) -> csr_array:
+def _two_way_steps(graph: WalkGraph, cost_of: np.ndarray) -> csr_array:
     """Return the steps that lead both ways; each costs its length times that of its ends."""
     cost = graph.edge_m * (cost_of[graph.edge_from] + cost_of[graph.edge_to]) / 2
     size = (len(graph), len(graph))
@@ -159,12 +161,12 @@ def _best_part(graph: csr_array, indoors: np.ndarray, share_m2: np.ndarray) -> n
     count, part = connected_components(graph, directed=False)
     inside = np.bincount(part, weights=share_m2 * indoors, minlength=count)
     sizes = np.bincount(part, weights=share_m2, minlength=count)
-    is_room = inside.max() >= LEAST_ROOM_M2 - 1e-9
+    is_room = inside.max() >= MIN_ROOM_M2 - 1e-9
     best = int(inside.argmax() if is_room else sizes.argmax())
     return np.flatnonzero(part == best)
 
 
-def _greedy(between: np.ndarray, first: int) -> list[int]:
+def _nearest_neighbour_tour(between: np.ndarray, first: int) -> list[int]:
     tour, left = [first], set(range(len(between))) - {first}
     while left:
         after = min(sorted(left), key=lambda n: between[tour[-1], n])
@@ -173,7 +175,7 @@ def _greedy(between: np.ndarray, first: int) -> list[int]:
     return tour
 
 
-def _shortened(tour: list[int], between: np.ndarray) -> list[int]:
+def _two_opt(tour: list[int], between: np.ndarray) -> list[int]:
     """Turn parts of a tour round, but for its first stop, as long as that makes it shorter."""
     best, shorter = tour, True
     while shorter:
@@ -190,7 +192,7 @@ def _length(tour: list[int], between: np.ndarray) -> float:
     return float(between[tour[:-1], tour[1:]].sum())
 
 
-def _walked(before: np.ndarray, start: int, end: int) -> list[int]:
+def _trace_back(before: np.ndarray, start: int, end: int) -> list[int]:
     """Return the places after ``start`` up to ``end``."""
     way = [end]
     while before[way[-1]] != start and before[way[-1]] >= 0:

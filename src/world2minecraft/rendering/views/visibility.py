@@ -24,7 +24,7 @@ SIGHT_SHARE = 0.3  # Of a cell's side: what is narrower hides little.
 
 
 @dataclass(frozen=True, eq=False)
-class Hiding:
+class ViewBlockers:
     """Cells that one does not see through, and those with something above.
 
     Both are [X, Y, Z] in block axes from ``corner``. Doors and gates hide nothing.
@@ -36,12 +36,12 @@ class Hiding:
     blocks_per_metre: float
 
 
-def hiding_of(volume: BlockVolume) -> Hiding:
+def view_blockers_of(volume: BlockVolume) -> ViewBlockers:
     """Return what hides the view in a volume."""
     measures = np.array([_measures(state) for state in volume.palette], np.float32)
     top, width = measures[volume.states, 0], measures[volume.states, 1]
     roofs = (top > ROOF)[:, ::-1]
-    return Hiding(
+    return ViewBlockers(
         hides=width > SIGHT_SHARE,
         roofed=np.logical_or.accumulate(roofs, axis=1)[:, ::-1],
         corner=volume.corner,
@@ -62,20 +62,20 @@ def _measures(state: str) -> tuple[float, float]:
     return top, float(np.sort(size)[1])
 
 
-FAR_M = 12.0  # Rays end there.
+MAX_VIEW_M = 12.0  # Rays end there.
 STRIDE_BLOCKS = 0.35
 
 
-class Around(NamedTuple):
+class ViewRays(NamedTuple):
     """What rays meet from N places, at P pitches and Y yaws: arrays [N, P, Y]."""
 
     far_m: np.ndarray  # float64, FAR_M where a ray meets nothing
     cell: np.ndarray  # int64, C-order index of the cell that it ends at, -1 for none
 
 
-def look_around(
-    hiding: Hiding, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
-) -> Around:
+def cast_view_rays(
+    hiding: ViewBlockers, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
+) -> ViewRays:
     """Cast rays from eyes, float64 [N, 3] in world blocks, to all pairs of pitch and yaw.
 
     Args:
@@ -91,7 +91,7 @@ def look_around(
     start = np.repeat(eyes - np.array(hiding.corner), count, axis=0)
     ahead = np.tile(rays.reshape(-1, 3), (len(eyes), 1)) * STRIDE_BLOCKS
     shape = np.array(hiding.hides.shape)
-    limit = FAR_M * hiding.blocks_per_metre
+    limit = MAX_VIEW_M * hiding.blocks_per_metre
     far, cell = np.full(len(start), limit), np.full(len(start), -1, np.int64)
     going = np.arange(len(start))
     for n in range(1, int(limit / STRIDE_BLOCKS) + 1):
@@ -106,4 +106,4 @@ def look_around(
         if not len(going):
             break
     every = (len(eyes), *rays.shape[:2])
-    return Around(far.reshape(every) / hiding.blocks_per_metre, cell.reshape(every))
+    return ViewRays(far.reshape(every) / hiding.blocks_per_metre, cell.reshape(every))

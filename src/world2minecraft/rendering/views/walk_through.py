@@ -11,8 +11,12 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.physics.walk_graph import is_shut, opened
 from world2minecraft.rendering.views.cameras import GamePose, Shot
-from world2minecraft.rendering.views.viewpoint_graph import Ways
-from world2minecraft.rendering.views.visibility import Hiding, hiding_of, look_around
+from world2minecraft.rendering.views.viewpoint_graph import WalkRoutes
+from world2minecraft.rendering.views.visibility import (
+    ViewBlockers,
+    cast_view_rays,
+    view_blockers_of,
+)
 
 # Where one looks along a way: ahead and into the rooms, never long at a wall that is near.
 #
@@ -22,17 +26,17 @@ from world2minecraft.rendering.views.visibility import Hiding, hiding_of, look_a
 HEADINGS = 72  # Five degrees apart.
 PITCHES_DEG = (-4.0, 8.0, 22.0)  # Of the rays, down is positive.
 NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
-LOST_WORTH = 0.1  # Of a ray that meets nothing: the sky is no room.
+SKY_WORTH = 0.1  # Of a ray that meets nothing: the sky is no room.
 THING_WORTH = 0.45  # More for a ray that meets furniture,
 AHEAD_WORTH = 0.22  # for looking the way one goes,
 WALL_COST = 0.8  # less for a wall before one's nose, within
 WALL_M = 1.1
 TURN_COST = 0.035  # Of five degrees.
-MOST_TURN = 5  # Headings from one place to the next.
+MAX_TURN = 5  # Headings from one place to the next.
 
 
 def best_headings(
-    hiding: Hiding,
+    hiding: ViewBlockers,
     semantic: np.ndarray,
     eyes: np.ndarray,
     ways: np.ndarray,
@@ -50,10 +54,10 @@ def best_headings(
         half_fov_deg: half the camera's horizontal field of view.
     """
     yaws_deg = np.arange(HEADINGS) * (360.0 / HEADINGS)
-    far_m, cell = look_around(hiding, eyes, yaws_deg, np.array(PITCHES_DEG))
+    far_m, cell = cast_view_rays(hiding, eyes, yaws_deg, np.array(PITCHES_DEG))
     thing = (cell >= 0) & (semantic.reshape(-1)[cell] >= SemanticClass.CHAIR)
     worth = np.clip((far_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
-    worth = np.where(cell < 0, LOST_WORTH, worth) + THING_WORTH * thing
+    worth = np.where(cell < 0, SKY_WORTH, worth) + THING_WORTH * thing
     column = worth.mean(axis=1)  # [N, HEADINGS]
     middle_m = far_m[:, 1:].min(axis=1)
     rating = _windows(column, half_fov_deg)
@@ -73,8 +77,8 @@ def _windows(column: np.ndarray, half_deg: float) -> np.ndarray:
 
 def _best_sequence(rating: np.ndarray) -> np.ndarray:
     """Return the headings, int64 [N], with the highest sum of ratings less the cost of turns."""
-    steps = np.arange(-MOST_TURN, MOST_TURN + 1)
-    cost = TURN_COST * np.abs(steps) * (1 + np.abs(steps) / MOST_TURN)
+    steps = np.arange(-MAX_TURN, MAX_TURN + 1)
+    cost = TURN_COST * np.abs(steps) * (1 + np.abs(steps) / MAX_TURN)
     best = rating[0].copy()
     came = np.zeros(rating.shape, np.int64)
     every = np.arange(rating.shape[1])
@@ -95,10 +99,10 @@ SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
 SMOOTH_M = 0.45  # Corners are rounded so much,
 TURN_SMOOTH_M = 0.5  # and turns of the head.
 WALK_M_S, TURN_DEG_S = 1.0, 50.0  # One slows down to turn.
-LONGEST_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
+MAX_DURATION_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
 PITCH_DEG = 9.0  # Furniture lies lower than the eye.
-LEAST_SHARE = 0.08  # Of stills, where a view is bad; 1 where it is good.
-SHORT_M = 0.4  # A way that is shorter is none: one turns round on the spot.
+MIN_STILL_RATE = 0.08  # Of stills, where a view is bad; 1 where it is good.
+MIN_WALK_M = 0.4  # A way that is shorter is none: one turns round on the spot.
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +130,7 @@ def plan_tour(
     Args:
         volume: the blocks. Rooms are what is roofed and walled; without any, the walk is outside.
         camera: through which; its field of view decides where it is worth looking.
-        frames: how many shots; None for as many as a moving picture needs, up to ``LONGEST_S``.
+        frames: how many shots; None for as many as a moving picture needs, up to ``MAX_DURATION_S``.
         rate_hz: shots a second of a moving picture.
         start: where the walk begins, in world blocks, such as the spawn; anywhere if left out.
 
@@ -134,8 +138,8 @@ def plan_tour(
         UsageError: nowhere in the volume can a person stand.
     """
     volume = _with_headroom(volume)
-    hiding = hiding_of(volume)
-    ways = Ways(volume, hiding)
+    hiding = view_blockers_of(volume)
+    ways = WalkRoutes(volume, hiding)
     if not len(ways.feet):
         raise UsageError(
             "nobody can stand anywhere in this build, so there is no tour; try --orbit"
@@ -146,7 +150,7 @@ def plan_tour(
     eyes = _smoothed(feet, hiding, eye_blocks)
     yaws_deg, worth = _yaws_deg(eyes, hiding, volume.semantic, camera)
     length_m = _length(eyes) / hiding.blocks_per_metre
-    if length_m < SHORT_M:
+    if length_m < MIN_WALK_M:
         eyes, yaws_deg = np.repeat(eyes[:1], 73, axis=0), yaws_deg[0] + np.arange(73) * 5.0
         worth = np.ones(73)
     times = _times_s(eyes / hiding.blocks_per_metre, yaws_deg)
@@ -207,7 +211,7 @@ def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.column_stack([np.interp(places, along, column) for column in points.T])
 
 
-def _smoothed(feet: np.ndarray, hiding: Hiding, eye_blocks: float) -> np.ndarray:
+def _smoothed(feet: np.ndarray, hiding: ViewBlockers, eye_blocks: float) -> np.ndarray:
     """Return the eyes over a way, rounded where that leads through nothing."""
     eyes = feet + np.array([0, eye_blocks, 0])
     sigma = SMOOTH_M / SAMPLE_M
@@ -215,7 +219,7 @@ def _smoothed(feet: np.ndarray, hiding: Hiding, eye_blocks: float) -> np.ndarray
     share = np.ones(len(eyes))
     for _ in range(6):
         mixed = share[:, None] * best + (1 - share[:, None]) * eyes
-        bad = _in_something(mixed, hiding)
+        bad = _too_near(mixed, hiding)
         if not bad.any():
             break
         share[bad] = 0
@@ -223,7 +227,7 @@ def _smoothed(feet: np.ndarray, hiding: Hiding, eye_blocks: float) -> np.ndarray
     return share[:, None] * best + (1 - share[:, None]) * eyes
 
 
-def _in_something(eyes: np.ndarray, hiding: Hiding) -> np.ndarray:
+def _too_near(eyes: np.ndarray, hiding: ViewBlockers) -> np.ndarray:
     """Tell which eyes come within a hand's breadth of a cell that hides the view."""
     reach = 0.12 * hiding.blocks_per_metre
     bad = np.zeros(len(eyes), bool)
@@ -237,7 +241,7 @@ def _in_something(eyes: np.ndarray, hiding: Hiding) -> np.ndarray:
 
 
 def _yaws_deg(
-    eyes: np.ndarray, hiding: Hiding, semantic: np.ndarray, camera: Camera
+    eyes: np.ndarray, hiding: ViewBlockers, semantic: np.ndarray, camera: Camera
 ) -> tuple[np.ndarray, np.ndarray]:
     going = np.gradient(eyes, axis=0)
     ways = np.degrees(np.arctan2(-going[:, 0], going[:, 2]))
@@ -266,9 +270,9 @@ def _moments_s(
     """Return when pictures are taken: evenly for a moving one, else more where views are good."""
     if frames is None:
         seconds = float(times[-1])
-        return np.linspace(0, seconds, round(min(seconds, LONGEST_S) * rate_hz) + 1)
+        return np.linspace(0, seconds, round(min(seconds, MAX_DURATION_S) * rate_hz) + 1)
     low, high = np.quantile(worth, (0.15, 0.6))
-    good = np.clip((worth - low) / max(high - low, 1e-6), LEAST_SHARE, 1)
+    good = np.clip((worth - low) / max(high - low, 1e-6), MIN_STILL_RATE, 1)
     gathered = np.r_[0, np.cumsum(np.diff(times) * (good[1:] + good[:-1]) / 2)]
     wanted = (np.arange(frames) + 0.5) / frames * gathered[-1]
     return np.interp(wanted, gathered, times)

@@ -11,7 +11,11 @@ from typing import Any
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_text
-from world2minecraft.navigation.language.checking import findings, goal_of, names_of
+from world2minecraft.navigation.language.checking import (
+    check_instruction,
+    goal_name,
+    landmark_names_of,
+)
 from world2minecraft.navigation.language.human_instructions import read_annotations
 from world2minecraft.navigation.records import read_trajectories
 from world2minecraft.navigation.values import Trajectory
@@ -41,7 +45,7 @@ class AnnotationDesk:
             raise InputError(folder, "has no walk; make a set with w2m vln build")
         self._number = {one.trajectory_id: n for n, one in enumerate(self.walks)}
         scenes = {one.scene_id for one in self.walks}
-        self._names = {scene: names_of(self.walks, scene) for scene in sorted(scenes)}
+        self._names = {scene: landmark_names_of(self.walks, scene) for scene in sorted(scenes)}
         self._lock = threading.Lock()
         self._lines = self._read()
 
@@ -57,7 +61,7 @@ class AnnotationDesk:
                 "scene": one.scene_id,
                 "frames": len(one.keyframes),
                 "path_m": round(one.path_m, 1),
-                "goal": goal_of(one),
+                "goal": goal_name(one),
                 "written": counts.get(one.trajectory_id, 0),
             }
             for number, one in enumerate(self.walks)
@@ -79,7 +83,7 @@ class AnnotationDesk:
             "number": number,
             "id": one.trajectory_id,
             "scene": one.scene_id,
-            "goal": goal_of(one),
+            "goal": goal_name(one),
             "things": list(self._names[one.scene_id]),
             "path_m": round(one.path_m, 1),
             "frames": [frame.move for frame in one.keyframes],
@@ -100,7 +104,10 @@ class AnnotationDesk:
     def check(self, number: int, level: str, text: str) -> list[dict[str, Any]]:
         """Return what is to be said of a text, what is wrong first."""
         one = self._walk(number)
-        return [found._asdict() for found in findings(text, level, one, self._names[one.scene_id])]
+        return [
+            found._asdict()
+            for found in check_instruction(text, level, one, self._names[one.scene_id])
+        ]
 
     def add(
         self, number: int, level: str, text: str, annotator: str, language: str = "en"

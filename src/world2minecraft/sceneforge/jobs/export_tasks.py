@@ -17,7 +17,7 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.editing.relocation import placed
 from world2minecraft.editing.world_build import build_into, built_mask
-from world2minecraft.formats.volume_formats import form_named, templates_of_run, write_form
+from world2minecraft.formats.volume_formats import (format_by_name, read_run_templates, write_volume)
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
@@ -73,11 +73,11 @@ def _written(
         name = scene_name(folder) or WORLD_NAME
         write_build(target / "build", volume, mc_version=chosen.mc_version, name=name)
         return _zipped(target / "build" / "world", target / "room_world.zip")
-    path = target / f"room{form_named(form).suffix}"
+    path = target / f"room{format_by_name(form).suffix}"
     options = WriteOptions(
-        mc_version=chosen.mc_version, other={"templates": templates_of_run(folder)}
+        mc_version=chosen.mc_version, other={"templates": read_run_templates(folder)}
     )
-    write_form(volume, path, options, losses)
+    write_volume(volume, path, options, losses)
     return _zipped(path, target / f"room_{form}.zip") if path.is_dir() else path
 
 

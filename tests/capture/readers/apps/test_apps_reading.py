@@ -20,7 +20,8 @@ from app_writers import (
 )
 from PIL import Image
 
-from world2minecraft.capture import describe_capture, open_scan
+from world2minecraft.capture import (describe_capture)
+from world2minecraft.capture import open_scan
 from world2minecraft.capture.images import read_colour, read_header
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.video_frames import Movie

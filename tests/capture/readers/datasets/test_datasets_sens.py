@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from writing import encoded, millimetres, save, save_text, zipped
 
-from world2minecraft.capture import describe_capture, open_scan
+from world2minecraft.capture import (describe_capture)
+from world2minecraft.capture import open_scan
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import DamagedFileError
 

@@ -11,7 +11,7 @@ from world2minecraft.capture.readers.meshes.orientation_and_unit import (
     turn_of,
     unit_of,
 )
-from world2minecraft.capture.readers.meshes.viewpoints import samples_of
+from world2minecraft.capture.readers.meshes.surface_sampling import samples_of
 
 ROOMS = {
     "box": room_quads(),

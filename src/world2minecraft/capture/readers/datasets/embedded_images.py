@@ -13,7 +13,7 @@ from typing import IO
 
 import numpy as np
 
-from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame, opened_image
+from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame, open_image
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
@@ -94,7 +94,7 @@ class EncodedImage(FileSlice):
         """Return size and mode. Raises what ``images.read_header`` raises."""
         first = min(self.size, HEADER_BYTES)
         head = FileSlice(self.path, self.offset, first, self.frame)
-        with opened_image(head) as image:
+        with open_image(head) as image:
             return ImageHeader(*image.size, image.mode)
 
     def check_whole(self) -> None:
@@ -106,12 +106,12 @@ class EncodedImage(FileSlice):
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3] sRGB."""
-        with opened_image(self) as image:
+        with open_image(self) as image:
             return np.array(image.convert("RGB"), np.uint8)
 
     def raw(self) -> np.ndarray:
         """Return [H, W] values as stored."""
-        with opened_image(self) as image:
+        with open_image(self) as image:
             return np.array(image)
 
 

@@ -23,7 +23,8 @@ from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, see_tri
 from world2minecraft.capture.readers.meshes.orientation_and_unit import stance_of, unit_of
 from world2minecraft.capture.readers.meshes.surfels import surfels_of
 from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
-from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views, samples_of
+from world2minecraft.capture.readers.meshes.surface_sampling import samples_of
+from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.classes import CLASS_COLOURS
 from world2minecraft.core.coordinates import apply, invert_rigid

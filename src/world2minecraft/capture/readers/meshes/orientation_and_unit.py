@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.options import SOLID_UNITS_M
-from world2minecraft.capture.readers.meshes.viewpoints import Samples
+from world2minecraft.capture.options import MESH_UNITS_M
+from world2minecraft.capture.readers.meshes.surface_sampling import Samples
 
 AXES = {
     "x": (1.0, 0.0, 0.0),
@@ -153,13 +153,13 @@ def unit_of(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tup
         chosen: the unit that the user says, or None.
     """
     if chosen is not None:
-        return SOLID_UNITS_M[chosen], f"one unit is 1 {chosen}, as told"
-    scores = {name: _plausible(size * SOLID_UNITS_M[name]) - RARITY[name] for name in RARITY}
+        return MESH_UNITS_M[chosen], f"one unit is 1 {chosen}, as told"
+    scores = {name: _plausible(size * MESH_UNITS_M[name]) - RARITY[name] for name in RARITY}
     best = max(scores, key=lambda name: scores[name])
     if stated_m is not None and _plausible(size * stated_m) > scores[best] - STATED_MARGIN:
-        name = next((n for n in RARITY if SOLID_UNITS_M[n] == stated_m), f"{stated_m:g} m")
+        name = next((n for n in RARITY if MESH_UNITS_M[n] == stated_m), f"{stated_m:g} m")
         return stated_m, f"one unit is 1 {name}, as its format says"
-    return SOLID_UNITS_M[best], f"one unit is taken to be 1 {best} (guessed from the size)"
+    return MESH_UNITS_M[best], f"one unit is taken to be 1 {best} (guessed from the size)"
 
 
 def _plausible(size_m: np.ndarray) -> float:

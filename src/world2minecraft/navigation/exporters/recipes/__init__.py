@@ -6,7 +6,7 @@ from typing import Any
 import jinja2
 
 
-def rendered(name: str, /, **values: Any) -> str:
+def render_recipe(name: str, /, **values: Any) -> str:
     """Return a recipe, its blanks filled.
 
     Args:
@@ -16,9 +16,9 @@ def rendered(name: str, /, **values: Any) -> str:
     environment = jinja2.Environment(
         undefined=jinja2.StrictUndefined, trim_blocks=True, keep_trailing_newline=True
     )
-    return environment.from_string(verbatim(f"{name}.jinja")).render(**values)
+    return environment.from_string(read_recipe(f"{name}.jinja")).render(**values)
 
 
-def verbatim(name: str) -> str:
+def read_recipe(name: str) -> str:
     """Return a file of this folder as it is."""
     return files(__name__).joinpath(name).read_text("utf-8")

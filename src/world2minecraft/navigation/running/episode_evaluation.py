@@ -10,32 +10,32 @@ from typing import Any
 
 from world2minecraft.core.files import write_json
 from world2minecraft.navigation.agents import AGENTS, BESIDE, Agent
-from world2minecraft.navigation.running.episode_ground import Ground
-from world2minecraft.navigation.running.episode_runner import Observer, Walk, walk_episode
+from world2minecraft.navigation.running.episode_runner import EpisodeWalk, Observer, walk_episode
 from world2minecraft.navigation.running.item_evaluation import RESULT_FILE
-from world2minecraft.navigation.running.trace import score_told
+from world2minecraft.navigation.running.simulator import Simulator
+from world2minecraft.navigation.running.trace import score_json
 from world2minecraft.navigation.scores import summarise
 from world2minecraft.navigation.values import Episode, check_reachable
 
-Observers = Callable[[Episode, Ground], Sequence[Observer]]
+Observers = Callable[[Episode, Simulator], Sequence[Observer]]
 
 
-def run_course(
+def evaluate_agent(
     episodes: Iterable[Episode],
-    ground_of: Callable[[Episode], Ground],
+    ground_of: Callable[[Episode], Simulator],
     agent: Agent,
     *,
     observers: Observers,
     seed: int = 0,
-) -> tuple[list[Walk], dict[str, list[Walk]]]:
+) -> tuple[list[EpisodeWalk], dict[str, list[EpisodeWalk]]]:
     """Walk episodes, and return the agent's walks and those beside them by name.
 
     Raises:
         InputError: one of them cannot be walked; this is found before the first is.
         What ``walk_episode`` raises.
     """
-    walks: list[Walk] = []
-    beside: dict[str, list[Walk]] = {name: [] for name in BESIDE}
+    walks: list[EpisodeWalk] = []
+    beside: dict[str, list[EpisodeWalk]] = {name: [] for name in BESIDE}
     asked = list(episodes)
     for episode in asked:
         check_reachable(episode, ground_of(episode).distance_m(episode.start, episode.goals))
@@ -48,7 +48,7 @@ def run_course(
     return walks, beside
 
 
-def course_told(walks: Sequence[Walk]) -> dict[str, Any]:
+def walks_summary(walks: Sequence[EpisodeWalk]) -> dict[str, Any]:
     """Return the means of walks, with how many decisions could not be used."""
     told = summarise([walk.score for walk in walks])
     return told | {
@@ -59,18 +59,18 @@ def course_told(walks: Sequence[Walk]) -> dict[str, Any]:
     }
 
 
-def write_course(
+def write_walks_result(
     folder: str | Path,
-    walks: Sequence[Walk],
-    beside: dict[str, list[Walk]],
+    walks: Sequence[EpisodeWalk],
+    beside: dict[str, list[EpisodeWalk]],
     facts: dict[str, Any],
 ) -> dict[str, Any]:
     """Write ``result.json`` and return what it holds."""
     told = {
         "kind": "walks",
         "agent": walks[0].agent,
-        "summary": course_told(walks),
-        "beside": {name: course_told(own) for name, own in beside.items()},
+        "summary": walks_summary(walks),
+        "beside": {name: walks_summary(own) for name, own in beside.items()},
         "episodes": [
             {
                 "episode_id": walk.episode.episode_id,
@@ -78,7 +78,7 @@ def write_course(
                 "end": walk.end,
                 "invalid": walk.invalid,
                 "failed": walk.failed,
-                "score": score_told(walk),
+                "score": score_json(walk),
             }
             for walk in walks
         ],

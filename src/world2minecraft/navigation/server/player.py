@@ -25,7 +25,7 @@ from world2minecraft.navigation.server.blocks import (
     read_blocks,
     state_of,
 )
-from world2minecraft.navigation.server.installing import body_folder, node, script
+from world2minecraft.navigation.server.mineflayer_install import body_folder, node, script
 
 # Lines of JSON to and from a process: one answer for each question, none of them trusted.
 #
@@ -34,11 +34,11 @@ from world2minecraft.navigation.server.installing import body_folder, node, scri
 
 MAX_LINE = 8 << 20  # Bytes: the blocks of a chunk column take up to 1 MB.
 MAX_WAITING = 16  # Lines that nobody asked for.
-MAX_TOLD = 500  # Characters of an error of the other side.
+MAX_MESSAGE = 500  # Characters of an error of the other side.
 _LAST_WORDS = 2_000  # Bytes of what it wrote to stderr.
 
 
-class Bridge:
+class JsonLineProcess:
     """A process that answers questions.
 
     Args:
@@ -156,17 +156,17 @@ class Bridge:
 
 def _plain(text: Any) -> str:
     """Return a text of others on one line, of printable characters, not too long."""
-    kept = "".join(c if c.isprintable() else " " for c in str(text)[-MAX_TOLD:])
+    kept = "".join(c if c.isprintable() else " " for c in str(text)[-MAX_MESSAGE:])
     return " ".join(kept.split())
 
 
 PORT = 25565
-NAME = "w2m_walker"
+DEFAULT_NAME = "w2m_walker"
 JOIN_S = 45.0
 MOVE_S = 5.0  # Until a server has done what /tp says.
 STREAM_S = 10.0  # Until a chunk that is near has come.
 SLACK_S = 10.0
-MOST_TICKS = 400  # In one question, as body.mjs has it.
+MAX_TICKS = 400  # In one question, as body.mjs has it.
 PLACE_TRIES = 4
 SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
 NEAR = 0.05  # Blocks: where /tp leads to.
@@ -183,7 +183,7 @@ class Change(NamedTuple):
     state: str
 
 
-class ServerBody:
+class ServerPlayer:
     """A player that has joined. Use it in a ``with``; ``join`` makes one.
 
     ``changes`` are the blocks that changed since they were last taken; ``has_many_changes`` says
@@ -191,10 +191,10 @@ class ServerBody:
     somewhere while keys were held, since ``place``.
     """
 
-    def __init__(self, bridge: Bridge, address: str, told: dict[str, Any]):
+    def __init__(self, bridge: JsonLineProcess, address: str, told: dict[str, Any]):
         self._bridge = bridge
         self.address, self.version = address, str(told.get("version", ""))[:20]
-        self.name = str(told.get("name", NAME))[:16]
+        self.name = str(told.get("name", DEFAULT_NAME))[:16]
         self.changes: list[Change] = []
         self.has_many_changes, self.corrections = False, 0
         self._take(told)
@@ -218,9 +218,9 @@ class ServerBody:
             ServerError: the player is gone, or the ground under it has not been streamed.
         """
         poses: list[Body] = []
-        for start in range(0, len(keys), MOST_TICKS):
-            part = keys[start : start + MOST_TICKS]
-            ticks = [[_bits(one), one.yaw_deg, pitch_deg] for one in part]
+        for start in range(0, len(keys), MAX_TICKS):
+            part = keys[start : start + MAX_TICKS]
+            ticks = [[_key_mask(one), one.yaw_deg, pitch_deg] for one in part]
             limit_s = SLACK_S + 5 * len(part) / TICKS_PER_S
             answer = self._bridge.ask("hold", limit_s, ticks=ticks)
             found = answer.get("poses")
@@ -242,7 +242,7 @@ class ServerBody:
             self._put(feet)
             self.corrections = 0
             self.settle(yaw_deg)
-            if not self.corrections and _beside(self.body.position, feet) <= NEAR:
+            if not self.corrections and _horizontal_distance(self.body.position, feet) <= NEAR:
                 return self.body  # A busy server may still move one to its spawn after joining.
         x, _, z = self.body.position
         raise ServerError(
@@ -310,8 +310,8 @@ class ServerBody:
 
 
 def join(
-    address: str, *, name: str = NAME, version: str = "", folder: Path | None = None
-) -> ServerBody:
+    address: str, *, name: str = DEFAULT_NAME, version: str = "", folder: Path | None = None
+) -> ServerPlayer:
     """Join a server that lets players in without an account (``online-mode=false``).
 
     Args:
@@ -333,24 +333,26 @@ def join(
     if version and not _VERSION.fullmatch(version):
         raise UsageError(f"a version is like 1.20.1, not {version!r}")
     place = folder or body_folder()
-    bridge = Bridge([node(), str(script()), str(place)], place)
+    bridge = JsonLineProcess([node(), str(script()), str(place)], place)
     try:
         told = bridge.ask(
             "join", JOIN_S + SLACK_S, host=found["host"].strip("[]"), port=port, name=name,
             version=version, wait_ms=JOIN_S * 1e3,
         )  # fmt: skip
-        return ServerBody(bridge, address, told)
+        return ServerPlayer(bridge, address, told)
     except BaseException:
         bridge.close()
         raise
 
 
-def _beside(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
+def _horizontal_distance(
+    one: tuple[float, float, float], other: tuple[float, float, float]
+) -> float:
     """Return how far places are from each other along the ground, blocks."""
     return math.hypot(one[0] - other[0], one[2] - other[2])
 
 
-def _bits(keys: Keys) -> int:
+def _key_mask(keys: Keys) -> int:
     return sum(int(getattr(keys, key)) << bit for bit, key in enumerate(_KEYS))
 
 

@@ -11,7 +11,7 @@ from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.core.files import write_text
 from world2minecraft.core.jit import user_cache_dir
 
-LEAST_NODE = 18
+MIN_NODE = 18
 LIMIT_S = 900.0
 SCRIPT = "body.mjs"
 _STATED = ("package.json", "package-lock.json")
@@ -72,13 +72,13 @@ def node() -> str:
     """
     found = shutil.which("node")
     if found is None:
-        raise UsageError(f"Node is not installed; a body needs Node {LEAST_NODE} or newer")
+        raise UsageError(f"Node is not installed; a body needs Node {MIN_NODE} or newer")
     told = subprocess.run(
         [found, "--version"], check=False, capture_output=True, text=True, timeout=30
     ).stdout
     version = re.match(r"v(\d+)\.", told)
-    if version is None or int(version[1]) < LEAST_NODE:
-        raise UsageError(f"a body needs Node {LEAST_NODE} or newer, not {told.strip() or 'this'}")
+    if version is None or int(version[1]) < MIN_NODE:
+        raise UsageError(f"a body needs Node {MIN_NODE} or newer, not {told.strip() or 'this'}")
     return found
 
 

@@ -9,14 +9,14 @@ import numpy as np
 from world2minecraft.core.types import Camera
 from world2minecraft.navigation.moves import apply_move, forward_blocks, get_move_set
 from world2minecraft.navigation.oracle import plan_expert_path
-from world2minecraft.navigation.running.floor_map import PlanMap, plan_of
+from world2minecraft.navigation.running.floor_map import PlanMap, floor_plans
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Episode, Move, MoveSet, Stance
 
 # What episodes are walked on: a scene, its moves, its views and its ways, for one set of moves.
 
 
-class Ground(Protocol):
+class Simulator(Protocol):
     """What a walk needs of a scene. Feet are world blocks, lengths metres of the room."""
 
     move_set: MoveSet
@@ -62,10 +62,10 @@ class Ground(Protocol):
         ...
 
 
-class GroundGuide:
+class SimulatorGuide:
     """What the privileged know of an episode on a ground."""
 
-    def __init__(self, ground: Ground, episode: Episode):
+    def __init__(self, ground: Simulator, episode: Episode):
         self._ground, self._goals = ground.imagined, episode.goals
         self._facing = episode.facing
 
@@ -86,7 +86,7 @@ VIEW_PX = (640, 480)
 VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.
 
 
-class SceneGround:
+class SceneSimulator:
     """A scene, walked by one set of moves and seen through one camera."""
 
     def __init__(
@@ -131,14 +131,14 @@ class SceneGround:
         return self.scene.to_room_m(feet)
 
     @property
-    def imagined(self) -> Ground:
+    def imagined(self) -> Simulator:
         """Itself: no move here is for real."""
         return self
 
     @cached_property
     def plans(self) -> PlanMap:
         """The plans of the scene's storeys, cut to its rooms."""
-        return plan_of(self.scene)
+        return floor_plans(self.scene)
 
     def plan(self, stances: Sequence[Stance]) -> np.ndarray:
         """Return a plan of the storey with the way that was walked, without goals."""

@@ -10,19 +10,19 @@ from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageEr
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.navigation.exporters import easyr1, llamafactory
-from world2minecraft.navigation.exporters.options import HandoffRule, Written, parts_of
-from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.options import ExportedFile, ExportOptions, group_items
+from world2minecraft.navigation.exporters.pictures import SetPictures
 from world2minecraft.navigation.exporters.r2r import write_r2r
-from world2minecraft.navigation.exporters.recipes import rendered
+from world2minecraft.navigation.exporters.recipes import render_recipe
 from world2minecraft.navigation.exporters.trl import write_trl
 from world2minecraft.navigation.exporters.vlnce import write_vlnce
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 
 # How long rows are, and what writes them.
 TRAINERS = {
-    "llamafactory": (llamafactory.most_tokens, llamafactory.write_llamafactory),
-    "easyr1": (easyr1.most_tokens, easyr1.write_easyr1),
-    "trl": (llamafactory.most_tokens, write_trl),
+    "llamafactory": (llamafactory.max_row_tokens, llamafactory.write_llamafactory),
+    "easyr1": (easyr1.max_prompt_tokens, easyr1.write_easyr1),
+    "trl": (llamafactory.max_row_tokens, write_trl),
 }
 FORMATS = (*TRAINERS, "vlnce", "r2r")
 RECORD = "handoff.json"  # What was chosen, in the folder's root.
@@ -36,12 +36,12 @@ TITLES = {
 
 
 @dataclass(frozen=True)
-class Handoff:
+class ExportResult:
     """What an export wrote."""
 
     out: Path
     format: str
-    written: list[Written] = field(default_factory=list)
+    written: list[ExportedFile] = field(default_factory=list)
 
     @property
     def notes(self) -> list[str]:
@@ -53,10 +53,10 @@ def export_set(
     folder: str | Path,
     format: str,
     out: str | Path,
-    rule: HandoffRule | None = None,
+    rule: ExportOptions | None = None,
     *,
     progress: Progress = silent,
-) -> Handoff:
+) -> ExportResult:
     """Write a set in one of ``FORMATS``. The same set and choices give the same bytes.
 
     All is read and checked before the first file is written.
@@ -74,26 +74,28 @@ def export_set(
         UsageError: there is nothing to export, or it does not fit the recipe.
         InputError: the set cannot be read. OutputError: the folder cannot be written.
     """
-    source, root, chosen = Path(folder), Path(out), rule or HandoffRule()
+    source, root, chosen = Path(folder), Path(out), rule or ExportOptions()
     if format not in FORMATS:
         raise UnknownNameError("format", format, FORMATS)
     choices = {"format": format, **chosen.as_data()}
-    _check_free(root, choices)
+    _check_folder(root, choices)
     progress("export", 0, 2, "reading")
-    write = _planned(source, format, chosen)
+    write = _plan_export(source, format, chosen)
     progress("export", 1, 2, "writing")
     write_json(root / RECORD, {"choices": choices, "version": __version__})
     written = write(root)
     write_text(root / "README.md", _readme(format, written))
     progress("export", 2, 2)
-    return Handoff(root, format, written)
+    return ExportResult(root, format, written)
 
 
-def _planned(source: Path, format: str, rule: HandoffRule) -> Callable[[Path], list[Written]]:
+def _plan_export(
+    source: Path, format: str, rule: ExportOptions
+) -> Callable[[Path], list[ExportedFile]]:
     """Read and check a set, and return what writes it to a folder."""
     if format in TRAINERS:
         most_tokens, write = TRAINERS[format]
-        parts, pictures = parts_of(read_items(source), rule), Pictures(source)
+        parts, pictures = group_items(read_items(source), rule), SetPictures(source)
         tokens = [most_tokens(part, pictures, rule) for part in parts]
         return lambda root: write(root, parts, pictures, rule, tokens)
     if format == "vlnce":
@@ -108,7 +110,7 @@ def _planned(source: Path, format: str, rule: HandoffRule) -> Callable[[Path], l
     raise UsageError(f"{source} holds no {told}, which {format} tells of; w2m vln build makes them")
 
 
-def _check_free(root: Path, choices: dict[str, Any]) -> None:
+def _check_folder(root: Path, choices: dict[str, Any]) -> None:
     """Refuse a folder that holds something other than this very export."""
     record = root / RECORD
     if record.is_file():
@@ -126,13 +128,13 @@ def _check_free(root: Path, choices: dict[str, Any]) -> None:
         raise ConflictError(root, "is not empty and no export; name another folder")
 
 
-def _readme(format: str, written: list[Written]) -> str:
+def _readme(format: str, written: list[ExportedFile]) -> str:
     lines = ["| file | rows | steps | longest row, tokens | command |", "|---|---|---|---|---|"]
     for one in written:
         command = f"`{one.command}`" if one.command else ""
         steps, tokens = (f"{n:,}" if n else "" for n in (one.steps, one.tokens))
         lines.append(f"| {one.name} | {one.rows:,} | {steps} | {tokens} | {command} |")
-    return rendered(
+    return render_recipe(
         "readme.md",
         title=TITLES[format],
         table="\n".join(lines),
