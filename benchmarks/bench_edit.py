@@ -13,9 +13,9 @@ import numpy as np
 from benchmarks.render_scenes import room
 from benchmarks.rows import Row
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.editing.backups import steps_of, take_back
-from world2minecraft.editing.cleanup.passes import mended
-from world2minecraft.editing.world_build import build_into, take_blocks_out
+from world2minecraft.editing.backups import list_steps, revert_step
+from world2minecraft.editing.cleanup.passes import repair_volume
+from world2minecraft.editing.world_build import build_into_world, remove_build
 from world2minecraft.minecraft.worlds.world_writer import write_world
 
 SIZE = (256, 64, 256)
@@ -35,17 +35,19 @@ def run() -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "world"
         write_world(ground, world, name="Home", spawn=(0, 130, 0), spawn_yaw_deg=0)
-        build_into(world, _volume(np.ones((2, 2, 2)), ("minecraft:stone",), (0, 70, 0)))  # Warm.
+        build_into_world(
+            world, _volume(np.ones((2, 2, 2)), ("minecraft:stone",), (0, 70, 0))
+        )  # Warm.
         rows = [
-            _row("into a world, 1.76 M blocks", lambda: build_into(world, build)),
-            _row("the same again: nothing changes", lambda: build_into(world, build)),
-            _row("out again, block by block", lambda: take_blocks_out(world)),
+            _row("into a world, 1.76 M blocks", lambda: build_into_world(world, build)),
+            _row("the same again: nothing changes", lambda: build_into_world(world, build)),
+            _row("out again, block by block", lambda: remove_build(world)),
         ]
-        build_into(world, build)
-        rows.append(_row("undo, byte by byte", lambda: take_back(steps_of(world)[-1])))
+        build_into_world(world, build)
+        rows.append(_row("undo, byte by byte", lambda: revert_step(list_steps(world)[-1])))
     built = room(4.0)
-    mended(built)
-    rows.append(_row("clean-up, a room at 4 blocks a metre", lambda: mended(built)))
+    repair_volume(built)
+    rows.append(_row("clean-up, a room at 4 blocks a metre", lambda: repair_volume(built)))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     peak_mb = peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
     return [*rows[:-1], Row(rows[-1].what, rows[-1].value, "s", peak_mb=round(peak_mb, 1))]

@@ -37,7 +37,7 @@ from benchmarks.rows import Row
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.rendering import BlockScene, prepare_scene, preview, render_volume
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 
 SCENES: dict[str, Callable[[], BlockVolume]] = {
     "room, 4 blocks/m": lambda: room(4.0),
@@ -48,7 +48,7 @@ SCENES: dict[str, Callable[[], BlockVolume]] = {
 # Width, height, CPU milliseconds of the issue, poses a round.
 SIZES = ((224, 224, 5.0, 4), (640, 480, 15.0, 8), (1920, 1129, 120.0, 3))
 RGB_DEPTH_IDS = ("colour", "depth", "semantic", "instance")
-LIGHT, SUNNY = LookLight(), LookLight(sun_shadow=True)
+LIGHT, SUNNY = LightSettings(), LightSettings(sun_shadow=True)
 # What is measured: the outputs and the light. "depth, ids" is what the way of the rays takes.
 MODES = {
     "rgb, depth, ids": (RGB_DEPTH_IDS, LIGHT),
@@ -111,7 +111,7 @@ def measure(name: str, volume: BlockVolume) -> list[Measured]:
     return found
 
 
-def _ours(scene: BlockScene, camera: Camera, outputs, light: LookLight):
+def _ours(scene: BlockScene, camera: Camera, outputs, light: LightSettings):
     return lambda pose: render_volume(scene, camera, pose, outputs=outputs, light=light)
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from world2minecraft.core.files import write_json
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.minecraftocc.building import TITLES, BuildReport, build_dataset
-from world2minecraft.minecraftocc.building.scene_survey import SceneTask, survey
+from world2minecraft.minecraftocc.building.scene_survey import SceneTask, survey_scene
 from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.minecraftocc.tours import paper_camera
@@ -55,7 +55,9 @@ def looked_at(folder: Path, houses: int, images: int) -> None:
     plan, spent = plan_dataset(house_scenes(houses), images, recipe=Recipe()), []
     folder.mkdir()
     for scene in plan.scenes:
-        facts, seconds = survey(SceneTask(str(folder), scene, plan.recipe), lambda count: None)
+        facts, seconds = survey_scene(
+            SceneTask(str(folder), scene, plan.recipe), lambda count: None
+        )
         spent.append(1000 * seconds)
         print(f"{scene.scene_id}: {facts.views} views, {spent[-1]:.0f} ms, {facts.digest[:12]}")
     if houses > 1:

@@ -26,7 +26,7 @@ import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene.scene_objects import facts
+from world2minecraft.editing.scene.scene_objects import object_key
 from world2minecraft.sceneforge.demo import demo_room
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.editor import Editor
@@ -149,7 +149,7 @@ def held(editor: Editor) -> tuple:
     """Everything that a scene holds."""
     draft = editor.draft
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
-    objects = tuple(facts(draft.objects[number]) for number in sorted(draft.objects))
+    objects = tuple(object_key(draft.objects[number]) for number in sorted(draft.objects))
     return (*(array.tobytes() for array in arrays), objects)
 
 

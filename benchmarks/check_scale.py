@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.capture.scale import collect_unscaled, estimate_scale, resized
+from world2minecraft.capture.scale import collect_unscaled, estimate_scale, scale_points
 from world2minecraft.procgen import room_views
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials
 
@@ -30,7 +30,7 @@ def error_of(trial: Trial) -> tuple[float, float]:
     )
     surface = collect_unscaled([replace(view, colour=None, colour_camera=None) for view in views])
     factor = float(np.exp(np.random.default_rng(trial.seed).uniform(-2, 2)))
-    found = estimate_scale(resized(surface, factor))
+    found = estimate_scale(scale_points(surface, factor))
     return found.scale * factor - 1, found.sigma
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.light import LitParameters
+from world2minecraft.rendering.light import LightCoefficients
 from world2minecraft.rendering.scene_tables import (
     ABSOLUTE,
     BOXES,
@@ -62,7 +62,7 @@ class Mesh:
         return len(self.vertices) // 4
 
 
-def mesh_of(tables: SceneTables, lit: LitParameters) -> Mesh:
+def mesh_of(tables: SceneTables, lit: LightCoefficients) -> Mesh:
     """Return the culled mesh of a scene in a light."""
     parts = [part for part in _parts(tables, lit) if len(part)]
     vertices = np.concatenate(parts) if parts else np.empty((0, 4), VERTEX)
@@ -93,7 +93,7 @@ def _triangles(vertices: np.ndarray) -> np.ndarray:
     return (split + 4 * np.arange(len(vertices))[:, None]).astype(np.uint32).reshape(-1)
 
 
-def _parts(tables: SceneTables, lit: LitParameters) -> Iterator[np.ndarray]:
+def _parts(tables: SceneTables, lit: LightCoefficients) -> Iterator[np.ndarray]:
     """Give the quads, [N, 4] of ``VERTEX``, of each element's each side wherever it stands."""
     full = tables.space == FULL
     for side in range(6):
@@ -108,7 +108,7 @@ def _parts(tables: SceneTables, lit: LitParameters) -> Iterator[np.ndarray]:
 
 
 def _of_cells(
-    tables: SceneTables, lit: LitParameters, cells: np.ndarray, side: int, ahead
+    tables: SceneTables, lit: LightCoefficients, cells: np.ndarray, side: int, ahead
 ) -> Iterator[np.ndarray]:
     """Give the quads of one side of all elements of some cells."""
     looks = tables.looks[tuple(cells.T)]
@@ -136,7 +136,7 @@ def _ahead(values: np.ndarray, side: int, outside) -> np.ndarray:
 
 
 def _quads(
-    tables: SceneTables, lit: LitParameters, element: int, side: int, cells: np.ndarray
+    tables: SceneTables, lit: LightCoefficients, element: int, side: int, cells: np.ndarray
 ) -> np.ndarray:
     """Return one side of an element in each of ``cells``, [N, 4] of ``VERTEX``."""
     quads = np.zeros((len(cells), 4), VERTEX)
@@ -174,7 +174,7 @@ def _quads(
     return quads
 
 
-def _shade(normal: np.ndarray, lit: LitParameters) -> float:
+def _shade(normal: np.ndarray, lit: LightCoefficients) -> float:
     """Return how light a face is by its direction."""
     upright = lit.shade_up if normal[1] > 0 else lit.shade_down
     return float(normal**2 @ np.array([lit.shade_x, upright, lit.shade_z]))
@@ -182,7 +182,7 @@ def _shade(normal: np.ndarray, lit: LitParameters) -> float:
 
 def _corner_light(
     lattice: np.ndarray,
-    lit: LitParameters,
+    lit: LightCoefficients,
     normal: np.ndarray,
     cells: np.ndarray,
     corners: np.ndarray,
@@ -207,7 +207,7 @@ def _corner_light(
     return sums
 
 
-def _colours(word: np.ndarray, lit: LitParameters, even: bool) -> np.ndarray:
+def _colours(word: np.ndarray, lit: LightCoefficients, even: bool) -> np.ndarray:
     """Return float32 [N, 3]: the light of entries of the lattice."""
     every = np.arange(1 << 14)
     sky, block = (every & 63) / 60, (every >> 6 & 63) / 60

@@ -25,7 +25,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs_of_cells
 from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
-from world2minecraft.editing.scene.scene_objects import component_of
+from world2minecraft.editing.scene.scene_objects import connected_component
 
 TARGET = Path(__file__).parents[1] / "tests" / "forge" / "vectors"
 SHAPES = ((1, 1, 1), (4, 3, 2), (2, 5, 3), (1, 7, 1))
@@ -115,7 +115,7 @@ def flood_cases():
 
 def flood_case(labels: np.ndarray, seed: tuple[int, ...]) -> dict[str, Any]:
     """Return one flood."""
-    cells = component_of(labels, seed)  # type: ignore[arg-type]
+    cells = connected_component(labels, seed)  # type: ignore[arg-type]
     runs = runs_of_cells(cells, labels.shape).tolist()  # type: ignore[arg-type]
     flat = int(np.ravel_multi_index(seed, labels.shape))
     return {"shape": labels.shape, "labels": labels.ravel().tolist(), "seed": flat, "runs": runs}

@@ -16,7 +16,11 @@ from world2minecraft.capture.quality.picture_quality import (
     sharpness,
     textureless_share,
 )
-from world2minecraft.capture.quality.view_directions import SECTORS, directions_of, up_of_cameras
+from world2minecraft.capture.quality.view_directions import (
+    SECTORS,
+    count_view_directions,
+    estimate_up,
+)
 from world2minecraft.capture.summary import as_data, describe, summary_lines
 from world2minecraft.capture.validation import judge
 from world2minecraft.core.coordinates import look_at
@@ -326,7 +330,7 @@ def test_one_matrix_is_told_and_no_room_stops(tmp_path, box_room):
 
 
 def test_directions_of_one_look():
-    seen = directions_of([CAMERA], look_at(np.zeros(3), np.array([0, 1.0, 0]))[None])
+    seen = count_view_directions([CAMERA], look_at(np.zeros(3), np.array([0, 1.0, 0]))[None])
     assert seen.seen[8:10, [0, -1]].all()
     assert "south" in seen.gaps()
     assert "north" not in seen.gaps()
@@ -339,8 +343,8 @@ def test_up_of_cameras_is_found_in_any_frame(box_room):
     turn *= np.sign(np.linalg.det(turn))
     poses = np.array(box_room.poses(24))
     poses[:, :3, :] = turn @ poses[:, :3, :]
-    assert up_of_cameras(poses) @ turn[:, 2] > 0.999
-    assert up_of_cameras(poses[:1]) @ turn[:, 2] > 0.5
+    assert estimate_up(poses) @ turn[:, 2] > 0.999
+    assert estimate_up(poses[:1]) @ turn[:, 2] > 0.5
 
 
 def test_the_json_is_plain(whole):

@@ -13,9 +13,9 @@ from world2minecraft.capture.scale import (
     estimate_scale,
     length_between,
     parse_known,
-    resized,
+    scale_points,
 )
-from world2minecraft.capture.scale.estimate import Posterior, summed
+from world2minecraft.capture.scale.estimate import Posterior, main_mode
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View
@@ -79,10 +79,12 @@ def test_the_real_kitchen_within_15_percent(shared_data):
 
 
 def test_twice_the_unit_is_half_the_scale(box_surface):
-    once, twice = estimate_scale(box_surface), estimate_scale(resized(box_surface, 2.0))
+    once, twice = estimate_scale(box_surface), estimate_scale(scale_points(box_surface, 2.0))
     assert twice.scale * 2 == pytest.approx(once.scale, rel=1e-6)
     assert twice.sigma == pytest.approx(once.sigma, rel=1e-4)
-    assert resized(resized(box_surface, 3.0), 1 / 3).points_m == pytest.approx(box_surface.points_m)
+    assert scale_points(scale_points(box_surface, 3.0), 1 / 3).points_m == pytest.approx(
+        box_surface.points_m
+    )
 
 
 def test_a_tilted_frame_changes_little(box_surface):
@@ -108,7 +110,7 @@ def test_a_tilted_frame_changes_little(box_surface):
     ],
 )
 def test_a_known_length_gives_the_scale(box_surface, name, length_m, within):
-    surface = resized(box_surface, 0.37)
+    surface = scale_points(box_surface, 0.37)
     found = estimate_scale(surface, [parse_known(name, length_m)])
     assert found.scale * 0.37 == pytest.approx(1, rel=within)
     assert found.sigma <= 0.03
@@ -153,7 +155,7 @@ def lifted(view, x, y):
 def test_points_far_apart_in_one_image_give_the_scale(box_room, box_surface):
     views = box_room.views(2)
     true = length_between(views, ("000000", (20, 60)), ("000000", (140, 60)))
-    small = resized(box_surface, 0.25)
+    small = scale_points(box_surface, 0.25)
     points = KnownPoints("000000", (20, 60), "000000", (140, 60), true)
     found = estimate_scale(small, [points.known(shrunk(views, 0.25))])
     assert found.scale == pytest.approx(4, rel=1e-6)
@@ -219,7 +221,7 @@ def test_two_modes_are_told_and_the_heavier_is_taken():
     """Two normal densities, three to two: the first's middle, and a sigma that spans both."""
     at = np.linspace(-1, 1, 801)
     one, other = np.exp(-0.5 * ((at - 0.3) / 0.05) ** 2), np.exp(-0.5 * ((at + 0.2) / 0.05) ** 2)
-    found = summed(Posterior(at, np.log(0.6 * one + 0.4 * other + 1e-30)))
+    found = main_mode(Posterior(at, np.log(0.6 * one + 0.4 * other + 1e-30)))
     assert np.log(found.scale) == pytest.approx(0.3, abs=0.01)
     assert found.rival is not None
     assert np.log(found.rival[0]) == pytest.approx(-0.2, abs=0.01)
@@ -229,7 +231,7 @@ def test_two_modes_are_told_and_the_heavier_is_taken():
 
 def test_one_mode_is_its_mean_and_deviation():
     at = np.linspace(-1, 1, 801)
-    found = summed(Posterior(at, -0.5 * ((at - 0.1) / 0.08) ** 2))
+    found = main_mode(Posterior(at, -0.5 * ((at - 0.1) / 0.08) ** 2))
     assert found.rival is None
     assert np.log(found.scale) == pytest.approx(0.1, abs=1e-3)
     assert found.sigma == pytest.approx(0.08, rel=1e-3)

@@ -11,8 +11,8 @@ from world2minecraft.capture.images import check_whole, read_colour, read_header
 from world2minecraft.capture.options import ScanOptions, parse_options
 from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.poster_marker import SOFTWARE_TAG
-from world2minecraft.capture.readers.photo_exif import UprightPhoto, photo_facts
-from world2minecraft.capture.readers.photos import natural_key, thinned
+from world2minecraft.capture.readers.photo_exif import UprightPhoto, read_photo_metadata
+from world2minecraft.capture.readers.photos import evenly_thinned, natural_key
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.errors import CaptureError, InputError, UsageError
@@ -69,7 +69,7 @@ def test_all_eight_orientations_read_to_the_same_picture(tmp_path, flag):
     photo = UprightPhoto(path)
     assert np.array_equal(photo.colour(), upright)
     assert photo.header().size == (400, 300)
-    assert (photo_facts(path).width_px, photo_facts(path).height_px) == (400, 300)
+    assert (read_photo_metadata(path).width_px, read_photo_metadata(path).height_px) == (400, 300)
     # A plain path stays as it is stored: the intrinsics of posed captures speak of that.
     assert read_header(path).size == stored.size
     assert np.array_equal(read_colour(path), np.array(stored))
@@ -156,7 +156,7 @@ def test_a_folder_is_thinned_evenly(tmp_path):
     _photos(tmp_path, 9)
     capture = find_capture(tmp_path, parse_options({"frames": "3"}))
     assert [frame.name for frame in capture.frames] == ["IMG_1", "IMG_5", "IMG_9"]
-    assert thinned([1, 2], 5) == [1, 2]
+    assert evenly_thinned([1, 2], 5) == [1, 2]
     for value in ("2", "-1", "x", "1e5"):
         with pytest.raises(UsageError, match="frames must be"):
             parse_options({"frames": value})

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.photo_stream import photos_of_capture
-from world2minecraft.capture.readers.video import look_through, picked
+from world2minecraft.capture.readers.video import analyse_video, select_frames
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.errors import CaptureError, InputError
@@ -79,19 +79,19 @@ def test_pictures_are_a_steady_way_apart_and_named_by_their_number(tmp_path):
 
 def test_blurred_pictures_are_avoided(tmp_path):
     blurred = {n for n in range(80) if n % 3 != 1}
-    look = look_through(_film(tmp_path / "walk.mp4", _walk(), blurred))
-    chosen = picked(look, 100)
+    look = analyse_video(_film(tmp_path / "walk.mp4", _walk(), blurred))
+    chosen = select_frames(look, 100)
     assert sum(n in blurred for n in chosen) <= 0.2 * len(chosen)
 
 
 def test_still_passages_are_thinned_and_shaking_does_not_add_up(tmp_path):
     shake = np.random.default_rng(1).integers(-2, 3, 60) + 302
     places = np.concatenate([np.linspace(0, 300, 40), shake, np.linspace(302, 600, 40)])
-    look = look_through(_film(tmp_path / "walk.mp4", places))
+    look = analyse_video(_film(tmp_path / "walk.mp4", places))
     assert look.path[-1] == pytest.approx(600 / WIDTH, rel=0.15)
-    chosen = np.array(picked(look, 100))
+    chosen = np.array(select_frames(look, 100))
     assert ((chosen > 41) & (chosen < 99)).sum() <= 2
-    assert len(picked(look, 10)) <= 10
+    assert len(select_frames(look, 10)) <= 10
 
 
 def test_pictures_are_those_of_the_video_and_the_same_again(tmp_path):

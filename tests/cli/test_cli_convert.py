@@ -11,8 +11,8 @@ from world2minecraft.core.types import AIR, BlockVolume, Entity, Placement
 from world2minecraft.formats import volume_formats as forms
 from world2minecraft.formats.gltf import GlbWriter, read_glb
 from world2minecraft.formats.objects import write_placements
-from world2minecraft.formats.scene import scene_of, write_scene
-from world2minecraft.formats.volume_formats import read_form, write_form
+from world2minecraft.formats.scene import scene_from_volume, write_scene
+from world2minecraft.formats.volume_formats import read_volume, write_volume
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.worlds import session_lock
 
@@ -131,7 +131,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
         raise OSError(28, "No space left on device", str(target))
 
     if step == "write":
-        monkeypatch.setattr(forms, "write_form", full)
+        monkeypatch.setattr(forms, "write_volume", full)
     else:
         monkeypatch.setattr(os, "replace", full)
     assert convert(schem, target, "--force") == 3
@@ -189,9 +189,9 @@ EVERY_PAIR = ("house", "a.schem", "a.litematic", "a.nbt", "a.zip", "a.mcfunction
 @pytest.mark.parametrize("target", EVERY_PAIR)
 @pytest.mark.parametrize("source", [*EVERY_PAIR, "a.mcstructure"])
 def test_any_form_becomes_any_other(volume, tmp_path, capsys, source, target):
-    write_form(volume, tmp_path / "from" / source)
+    write_volume(volume, tmp_path / "from" / source)
     assert convert(tmp_path / "from" / source, tmp_path / "to" / target) == 0
-    assert names(read_form(tmp_path / "to" / target)) == names(volume)
+    assert names(read_volume(tmp_path / "to" / target)) == names(volume)
     assert "not " not in capsys.readouterr().out
 
 
@@ -200,7 +200,7 @@ def test_what_is_lost_is_told(volume, tmp_path, capsys):
     cat = Entity((1.0, 65.0, 1.0), "minecraft:cat")
     labels = np.where(volume.states > 0, 5, 0).astype(np.uint8)
     held = replace(volume, palette=(*volume.palette[:2], sofa), entities=(cat,), semantic=labels)
-    write_form(held, tmp_path / "a.glb")
+    write_volume(held, tmp_path / "a.glb")
     assert convert(tmp_path / "a.glb", tmp_path / "b.mcstructure") == 0
     assert capsys.readouterr().out.splitlines()[1:] == [
         "not written to b.mcstructure: 1 blocks of tmeo:shafa_1x_2, which Bedrock has not",
@@ -218,8 +218,8 @@ def run_folder(volume, tmp_path):
     scaled = np.diag([0.25, 0.25, 0.25, 1.0])
     held = replace(volume, semantic=semantic, instance=instance, block_to_room=scaled)
     run = tmp_path / "run"
-    write_form(held, run / "build" / "world")
-    scene = scene_of(
+    write_volume(held, run / "build" / "world")
+    scene = scene_from_volume(
         held, mc_version="1.20.1", data_version=3465, spawn=(0, 64, 0), spawn_yaw_deg=0
     )
     write_scene(run / "build", scene)
@@ -261,7 +261,7 @@ def test_a_run_becomes_a_scene_for_habitat(run_folder, tmp_path, capsys):
 
 def test_a_scale_may_be_said_where_there_is_none(schem, run_folder, tmp_path, capsys):
     assert convert(schem, tmp_path / "a.glb", "--blocks-per-metre", "4") == 0
-    assert read_form(tmp_path / "a.glb").blocks_per_metre == 4
+    assert read_volume(tmp_path / "a.glb").blocks_per_metre == 4
     assert convert(schem, tmp_path / "b.glb", "--blocks-per-metre", "0") == 2
     assert convert(run_folder, tmp_path / "b.glb", "--blocks-per-metre", "2") == 2
     assert "--blocks-per-metre is 4 for this room; leave it out" in capsys.readouterr().err
@@ -280,7 +280,7 @@ def test_a_large_structure_brings_its_pieces(volume, tmp_path):
     states = np.ones((60, 2, 50), np.uint16)
     none = np.zeros(states.shape, np.uint8)
     long = replace(volume, states=states, semantic=none, instance=states * 0)
-    write_form(long, tmp_path / "a.schem")
+    write_volume(long, tmp_path / "a.schem")
     assert convert(tmp_path / "a.schem", tmp_path / "hall.nbt") == 0
     beside = [path.name for path in tmp_path.iterdir() if path.name.startswith("hall")]
     assert len(beside) == 2

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.minecraftocc.cell_predictions import SaidCells, cells_in_grid
+from world2minecraft.minecraftocc.cell_predictions import PredictedCells, resample_to_grid
 from world2minecraft.minecraftocc.formats.cameras import depth_png
 from world2minecraft.minecraftocc.frame_completion import GridPlace
 
@@ -61,7 +61,7 @@ def biased(path, facts):
 def test_a_grid_takes_the_cell_that_each_of_its_centres_lies_in():
     rng = np.random.default_rng(0)
     shape, origin_m = (40, 30, 25), np.array([-1.2, 0.4, -0.16])
-    room = SaidCells(
+    room = PredictedCells(
         rng.integers(0, 12, shape).astype(np.uint8),
         rng.random(shape, np.float32),
         rng.random(shape) < 0.5,
@@ -71,7 +71,7 @@ def test_a_grid_takes_the_cell_that_each_of_its_centres_lies_in():
     scan_to_room = rotation_about_z(30.0)
     scan_to_room[:3, 3] = [0.3, -0.2, 0.1]
     place = GridPlace(np.array([-1.0, -1.0, -0.2]), np.eye(4))
-    found = cells_in_grid(room, scan_to_room, place)
+    found = resample_to_grid(room, scan_to_room, place)
     assert found.labels.shape == (60, 60, 36) and (found.labels == 255).any()
     for cell in rng.integers(0, (60, 60, 36), (300, 3)):
         at_m = apply(scan_to_room, place.origin_m + (cell + 0.5) * 0.08)
@@ -83,9 +83,11 @@ def test_a_grid_takes_the_cell_that_each_of_its_centres_lies_in():
 
 
 def test_a_grid_of_another_world_is_refused():
-    room = SaidCells(*(np.zeros((4, 4, 4), kind) for kind in ("u1", "f4", "?")), 0.08, np.zeros(3))
+    room = PredictedCells(
+        *(np.zeros((4, 4, 4), kind) for kind in ("u1", "f4", "?")), 0.08, np.zeros(3)
+    )
     with pytest.raises(InputError, match="is it of another world"):
-        cells_in_grid(room, np.eye(4), GridPlace(np.array([50.0, 0, 0]), np.eye(4)))
+        resample_to_grid(room, np.eye(4), GridPlace(np.array([50.0, 0, 0]), np.eye(4)))
 
 
 @pytest.mark.parametrize("facts", [FACTS, sized((60, 60, 36), 0.08)])

@@ -10,7 +10,7 @@ from PIL import Image
 from world2minecraft import cli
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 
@@ -41,7 +41,7 @@ def build(tmp_path):
     volume, spawn = room(), (2.5, 64.0, 2.5)
     folder = tmp_path / "build"
     write_blocks(volume, folder / "world", WriteOptions(spawn=spawn, spawn_yaw_deg=90.0))
-    scene = scene_of(
+    scene = scene_from_volume(
         volume, mc_version="1.20.1", data_version=3465, spawn=spawn, spawn_yaw_deg=90.0
     )
     write_scene(folder, scene)

@@ -17,10 +17,10 @@ from world2minecraft.editing.backups import (
     changed_since,
     commit,
     recover,
-    steps_of,
-    take_back,
+    list_steps,
+    revert_step,
 )
-from world2minecraft.editing.world_build import build_into
+from world2minecraft.editing.world_build import build_into_world
 
 FILES = {
     "region/r.0.0.mca": b"new ground",
@@ -61,8 +61,8 @@ def test_files_are_exchanged_and_brought_back_with_mode_and_time(world):
     assert not (world / "region/c.5.5.mcc").exists()
     stat = (world / "region/r.0.0.mca").stat()
     assert stat.st_mode & 0o777 == 0o600
-    assert steps_of(world) == [step]
-    take_back(step)
+    assert list_steps(world) == [step]
+    revert_step(step)
     assert tree(world) == before
     stat = (world / "region/r.0.0.mca").stat()
     assert (stat.st_mode & 0o777, stat.st_mtime_ns) == (0o600, 10**18)
@@ -103,7 +103,7 @@ def every_moment(monkeypatch, act):
 def test_a_kill_at_any_moment_of_a_step_is_brought_back(tmp_path, world, monkeypatch):
     before = tree(world)
     moments = every_moment(monkeypatch, lambda: commit(world, FILES, "a test"))
-    take_back(steps_of(world)[-1])
+    revert_step(list_steps(world)[-1])
     assert len(moments) > 8
     for moment in moments:
         with monkeypatch.context() as patch, contextlib.suppress(Killed):
@@ -118,16 +118,16 @@ def test_a_kill_at_any_moment_of_an_undo_is_gone_on_with(world, monkeypatch):
 
     def undo():
         commit(world, FILES, "a test")
-        take_back(steps_of(world)[-1])
+        revert_step(list_steps(world)[-1])
 
     for moment in every_moment(monkeypatch, undo):
         commit(world, FILES, "a test")
         with monkeypatch.context() as patch, contextlib.suppress(Killed):
             calls(patch, moment, Killed)
-            take_back(steps_of(world)[-1])
+            revert_step(list_steps(world)[-1])
         recover(world)
-        if steps_of(world):  # Killed before the undo was begun.
-            take_back(steps_of(world)[-1])
+        if list_steps(world):  # Killed before the undo was begun.
+            revert_step(list_steps(world)[-1])
         assert tree(world) == before
 
 
@@ -142,23 +142,23 @@ def test_a_kill_while_bringing_back_is_brought_back(world, monkeypatch):
                 calls(patch, second, Killed)
                 recover(world)
             recover(world)
-            for step in steps_of(world):
-                take_back(step)
+            for step in list_steps(world):
+                revert_step(step)
             assert tree(world) == before
 
 
 def test_a_full_disk_leaves_the_world_as_it_was(world, monkeypatch):
     before = tree(world)
     for moment in every_moment(monkeypatch, lambda: commit(world, FILES, "a test"))[:-1]:
-        for step in steps_of(world):
-            take_back(step)
+        for step in list_steps(world):
+            revert_step(step)
         with monkeypatch.context() as patch:
             calls(patch, moment, OSError(28, "No space left on device"))
             with contextlib.suppress(OutputError):
                 commit(world, FILES, "a test")
         recover(world)
-        for step in steps_of(world):
-            take_back(step)
+        for step in list_steps(world):
+            revert_step(step)
         assert tree(world) == before
 
 
@@ -182,7 +182,7 @@ def test_what_was_changed_after_a_cut_off_step_is_not_overwritten(world, monkeyp
     with monkeypatch.context() as patch, contextlib.suppress(Killed):
         calls(patch, 9, Killed)
         commit(world, FILES, "a test")
-    assert steps_of(world)[-1].state == "prepared"
+    assert list_steps(world)[-1].state == "prepared"
     (world / "region/r.0.0.mca").write_bytes(b"the game saved")
     with pytest.raises(ConflictError, match="was changed after a step on it was cut off"):
         recover(world)
@@ -198,7 +198,7 @@ def test_a_damaged_backup_changes_nothing(world):
     with pytest.raises(
         DamagedFileError, match="is not the backup of region/c.5.5.mcc that it says"
     ):
-        take_back(step)
+        revert_step(step)
     assert {k: v for k, v in tree(world).items() if "old/1" not in k} == {
         k: v for k, v in after.items() if "old/1" not in k
     }
@@ -223,7 +223,7 @@ def test_a_manifest_from_elsewhere_names_no_other_file(world, name):
     raw["files"][0]["path"] = name
     backups.write_json(path, raw)
     with pytest.raises(DamagedFileError, match="which no step touches"):
-        steps_of(world)
+        list_steps(world)
 
 
 def test_a_link_out_of_the_world_is_not_followed(world, tmp_path):
@@ -239,7 +239,7 @@ def test_a_broken_manifest_is_one_line(world, content):
     commit(world, FILES, "a test")
     (world / "w2m_undo/0001/manifest.json").write_text(content)
     with pytest.raises(DamagedFileError):
-        steps_of(world)
+        list_steps(world)
 
 
 BUILD = """
@@ -267,7 +267,7 @@ def test_a_program_that_is_really_killed_leaves_a_world_that_comes_back(tmp_path
             time.sleep(0.05 + chance.random() * 0.3)
             process.send_signal(signal.SIGKILL)
         recover(world)
-        for step in reversed(steps_of(world)):
-            take_back(step)
+        for step in reversed(list_steps(world)):
+            revert_step(step)
         assert tree(world) == before
-    assert build_into(world, room()).blocks > 0
+    assert build_into_world(world, room()).blocks > 0

@@ -12,8 +12,8 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.editing.cleanup.floating import floating_cells
-from world2minecraft.editing.cleanup.passes import RULES, mended
-from world2minecraft.editing.volume_draft import Draft, applied
+from world2minecraft.editing.cleanup.passes import RULES, repair_volume
+from world2minecraft.editing.volume_draft import Draft, apply_edits
 from world2minecraft.minecraft.rules.stability import unstable
 
 FLOOR, WALL, PANE = "minecraft:oak_planks", "minecraft:white_concrete", "minecraft:glass"
@@ -72,9 +72,9 @@ class Room:
 
 def mend(room, *rules, **held):
     volume = room.volume(**held)
-    result, edits = mended(volume, rules or tuple(RULES))
-    assert seen(applied(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
-    assert mended(result, rules or tuple(RULES))[1] == ()
+    result, edits = repair_volume(volume, rules or tuple(RULES))
+    assert seen(apply_edits(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
+    assert repair_volume(result, rules or tuple(RULES))[1] == ()
     return result, edits
 
 
@@ -84,7 +84,7 @@ def kinds(edits):
 
 def test_a_room_without_faults_is_left_as_it_is():
     volume = Room().volume()
-    assert mended(volume) == (volume, ())
+    assert repair_volume(volume) == (volume, ())
 
 
 @pytest.mark.parametrize(
@@ -216,7 +216,7 @@ def test_what_would_pop_off_goes_and_connections_are_set():
     semantic = volume.semantic.copy()
     semantic[9, 3, 9], semantic[0, 3, 9] = OBJS, WINDOW_CLASS
     broken = replace(volume, states=states, semantic=semantic, palette=(*PALETTE, torch, pane))
-    result, edits = mended(broken, ("steady",))
+    result, edits = repair_volume(broken, ("steady",))
     assert sorted(kinds(edits)) == ["connect", "drop"]
     assert unstable(result) == []
     assert not result.states[9, 3, 9]
@@ -225,12 +225,12 @@ def test_what_would_pop_off_goes_and_connections_are_set():
 
 def test_an_exact_copy_of_cells_is_left_as_it_is():
     volume = Room(scale=12.5).clear(0, 5, 5).volume()
-    assert mended(volume) == (volume, ())
+    assert repair_volume(volume) == (volume, ())
 
 
 def test_an_unknown_rule_is_named():
     with pytest.raises(UnknownNameError, match="no clean-up rule is named 'holse'; did you mean"):
-        mended(Room().volume(), ("holse",))
+        repair_volume(Room().volume(), ("holse",))
 
 
 def test_blocks_without_labels_keep_what_stands_and_lose_what_floats():
@@ -262,7 +262,7 @@ def test_whatever_is_planted_nothing_floats_in_the_end(seed):
     for _ in range(int(rng.integers(0, 3))):
         room.clear(*rng.integers((0, 1, 1), (1, 12, 17)))
     volume = room.volume()
-    result, edits = mended(volume)
-    assert seen(applied(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
+    result, edits = repair_volume(volume)
+    assert seen(apply_edits(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
     assert not floating_cells(Draft(result)).any()
     assert unstable(result) == []

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import ConflictError, DamagedFileError, LimitError
 from world2minecraft.core.types import AIR
 from world2minecraft.editing.journal import pack_edit, unpack_edit
-from world2minecraft.editing.volume_draft import Draft, applied
+from world2minecraft.editing.volume_draft import Draft, apply_edits
 
 seeds = st.integers(0, 10_000)
 
 
 def slowly(start: dict, edits) -> dict:
-    """The readable twin of ``applied``: cell by cell, over plain values."""
+    """The readable twin of ``apply_edits``: cell by cell, over plain values."""
     cells, data = dict(start["cells"]), dict(start["data"])
     entities = list(start["entities"])
     for edit in edits:
@@ -37,7 +37,7 @@ def slowly(start: dict, edits) -> dict:
 def test_edits_do_what_the_readable_twin_does(seed, count):
     volume = small_volume(seed)
     edits = random_edits(volume, count, seed)
-    assert seen(applied(volume, *edits)) == slowly(seen(volume), edits)
+    assert seen(apply_edits(volume, *edits)) == slowly(seen(volume), edits)
 
 
 @given(seeds, st.integers(1, 8))
@@ -45,7 +45,7 @@ def test_edits_undone_in_reverse_are_nothing(seed, count):
     volume = small_volume(seed)
     edits = random_edits(volume, count, seed)
     back = [edit.inverse() for edit in reversed(edits)]
-    again = applied(volume, *edits, *back)
+    again = apply_edits(volume, *edits, *back)
     assert seen(again) == seen(volume)
     assert again.palette == (AIR, *sorted({s for s in again.palette if s != AIR}))
 
@@ -55,7 +55,9 @@ def test_an_edit_survives_its_bytes(seed):
     edit = random_edits(small_volume(seed), 1, seed)[0]
     again = unpack_edit(pack_edit(edit), "j")
     assert pack_edit(again) == pack_edit(edit)
-    assert seen(applied(small_volume(seed), again)) == seen(applied(small_volume(seed), edit))
+    assert seen(apply_edits(small_volume(seed), again)) == seen(
+        apply_edits(small_volume(seed), edit)
+    )
 
 
 def test_data_go_with_their_block_and_come_back():
@@ -63,13 +65,13 @@ def test_data_go_with_their_block_and_come_back():
     draft = Draft(volume)
     edit = draft.fill("clear", np.array([[0, 0, 0]], np.int32), AIR)
     assert [e.block_pos for e in draft.volume().block_entities] == [(-1, 62, 7)]
-    assert seen(applied(draft.volume(), edit.inverse())) == seen(volume)
+    assert seen(apply_edits(draft.volume(), edit.inverse())) == seen(volume)
 
 
 def test_an_edit_of_changed_blocks_is_refused_and_changes_nothing():
     volume = small_volume()
     first = random_edits(volume, 1, 3)[0]
-    changed = applied(volume, first)
+    changed = apply_edits(volume, first)
     draft = Draft(changed)
     x, y, z = first.cells[0].tolist()
     with pytest.raises(ConflictError, match=rf"^edit paint: block \({x}, {y}, {z}\) holds "):
@@ -81,7 +83,7 @@ def test_an_edit_of_changed_blocks_is_refused_and_changes_nothing():
 def test_an_edit_beyond_the_volume_is_refused():
     edit = random_edits(small_volume(shape=(9, 9, 9)), 20, 1)
     with pytest.raises(ConflictError, match="lies outside the volume$"):
-        applied(small_volume(), *edit)
+        apply_edits(small_volume(), *edit)
 
 
 def test_changed_text_of_a_sign_is_a_conflict():
@@ -90,7 +92,7 @@ def test_changed_text_of_a_sign_is_a_conflict():
     other = small_volume()
     other.block_entities[1].nbt["Text1"] = "mine"
     with pytest.raises(ConflictError, match="a sign, a chest or an entity changed since"):
-        applied(other, edit)
+        apply_edits(other, edit)
 
 
 @pytest.mark.parametrize("cut", [1, 10, 60])

@@ -8,9 +8,9 @@ from edit_volumes import seen
 from test_cleanup import FURN, OBJS, RED, TABLE, Room, kinds
 
 from world2minecraft.editing.cleanup.floating import floating_cells
-from world2minecraft.editing.cleanup.gaps import whole_of
-from world2minecraft.editing.cleanup.passes import mended
-from world2minecraft.editing.volume_draft import Draft, applied
+from world2minecraft.editing.cleanup.gaps import full_block_of
+from world2minecraft.editing.cleanup.passes import repair_volume
+from world2minecraft.editing.volume_draft import Draft, apply_edits
 
 FENCE = "minecraft:oak_fence[east=false,north=false,south=false,waterlogged=false,west=false]"
 
@@ -43,8 +43,8 @@ def plate_table():
 
 def mend(blocks):
     volume = with_blocks(blocks)
-    result, edits = mended(volume, ("floating",))
-    assert seen(applied(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
+    result, edits = repair_volume(volume, ("floating",))
+    assert seen(apply_edits(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
     assert not floating_cells(Draft(result)).any()
     return np.array(result.palette, object)[result.states], result, kinds(edits)
 
@@ -94,4 +94,4 @@ def test_a_higher_thing_gets_a_whole_foot():
     ],
 )
 def test_the_whole_of_a_half(state, expected):
-    assert whole_of(state) == expected
+    assert full_block_of(state) == expected

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from worlds import room, tree, write_ground
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.editing.backups import steps_of, take_back
-from world2minecraft.editing.world_build import build_into
+from world2minecraft.editing.backups import list_steps, revert_step
+from world2minecraft.editing.world_build import build_into_world
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region
 from world2minecraft.minecraft.worlds.in_place_editing import read_region_file
@@ -28,13 +28,13 @@ def built_or_refused(world):
     """Build; where that works, undo it. Either way the world must be as it was."""
     before = tree(world)
     try:
-        done = build_into(world, room())
+        done = build_into_world(world, room())
     except World2MinecraftError as error:
         assert "\n" not in str(error)
         assert tree(world) == before
         return False
     if done.step is not None:
-        take_back(steps_of(world)[-1])
+        revert_step(list_steps(world)[-1])
     assert tree(world) == before
     return True
 

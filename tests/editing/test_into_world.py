@@ -24,9 +24,9 @@ from worlds import (
 
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.editing.backups import steps_of, take_back
-from world2minecraft.editing.relocation import moved, placed, trimmed
-from world2minecraft.editing.world_build import build_into, built_mask, take_blocks_out
+from world2minecraft.editing.backups import list_steps, revert_step
+from world2minecraft.editing.relocation import place_volume, translate_volume, trim_air
+from world2minecraft.editing.world_build import affected_mask, build_into_world, remove_build
 from world2minecraft.minecraft import bit_packing as section_words
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
@@ -72,7 +72,7 @@ def slowly(before, volume, air="room"):
 def test_the_world_holds_what_was_built_and_all_else(world, air, corner):
     before = world_blocks(world)
     volume = room(corner)
-    done = build_into(world, volume, air=air, new_chunks=True)
+    done = build_into_world(world, volume, air=air, new_chunks=True)
     after = world_blocks(world)
     assert after == slowly(before, volume, air)
     places = before.keys() | after.keys()
@@ -81,7 +81,7 @@ def test_the_world_holds_what_was_built_and_all_else(world, air, corner):
 
 def test_an_independent_reader_finds_the_blocks(world):
     volume = room()
-    build_into(world, volume)
+    build_into_world(world, volume)
     for (x, y, z), state in list(blocks_by_place(volume).items())[::7]:
         region = anvil.Region.from_file(str(world / f"region/r.{x >> 9}.{z >> 9}.mca"))
         block = anvil.Chunk.from_region(region, x >> 4, z >> 4).get_block(x & 15, y, z & 15)
@@ -89,7 +89,7 @@ def test_an_independent_reader_finds_the_blocks(world):
 
 
 def test_untouched_chunks_keep_their_bytes_and_touched_ones_their_tags(home, world):
-    build_into(world, room())
+    build_into_world(world, room())
     touched = {(x, z) for x in (-1, 0) for z in (-2, -1)}
     for path in sorted((world / "region").glob("*.mca")):
         old, new = read_region_file(home / "region" / path.name), read_region_file(path)
@@ -113,7 +113,7 @@ def test_untouched_chunks_keep_their_bytes_and_touched_ones_their_tags(home, wor
 
 def test_data_and_entities_are_merged(world):
     volume = room((-14, 58, -16))  # Over the chest at (-12, 60, -12).
-    build_into(world, volume)
+    build_into_world(world, volume)
     found = read_world(world)
     ids = {e.block_pos: e.id for e in found.block_entities}
     assert ids == {(20, 66, 20): "minecraft:chest", (-9, 59, -11): "minecraft:sign"}
@@ -141,7 +141,7 @@ def test_a_sign_is_written_as_the_game_of_its_chunk_has_it(world, data_version, 
     volume = room()
     (sign,) = volume.block_entities
     text = sign_entity(sign.block_pos, ["Küche"])
-    build_into(world, replace(volume, block_entities=(text,), entities=()))
+    build_into_world(world, replace(volume, block_entities=(text,), entities=()))
     x, _, z = sign.block_pos
     root = read_nbt(read_region_file(path).chunk((x >> 4, z >> 4)), path)[1]
     (held,) = [nbt for nbt in root["block_entities"] if nbt["id"] == "minecraft:sign"]
@@ -155,7 +155,7 @@ def test_a_chunk_of_entities_of_an_older_game_stays_so_while_others_are_in_it(wo
     old = write_nbt(root | {"DataVersion": 3463, "mod:tag": "kept"})
     path.write_bytes(pack_region({place: old})[0])
     volume = room((-6, 60, 2))  # Its displays stand to both sides of x 0 or 1.
-    build_into(world, volume)
+    build_into_world(world, volume)
     chunks = {
         (x >> 4, z >> 4): read_nbt(read_region_file(file).chunk((x >> 4, z >> 4)), file)[1]
         for x, _, z in (np.floor(e.position).astype(int).tolist() for e in volume.entities)
@@ -179,22 +179,22 @@ def test_a_section_that_keeps_more_bits_than_it_needs_is_built_into(world):
             blocks["data"] = section_words._padded(cells, 7).view(np.int64)
     path.write_bytes(pack_region({place: write_nbt(root) for place, root in chunks.items()})[0])
     volume = room()
-    build_into(world, volume)
+    build_into_world(world, volume)
     assert world_blocks(world) == slowly(before, volume)
 
 
 def test_the_same_build_again_changes_nothing(world):
-    build_into(world, room())
+    build_into_world(world, room())
     once = tree(world)
-    done = build_into(world, room())
+    done = build_into_world(world, room())
     assert (done.step, done.blocks, done.entities) == (None, 0, 0)
     assert tree(world) == once
 
 
 def test_another_build_in_the_place_takes_over_its_entities(world):
-    build_into(world, room())
+    build_into_world(world, room())
     volume = room()
-    build_into(world, replace(volume, entities=volume.entities[:1]))
+    build_into_world(world, replace(volume, entities=volume.entities[:1]))
     held = [e for e in read_world(world).entities if e.id == "minecraft:block_display"]
     assert len(held) == 1
 
@@ -202,20 +202,20 @@ def test_another_build_in_the_place_takes_over_its_entities(world):
 def test_undo_brings_back_every_byte_step_by_step(world):
     states = [tree(world)]
     for corner in [(-8, 60, -20), (0, 62, -18), (-25, 60, 5)]:
-        build_into(world, room(corner), what=f"built at {corner}")
+        build_into_world(world, room(corner), what=f"built at {corner}")
         states.append(tree(world))
-    assert len(steps_of(world)) == 3
+    assert len(list_steps(world)) == 3
     for state in reversed(states[:-1]):
-        take_back(steps_of(world)[-1])
+        revert_step(list_steps(world)[-1])
         assert tree(world) == state
 
 
 def test_the_same_build_gives_the_same_bytes(tmp_path):
     for name in ("a", "b"):
-        build_into(write_ground(tmp_path / name), room())
-        steps = steps_of(tmp_path / name)
-        take_back(steps[-1])
-        build_into(tmp_path / name, room())
+        build_into_world(write_ground(tmp_path / name), room())
+        steps = list_steps(tmp_path / name)
+        revert_step(steps[-1])
+        build_into_world(tmp_path / name, room())
     a, b = tree(tmp_path / "a"), tree(tmp_path / "b")
     manifest = "w2m_undo/0001/manifest.json"  # It holds the times of the old files.
     assert {k: v for k, v in a.items() if k != manifest} == {
@@ -227,18 +227,18 @@ def test_blocks_are_taken_out_of_a_world_that_was_played_in(world):
     before = world_blocks(world)
     pack = {"datapacks/player_size.zip": b"another size"}
     old_pack = (world / "datapacks/player_size.zip").read_bytes()
-    build_into(world, room(), extra=pack)
+    build_into_world(world, room(), extra=pack)
     # Someone breaks a wall, and builds a tower elsewhere in the same chunk.
     x, y, z = -6, 62, -20
     hole = plain(np.zeros((1, 1, 1)), (AIR,), (x, y, z))
-    build_into(world, hole, air="box", what="played")
+    build_into_world(world, hole, air="box", what="played")
     tower = plain(np.ones((1, 9, 1)), (AIR, "minecraft:gold_block"), (-10, 70, -18))
-    build_into(world, tower, what="played")
-    for step in steps_of(world)[1:]:
+    build_into_world(world, tower, what="played")
+    for step in list_steps(world)[1:]:
         for path in sorted(step.folder.rglob("*"), reverse=True):
             path.unlink() if path.is_file() else path.rmdir()
         step.folder.rmdir()
-    done = take_blocks_out(world)
+    done = remove_build(world)
     assert done.kept == 1
     expected = before | {(-10, 70 + n, -18): "minecraft:gold_block" for n in range(9)}
     expected.pop((x, y, z), None)
@@ -252,8 +252,10 @@ def test_blocks_are_taken_out_of_a_world_that_was_played_in(world):
 
 def test_a_chest_that_was_built_over_comes_back_with_its_things(world):
     volume = room((-14, 58, -16))
-    build_into(world, replace(volume, block_entities=(), states=volume.states * 0 + 1), air="none")
-    done = take_blocks_out(world)
+    build_into_world(
+        world, replace(volume, block_entities=(), states=volume.states * 0 + 1), air="none"
+    )
+    done = remove_build(world)
     assert done.kept == 0
     chest = next(e for e in read_world(world).block_entities if e.block_pos == (-12, 60, -12))
     assert chest.nbt["CustomName"] == "chest 0"
@@ -268,13 +270,13 @@ def test_missing_chunks_are_refused_where_the_game_would_make_some(world):
     before = tree(world)
     far = room((200, 60, 5))
     with pytest.raises(ConflictError) as raised:
-        build_into(world, far)
+        build_into_world(world, far)
     assert str(raised.value) == (
         f"{world}: the game has not generated 4 of its chunks there, such as the one at x 192, "
         "z 0; go there once in the game, or add --new-chunks to make them of air"
     )
     assert tree(world) == before
-    build_into(world, far, new_chunks=True)
+    build_into_world(world, far, new_chunks=True)
     assert blocks_by_place(far).items() <= world_blocks(world).items()
 
 
@@ -289,13 +291,13 @@ def test_missing_chunks_are_refused_where_the_game_would_make_some(world):
 def test_a_build_out_of_the_world_is_refused(home, corner, text):
     before = tree(home)
     with pytest.raises(UsageError, match=text):
-        build_into(home, room(corner), new_chunks=True)
+        build_into_world(home, room(corner), new_chunks=True)
     assert tree(home) == before
 
 
 def test_no_world_is_refused(tmp_path):
     with pytest.raises(InputError, match="is no world folder: it has no level.dat$"):
-        build_into(tmp_path, room())
+        build_into_world(tmp_path, room())
 
 
 HOLD = """
@@ -315,7 +317,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
     words = [sys.executable, "-c", HOLD, str(world / "session.lock")]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as game:
         game.stdout.readline()
-        for act in (lambda: build_into(world, room()), lambda: take_blocks_out(world)):
+        for act in (lambda: build_into_world(world, room()), lambda: remove_build(world)):
             with pytest.raises(ConflictError) as raised:
                 act()
             assert str(raised.value) == (
@@ -325,7 +327,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
         game.stdin.close()
     assert tree(world) == before
     assert (world / "session.lock").read_bytes() == "\u2603".encode()
-    build_into(world, room())
+    build_into_world(world, room())
     assert (world / "session.lock").read_bytes() == "\u2603".encode()
 
 
@@ -338,16 +340,16 @@ def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(tmp
     small = plain(np.ones((3, 3, 3)), (AIR, "minecraft:stone"), (0, 20, 0))
     world = write_ground(tmp_path / "world", volume=small)
     before = tree(world)
-    build_into(world, noisy)
+    build_into_world(world, noisy)
     outside = world / "region" / "c.0.0.mcc"
     assert outside.is_file()
     assert world_blocks(world) == blocks_by_place(noisy)
     calm = plain(np.ones((16, 96, 16)), (AIR, "minecraft:stone"), (0, -64, 0))
-    build_into(world, calm)
+    build_into_world(world, calm)
     assert not outside.exists()
     assert world_blocks(world) == blocks_by_place(calm)
     for _ in range(2):
-        take_back(steps_of(world)[-1])
+        revert_step(list_steps(world)[-1])
     assert tree(world) == before
 
 
@@ -356,9 +358,9 @@ def test_chunks_packed_in_any_way_are_edited(world, way):
     for path in sorted((world / "region").glob("*.mca")):
         path.write_bytes(pack_region(dict(read_region(path)), compression=way)[0])
     before, expected = tree(world), slowly(world_blocks(world), room())
-    build_into(world, room())
+    build_into_world(world, room())
     assert world_blocks(world) == expected
-    take_back(steps_of(world)[-1])
+    revert_step(list_steps(world)[-1])
     assert tree(world) == before
 
 
@@ -368,10 +370,10 @@ def test_the_folders_of_newer_games_are_found(world):
     for name in ("region", "entities"):
         (world / name).rename(modern / name)
     before = tree(world)
-    build_into(world, room())
+    build_into_world(world, room())
     assert not (world / "region").exists()
     assert blocks_by_place(room()).items() <= world_blocks(world).items()
-    take_back(steps_of(world)[-1])
+    revert_step(list_steps(world)[-1])
     assert tree(world) == before
 
 
@@ -382,14 +384,14 @@ def test_the_mask_is_that_of_the_readable_twin(seed, turns, air):
     volume = plain(rng.random((4, 5, 3)) < 0.2, (AIR, SIGN), (3, 60, -4))
     if not volume.states.any():
         return
-    put = placed(volume, (7, 70, 9), turns, None)
+    put = place_volume(volume, (7, 70, 9), turns, None)
     assert put.corner == (7, 70, 9)
     solid = {
         place: "minecraft:dirt"
         for place in map(tuple, (np.argwhere(np.ones(put.states.shape)) + put.corner).tolist())
     }
     left = slowly(solid, put, air)
-    mask = built_mask(put, air)
+    mask = affected_mask(put, air)
     for cell in np.argwhere(np.ones(mask.shape)):
         place = tuple((cell + put.corner).tolist())
         assert mask[tuple(cell)] == (left.get(place) != "minecraft:dirt")
@@ -398,14 +400,14 @@ def test_the_mask_is_that_of_the_readable_twin(seed, turns, air):
 def test_a_moved_volume_keeps_its_room_points():
     volume = room()
     point = np.array([*volume.entities[0].position, 1.0])
-    gone = moved(volume, np.array([5, -3, 11]))
+    gone = translate_volume(volume, np.array([5, -3, 11]))
     there = np.array([*gone.entities[0].position, 1.0])
     assert np.allclose(gone.block_to_room @ there, volume.block_to_room @ point)
     assert gone.block_entities[0].block_pos == (2, 58, -4)
     with pytest.raises(UsageError, match="there are no blocks to build"):
-        trimmed(plain(np.zeros((2, 2, 2)), (AIR,), (0, 0, 0)))
+        trim_air(plain(np.zeros((2, 2, 2)), (AIR,), (0, 0, 0)))
 
 
 def test_the_ground_of_a_room_comes_to_the_height_that_is_asked():
-    put = placed(room((-8, 63, -20)), (100, 70, -5), 0, 64)
+    put = place_volume(room((-8, 63, -20)), (100, 70, -5), 0, 64)
     assert put.corner == (100, 69, -5)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError, UsageError
 from world2minecraft.editing.journal import Journal, pack_edit, write_journal
-from world2minecraft.editing.volume_draft import History, applied
+from world2minecraft.editing.volume_draft import History, apply_edits
 
 
 def filled(path, count=4):
@@ -86,7 +86,7 @@ def test_any_edit_that_no_later_one_touches_can_be_undone_and_redone(tmp_path):
         history.do(edit)
     whole = seen(history.volume)
     assert [history.undo(1), history.undo(), history.undo()] == [1, 3, 2]
-    assert seen(history.volume) == seen(applied(volume, edits[0]))
+    assert seen(history.volume) == seen(apply_edits(volume, edits[0]))
     assert [history.redo(), history.redo(), history.redo()] == [2, 3, 1]
     assert seen(history.volume) == whole
     with pytest.raises(UsageError, match="there is nothing to redo"):
@@ -96,7 +96,7 @@ def test_any_edit_that_no_later_one_touches_can_be_undone_and_redone(tmp_path):
 def test_what_a_later_edit_covers_is_not_undone_before_it(tmp_path):
     volume = small_volume()
     first = random_edits(volume, 1, 5)[0]
-    second = random_edits(applied(volume, first), 60, 5)
+    second = random_edits(apply_edits(volume, first), 60, 5)
     history = History(volume, Journal(tmp_path / "j"))
     for edit in (first, *second):
         history.do(edit)
@@ -112,8 +112,10 @@ def test_blocks_that_lie_behind_the_journal_catch_up(tmp_path, behind):
     volume = small_volume()
     edits = random_edits(volume, 4, 7)
     write_journal(tmp_path / "j", edits)
-    on_disk = applied(volume, *edits[: 4 - behind])
-    assert seen(History(on_disk, Journal(tmp_path / "j")).volume) == seen(applied(volume, *edits))
+    on_disk = apply_edits(volume, *edits[: 4 - behind])
+    assert seen(History(on_disk, Journal(tmp_path / "j")).volume) == seen(
+        apply_edits(volume, *edits)
+    )
 
 
 def test_another_volume_is_refused(tmp_path):

@@ -33,7 +33,11 @@ from world2minecraft.formats.habitat import (
     semantic_ids,
     write_habitat,
 )
-from world2minecraft.formats.volume_formats import form_named, form_names, write_forms
+from world2minecraft.formats.volume_formats import (
+    format_by_name,
+    writable_format_names,
+    write_volume_formats,
+)
 from world2minecraft.geometry.colour import linear_to_srgb
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.entities import block_display
@@ -371,7 +375,7 @@ def test_ids_above_the_limit_and_bad_names_are_refused(tmp_path):
 
 
 def test_forms_are_written_by_name_or_suffix(tmp_path):
-    lost = write_forms(tmp_path, furnished(), ["glb", ".schem", "mcfunction", "habitat"])
+    lost = write_volume_formats(tmp_path, furnished(), ["glb", ".schem", "mcfunction", "habitat"])
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "room.glb", "room.habitat", "room.mcfunction", "room.schem",
     ]  # fmt: skip
@@ -381,7 +385,7 @@ def test_forms_are_written_by_name_or_suffix(tmp_path):
 
 def test_forms_that_are_not_are_named(tmp_path):
     with pytest.raises(UsageError, match="no form is named 'gbl'; did you mean 'glb'"):
-        write_forms(tmp_path, furnished(), ["schem", "gbl"])
+        write_volume_formats(tmp_path, furnished(), ["schem", "gbl"])
     assert not list(tmp_path.iterdir())
-    assert "world" not in form_names()
-    assert form_named("nbt").suffix == form_named("structure").suffix == ".nbt"
+    assert "world" not in writable_format_names()
+    assert format_by_name("nbt").suffix == format_by_name("structure").suffix == ".nbt"

@@ -18,10 +18,10 @@ LIMIT_MB = 512
 READ = """
 import resource, sys
 from world2minecraft.core.errors import InputError
-from world2minecraft.formats.volume_formats import read_form
+from world2minecraft.formats.volume_formats import read_volume
 for path in sys.argv[1:]:
     try:
-        volume = read_form(path)
+        volume = read_volume(path)
         print("read", volume.states.size)
         del volume
     except InputError as error:

@@ -8,7 +8,7 @@ import pytest
 from test_live_walk import CORNER, HERE, LIMIT_S, START, free_port, furnished_room, node, run_node
 
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.editing.world_build import build_into, take_blocks_out
+from world2minecraft.editing.world_build import build_into_world, remove_build
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_reader import read_world
 from world2minecraft.minecraft.worlds.world_writer import write_world
@@ -42,7 +42,7 @@ def ground():
 def world_with_room(folder, version):
     options = {"name": "live", "spawn": START, "spawn_yaw_deg": -90.0}
     write_world(ground(), folder, **options, version=game_version(version))
-    build_into(folder, furnished_room())
+    build_into_world(folder, furnished_room())
     return folder
 
 
@@ -85,6 +85,6 @@ def test_blocks_come_out_of_a_world_that_another_program_saved(node, tmp_path):
     world = world_with_room(tmp_path / "world", version)
     (tmp_path / "save.js").write_text(SAVE)
     run_node(tmp_path / "save.js", [world / "region"], node)
-    done = take_blocks_out(world)
+    done = remove_build(world)
     assert done.kept == 0
     assert by_place(read_world(world)) == by_place(ground())

@@ -19,15 +19,15 @@ from world2minecraft.minecraftocc.block_map import (
     classify,
     load_block_map,
     read_block_map,
-    remapped,
+    remap_labels,
 )
 from world2minecraft.minecraftocc.block_map.context import (
     CONDITIONS,
     MEASURES,
-    columns,
-    joined_parts,
+    block_columns,
+    connected_parts,
 )
-from world2minecraft.minecraftocc.block_map.room_detection import NONE, next_above
+from world2minecraft.minecraftocc.block_map.room_detection import NO_BLOCK, next_above
 from world2minecraft.minecraftocc.block_map.rules import Rule
 from world2minecraft.minecraftocc.types import FineClass
 
@@ -285,12 +285,12 @@ def test_next_above_is_what_a_loop_finds():
     found = next_above(filled)
     for x, y, z in np.ndindex(filled.shape):
         over = [h for h in range(y + 1, 9) if filled[x, h, z]]
-        assert found[x, y, z] == (over[0] if over else NONE)
+        assert found[x, y, z] == (over[0] if over else NO_BLOCK)
 
 
 def test_columns_are_what_a_loop_finds():
     blocks = np.random.default_rng(4).integers(0, 2, (3, 8, 4))
-    found, first = columns(blocks)
+    found, first = block_columns(blocks)
     for x, y, z in np.ndindex(blocks.shape):
         low = high = y
         while low > 0 and blocks[x, low - 1, z] == blocks[x, y, z]:
@@ -304,7 +304,7 @@ def test_joined_parts_are_what_a_walk_finds():
     rng = np.random.default_rng(5)
     held, blocks = rng.random((5, 4, 5)) < 0.6, rng.integers(0, 2, (5, 4, 5))
     alone = rng.random(held.shape) < 0.2
-    parts, count = joined_parts(held, blocks, alone)
+    parts, count = connected_parts(held, blocks, alone)
     assert ((parts > 0) == held).all() and parts.max() == count
     for place in zip(*np.nonzero(held), strict=True):
         seen, queue = {place}, [place]
@@ -343,21 +343,23 @@ def test_the_papers_map_applies_to_our_own_fine_classes():
 def test_remapping_changes_what_the_map_tells_and_nothing_else():
     labels = np.array([[0, 11, 5, 11], [11, 2, 10, 255]], np.uint8)
     fine = np.array([[0, 1, 2, 3], [4, 5, 6, 0]], np.uint16)
-    found = remapped(labels, fine, FINE, PAPER)
+    found = remap_labels(labels, fine, FINE, PAPER)
     assert found.tolist() == [[0, 0, 5, 2], [3, 2, 10, 255]]
-    assert remapped(labels[:0], fine[:0], FINE, PAPER).shape == (0, 4)
+    assert remap_labels(labels[:0], fine[:0], FINE, PAPER).shape == (0, 4)
 
 
 def test_remapping_by_nyu_keeps_what_is_by_nyu():
     labels = np.array([0, 11, 5, 11, 11, 2, 10], np.uint8)
-    assert remapped(labels, np.arange(7, dtype=np.uint16), FINE, NYU).tolist() == labels.tolist()
+    assert (
+        remap_labels(labels, np.arange(7, dtype=np.uint16), FINE, NYU).tolist() == labels.tolist()
+    )
 
 
 def test_remapping_refuses_what_does_not_fit():
     with pytest.raises(UsageError, match="one shape"):
-        remapped(np.zeros(3, np.uint8), np.zeros(2, np.uint16), FINE, PAPER)
+        remap_labels(np.zeros(3, np.uint8), np.zeros(2, np.uint16), FINE, PAPER)
     with pytest.raises(UsageError, match="fine goes to 9, there are 7 classes"):
-        remapped(np.zeros(1, np.uint8), np.full(1, 9, np.uint16), FINE, PAPER)
+        remap_labels(np.zeros(1, np.uint8), np.full(1, 9, np.uint16), FINE, PAPER)
 
 
 # Files.

@@ -25,7 +25,7 @@ from world2minecraft.minecraftocc.building import build as build_module
 from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.building import scene_survey as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
-from world2minecraft.minecraftocc.building.shard_rendering import units_of
+from world2minecraft.minecraftocc.building.shard_rendering import shard_tasks
 from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
@@ -41,7 +41,7 @@ from world2minecraft.minecraftocc.scene_sources import open_scene_source
 from world2minecraft.minecraftocc.store import open_store, verify_store
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.store.shard import member_at
-from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
 from world2minecraft.rendering.views import Shot, camera_of
 
@@ -113,7 +113,7 @@ def test_a_sample_is_what_the_renderer_and_the_labeller_say(made, worlds):
     volume = source.volume()
     scene = prepare_scene(volume)
     mine = [one for one in store.samples() if one.scene_id == sample.scene_id]
-    light = LookLight(hour=sample.facts["hour"])
+    light = LightSettings(hour=sample.facts["hour"])
     lit = with_common_exposure(scene, light, [Shot(one.camera, one.camera_to_room) for one in mine])
     picture = render_volume(
         lit, sample.camera, sample.camera_to_room, outputs=("colour", "depth"), light=light
@@ -138,8 +138,8 @@ def test_one_world_in_both_splits_is_refused(plan):
     with pytest.raises(
         UsageError, match=r"first.schem \(for test\) and .*second.schem \(for train"
     ):
-        build_module._refuse_twins(plan.scenes, facts)
-    build_module._refuse_twins(plan.scenes[:1] * 2, facts)
+        build_module._refuse_duplicate_worlds(plan.scenes, facts)
+    build_module._refuse_duplicate_worlds(plan.scenes[:1] * 2, facts)
 
 
 def test_progress_goes_through_every_stage_to_its_end(made):
@@ -368,7 +368,7 @@ def test_too_few_views_are_told_and_refused_of_a_preset(worlds, tmp_path, monkey
 
 
 def test_units_are_in_the_order_of_the_set(plan, tmp_path):
-    names = [unit.name for unit in units_of(tmp_path, plan)]
+    names = [unit.name for unit in shard_tasks(tmp_path, plan)]
     assert names == ["shards/train/second-000.tar", "shards/test/first-000.tar"]
 
 

@@ -15,7 +15,7 @@ from world2minecraft.core.coordinates import (
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.camera_records import (
-    camera_of_record,
+    camera_from_record,
     camera_record,
     paper_matrices,
 )
@@ -32,7 +32,7 @@ def record(**words):
 
 def test_a_record_is_plain_json_and_comes_back():
     told = json.loads(json.dumps(record(), allow_nan=False))
-    camera, camera_to_room = camera_of_record(told)
+    camera, camera_to_room = camera_from_record(told)
     assert camera == CAMERA
     np.testing.assert_array_equal(camera_to_room, POSE.camera_to_room(ROOM))
     assert told["vertical_fov_deg"] == pytest.approx(70)
@@ -93,7 +93,7 @@ def test_errors_teach():
     with pytest.raises(UsageError, match="undistort the picture first"):
         camera_record(Camera(9, 9, 5.0, 5.0, 4.0, 4.0, (0.1, 0, 0, 0, 0)), np.eye(4), ROOM)
     with pytest.raises(UsageError, match="make it without paper_compat"):
-        camera_of_record(record(paper_compat=True))
+        camera_from_record(record(paper_compat=True))
     for wrong in (
         {},
         {**record(), "K": [[1]]},
@@ -101,7 +101,7 @@ def test_errors_teach():
         {**record(), "width": None},
     ):
         with pytest.raises(UsageError, match="this is no camera's record"):
-            camera_of_record(wrong)
+            camera_from_record(wrong)
 
 
 def test_the_matrices_alone():

@@ -11,8 +11,8 @@ import pytest
 
 from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.minecraftocc.building.process_registry import (
-    at_work,
-    of_the_crew,
+    register_process,
+    registered_task,
     wait_for_others,
 )
 from world2minecraft.minecraftocc.engine import process_pool as worker
@@ -32,7 +32,7 @@ class Item:
     folder: str
 
 
-@of_the_crew
+@registered_task
 def written(item, tick):
     """Write a file."""
     with open(os.path.join(item.folder, "mark"), "w") as stream:
@@ -67,7 +67,7 @@ def test_one_that_does_not_end_is_told_in_one_line(tmp_path, straggler):
 
 
 def test_many_are_at_work_at_once_and_then_nobody(tmp_path, straggler):
-    with at_work(tmp_path), at_work(tmp_path):
+    with register_process(tmp_path), register_process(tmp_path):
         pass
     straggler.kill()
     straggler.wait()

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraftocc.building.build import shared_views
-from world2minecraft.minecraftocc.building.recorded_views import LONGEST_NAME as LONGEST_TOUR
-from world2minecraft.minecraftocc.building.shard_rendering import units_of
+from world2minecraft.minecraftocc.building.build import allocate_views
+from world2minecraft.minecraftocc.building.recorded_views import MAX_TOUR_NAME as LONGEST_TOUR
+from world2minecraft.minecraftocc.building.shard_rendering import shard_tasks
 from world2minecraft.minecraftocc.plan import (
     MOST_SCENES,
     PRESETS,
@@ -31,7 +31,7 @@ from world2minecraft.minecraftocc.store.shard import LONGEST_KEY
 def test_presets_have_exactly_the_papers_numbers(name, train, test):
     plan = plan_dataset(house_scenes(PRESETS[name].houses), preset=name)
     assert plan.images == {"train": train, "test": test}
-    units = units_of(Path("data"), plan)
+    units = shard_tasks(Path("data"), plan)
     assert sum(unit.last - unit.first for unit in units) == train + test
     of_test = {unit.spec.scene_id for unit in units if unit.name.startswith("shards/test/")}
     assert not of_test & {u.spec.scene_id for u in units if u.spec.scene_id not in of_test}
@@ -130,19 +130,19 @@ def test_what_some_scenes_lack_others_give(have, each):
         asked.extend(some)
         return [min(scene.images, have[int(scene.scene_id[1:])]) for scene in some]
 
-    shared = shared_views(scenes, look)
+    shared = allocate_views(scenes, look)
     wanted = each * len(have)
     assert sum(scene.images for scene in shared) <= min(wanted, sum(have))
     if sum(have) >= wanted + len(have) * 30:
         assert sum(scene.images for scene in shared) == wanted
-    again = shared_views(scenes, look)
+    again = allocate_views(scenes, look)
     assert again == shared
 
 
 def test_a_shortage_is_made_up_within_its_split():
     scenes = [SceneSpec(f"s{n}", "", 0, "test" if n > 2 else "train", 10) for n in range(5)]
     have = {"s0": 4, "s1": 99, "s2": 12, "s3": 10, "s4": 7}
-    shared = shared_views(scenes, lambda some: [min(s.images, have[s.scene_id]) for s in some])
+    shared = allocate_views(scenes, lambda some: [min(s.images, have[s.scene_id]) for s in some])
     assert [scene.images for scene in shared] == [4, 14, 12, 10, 7]
     assert sum(scene.images for scene in shared[:3]) == 30
 
@@ -150,5 +150,5 @@ def test_a_shortage_is_made_up_within_its_split():
 def test_enough_views_are_asked_for_once():
     scenes = [replace(scene, images=5, split="train") for scene in house_scenes(3)]
     calls = []
-    shared_views(scenes, lambda some: calls.append(some) or [5] * len(some))
+    allocate_views(scenes, lambda some: calls.append(some) or [5] * len(some))
     assert len(calls) == 1

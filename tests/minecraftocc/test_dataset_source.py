@@ -10,7 +10,7 @@ from house_of_blocks import Blocks, cottage
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
-from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.scene_sources import (
@@ -25,7 +25,7 @@ SPAWN = (5.5, 62.0, 5.5)
 
 def scene(volume, **more):
     facts = {"mc_version": "1.20.1", "data_version": 3465, "spawn": SPAWN, "spawn_yaw_deg": 90.0}
-    return scene_of(volume, **facts, **more)
+    return scene_from_volume(volume, **facts, **more)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume, Layout
 from world2minecraft.formats.layout import write_layouts
-from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 
@@ -59,7 +59,7 @@ def write_flat(folder: Path) -> Path:
     version = game_version(DEFAULT_VERSION)
     place = folder / "world"
     write_world(volume, place, name="flat", spawn=SPAWN, spawn_yaw_deg=0.0, version=version)
-    scene = scene_of(
+    scene = scene_from_volume(
         volume,
         mc_version=version.name,
         data_version=version.data_version,

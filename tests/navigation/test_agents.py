@@ -10,7 +10,7 @@ from tests.external_models.test_chat import model_at
 from world2minecraft.core.errors import BudgetError, ServerError, UsageError
 from world2minecraft.external_models.chat_costs import Ledger
 from world2minecraft.external_models.structured_replies import UnreadableError
-from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent, make_agent
+from world2minecraft.navigation.agents import AGENTS, Decision, VlmAgent, make_agent
 from world2minecraft.navigation.agents.action_format import SCHEMA, parse_step
 from world2minecraft.navigation.agents.vlm_agent import facing, relative_m, trail_text
 from world2minecraft.navigation.running.episode_runner import walk_episode
@@ -138,7 +138,7 @@ def test_the_blind_are_not_drawn_for():
 
 
 def walk_with(server, *, episode=None, **options):
-    agent = ModelAgent(model_at(server), **options)
+    agent = VlmAgent(model_at(server), **options)
     return walk_episode(OpenField(), an_episode() if episode is None else episode, agent)
 
 
@@ -215,7 +215,7 @@ def test_wrong_keys_and_spent_budgets_end_the_run():
     with scripted([Answer(401, b"no")]) as server, pytest.raises(ServerError, match="says 401"):
         walk_with(server)
     with scripted([step("FORWARD")]) as server:
-        agent = ModelAgent(model_at(server, ledger=Ledger(max_calls=3)))
+        agent = VlmAgent(model_at(server, ledger=Ledger(max_calls=3)))
         with pytest.raises(BudgetError, match="3 calls were made"):
             walk_episode(OpenField(), an_episode(), agent)
         assert len(server.requests) == 3
@@ -230,4 +230,4 @@ def test_agents_are_known_by_name():
         make_agent("oracl", no_chat)
     for wrong in ({"chunk": 5}, {"history": 9}, {"map_kind": "globe"}):
         with scripted([""]) as server, pytest.raises(UsageError):
-            ModelAgent(model_at(server), **wrong)
+            VlmAgent(model_at(server), **wrong)

@@ -19,7 +19,7 @@ from world2minecraft.navigation.server import player as body_module
 from world2minecraft.navigation.server.actions import forward_keys
 from world2minecraft.navigation.server.blocks import MAX_CELLS, checked_box, state_of
 from world2minecraft.navigation.server.env import ServerEnv
-from world2minecraft.navigation.server.player import Bridge, ServerBody, join
+from world2minecraft.navigation.server.player import JsonLineProcess, ServerPlayer, join
 from world2minecraft.navigation.server.scene import open_server_scene
 from world2minecraft.navigation.values import Move
 
@@ -29,12 +29,12 @@ AHEAD = [Keys(forward=True, yaw_deg=-90.0)] * 4
 BOX = (-1, 63, -1, 20, 72, 11)
 
 
-def fake(mode="honest") -> ServerBody:
+def fake(mode="honest") -> ServerPlayer:
     paths = os.pathsep.join([str(HERE), *sys.path])
     environment = {**os.environ, "PYTHONPATH": paths}
-    bridge = Bridge([sys.executable, str(HERE / "fake_body.py"), mode], HERE, environment)
+    bridge = JsonLineProcess([sys.executable, str(HERE / "fake_body.py"), mode], HERE, environment)
     told = bridge.ask("join", 60, name="w2m_walker")
-    return ServerBody(bridge, "localhost:25565", told)
+    return ServerPlayer(bridge, "localhost:25565", told)
 
 
 @pytest.fixture

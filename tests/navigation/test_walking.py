@@ -10,7 +10,7 @@ from tests.external_models.test_chat import model_at
 
 from world2minecraft.core.errors import InputError, OutputError
 from world2minecraft.external_models.chat_messages import Picture
-from world2minecraft.navigation.agents import AGENTS, Decision, ModelAgent
+from world2minecraft.navigation.agents import AGENTS, Decision, VlmAgent
 from world2minecraft.navigation.running.episode_evaluation import evaluate_agent, write_walks_result
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.running.tables import read_result, walks_table
@@ -67,7 +67,7 @@ def test_a_trace_tells_all_of_a_walk(tmp_path):
     fine = json.dumps({"thought": "on", "progress": "", "actions": ["FORWARD"], "done": False})
     stop = fine.replace("FORWARD", "STOP")
     with scripted([fine, "prose", "prose", "prose", stop]) as server:
-        agent = ModelAgent(model_at(server))
+        agent = VlmAgent(model_at(server))
         walk = walk_episode(OpenField(), an_episode(), agent, observers=[TraceWriter(tmp_path)])
         asked = server.requests
     first, *decisions, last = read_trace(tmp_path / "trace.jsonl")

@@ -9,7 +9,7 @@ from scenes import CAMERA, random_pose, random_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.batch import BATCH_OUTPUTS, batch_arrays, render_batch
 from world2minecraft.rendering.batch import drawing as draw_module
 from world2minecraft.rendering.editable_scene import EditableScene
@@ -17,7 +17,7 @@ from world2minecraft.rendering.light_parameters import DAY, exposure_of
 from world2minecraft.rendering.picture import OUTPUTS
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
-FIXED = LookLight(exposure=1.2)
+FIXED = LightSettings(exposure=1.2)
 COUNT = 9
 
 
@@ -66,7 +66,7 @@ def test_the_kernel_has_memory_for_the_way_to_the_sun(scene, poses, monkeypatch)
     """Else it writes beyond its end, and no picture shows it."""
     given = []
     monkeypatch.setattr(draw_module, "draw_poses", lambda *words: given.append(words))
-    sunny = LookLight(exposure=1.2, sun_shadow=True)
+    sunny = LightSettings(exposure=1.2, sun_shadow=True)
     render_batch(scene, SMALL, poses, outputs=("colour",), light=sunny, threads=2)
     assert len(given) == 2
     for *_, cells, scratch, _ in given:
@@ -94,7 +94,7 @@ def test_large_pictures_are_shared_by_rows(scene, poses, monkeypatch):
 def test_a_batch_has_one_exposure_of_all_its_eyes(scene, poses):
     batch = render_batch(scene, SMALL, poses, outputs=("colour",))
     eyes = np.array([apply(scene.room_to_grid, pose[:3, 3]) for pose in poses])
-    light = LookLight(exposure=exposure_of(DAY, scene, eyes))
+    light = LightSettings(exposure=exposure_of(DAY, scene, eyes))
     for number, pose in enumerate(poses):
         same(batch, number, render_volume(scene, SMALL, pose, light=light))
 

@@ -14,7 +14,7 @@ from PIL import Image
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.entities import block_display
-from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.path_tracing import render_photo
 
 FOLDER = Path(__file__).parent / "golden"
@@ -34,15 +34,15 @@ class Feature:
     """What stands in the room, and how it is drawn."""
 
     blocks: dict[tuple[int, int, int], str] = field(default_factory=dict)
-    light: LookLight = field(default_factory=lambda: LookLight(exposure=1.5))
+    light: LightSettings = field(default_factory=lambda: LightSettings(exposure=1.5))
     texture_px: int = 16
     samples: int = 1
     display: bool = False
     photo: bool = False
 
 
-def night() -> LookLight:
-    return LookLight(hour=23.0, exposure=1.6)
+def night() -> LightSettings:
+    return LightSettings(hour=23.0, exposure=1.6)
 
 
 PLANTS = {
@@ -84,9 +84,9 @@ FEATURES = {
     "drawn_by_code": Feature(CODE),
     "glass_and_water": Feature(GLASS),
     "lamp_at_night": Feature(LAMP, night()),
-    "sun_shadow": Feature(SHAPES, LookLight(hour=9.5, exposure=1.2, sun_shadow=True)),
-    "game_light": Feature(SHAPES, LookLight(preset="game", exposure=1.0)),
-    "neutral_light": Feature(SHAPES, LookLight(preset="neutral")),
+    "sun_shadow": Feature(SHAPES, LightSettings(hour=9.5, exposure=1.2, sun_shadow=True)),
+    "game_light": Feature(SHAPES, LightSettings(preset="game", exposure=1.0)),
+    "neutral_light": Feature(SHAPES, LightSettings(preset="neutral")),
     "fine_textures": Feature(SHAPES, texture_px=64, samples=2),
     "display_entity": Feature(LAMP, display=True),
     "photo": Feature(LAMP, night(), photo=True),

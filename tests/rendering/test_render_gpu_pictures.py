@@ -12,7 +12,7 @@ from scenes import random_pose, random_volume, volume_of
 from test_render_cubes import random_entity
 
 from world2minecraft.core.coordinates import look_at
-from world2minecraft.rendering import LookLight, prepare_scene, render_parallel, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_parallel, render_volume
 from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.gpu import GpuRenderer
@@ -20,10 +20,10 @@ from world2minecraft.rendering.gpu import readback_buffers as slots
 from world2minecraft.rendering.light_parameters import NEUTRAL
 
 LIGHTS = {
-    "day": LookLight(),
-    "sun": LookLight(sun_shadow=True, hour=9.0),
-    "night": LookLight(hour=22.0, brightness=1.0),
-    "game": LookLight(preset="game", hour=19.0),
+    "day": LightSettings(),
+    "sun": LightSettings(sun_shadow=True, hour=9.0),
+    "night": LightSettings(hour=22.0, brightness=1.0),
+    "game": LightSettings(preset="game", hour=19.0),
     "neutral": NEUTRAL,
 }
 TRICKS = FewLooks({1: "glass", 2: "holes", 3: "no west", 4: "diagonal", 6: "tall"})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.rendering.light_worlds import PALETTE
 
-from world2minecraft.rendering.light import LookLight, light_field, scene_exposure
+from world2minecraft.rendering.light import LightSettings, light_field, scene_exposure
 
 LAMP = PALETTE.index("minecraft:lantern")
 
@@ -20,7 +20,7 @@ def room(window: bool = False, lamp: bool = False) -> np.ndarray:
 
 
 def exposure_of(states, eyes=None, **look) -> float:
-    return scene_exposure(light_field(states, PALETTE), LookLight(**look), eyes)
+    return scene_exposure(light_field(states, PALETTE), LightSettings(**look), eyes)
 
 
 def test_open_air_by_day_is_as_it_is():
@@ -43,7 +43,7 @@ def test_darker_rooms_are_opened_further():
 
 def test_a_night_stays_darker_than_a_day():
     field = light_field(room(True), PALETTE)
-    looks = [LookLight(hour=hour) for hour in (0.0, 12.0)]
+    looks = [LightSettings(hour=hour) for hour in (0.0, 12.0)]
     sky = [look.parameters(scene_exposure(field, look)).sky_g for look in looks]
     assert sky[0] < sky[1] / 3
 

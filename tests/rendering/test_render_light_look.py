@@ -5,12 +5,12 @@ import pytest
 
 from world2minecraft.core.jit import njit
 from world2minecraft.rendering.light import (
-    LookLight,
+    LightSettings,
     background_light,
     direction_shade,
-    finish,
-    glow_light,
-    lit_colour,
+    emission_light,
+    light_multipliers,
+    tone_map_pixel,
 )
 from world2minecraft.rendering.light.sky import sky_at, sun_direction
 from world2minecraft.rendering.light.tone_mapping import (
@@ -25,7 +25,7 @@ from world2minecraft.rendering.light.tone_mapping import (
 
 @njit
 def light_of(sky, block, occluders, shade, sun, params):
-    return lit_colour(sky, block, occluders, shade, sun, params)
+    return light_multipliers(sky, block, occluders, shade, sun, params)
 
 
 @njit
@@ -35,12 +35,12 @@ def shade_of(nx, ny, nz, cosine, params):
 
 @njit
 def on_screen(r, g, b, tone):
-    return finish(r, g, b, tone)
+    return tone_map_pixel(r, g, b, tone)
 
 
 @njit
 def glow_of(emission, params):
-    return glow_light(emission, params)
+    return emission_light(emission, params)
 
 
 @njit
@@ -53,7 +53,7 @@ NORMALS = np.array([(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0
 
 @pytest.mark.parametrize("normal", NORMALS)
 def test_a_neutral_picture_shows_a_block_s_colour_times_a_calm_shade(normal):
-    look = LookLight(preset="neutral")
+    look = LightSettings(preset="neutral")
     params, tone = look.parameters(), look.tone
     for value in (8, 60, 128, 200):
         for sky in (0, 15):
@@ -64,7 +64,7 @@ def test_a_neutral_picture_shows_a_block_s_colour_times_a_calm_shade(normal):
 
 
 def test_the_game_s_light_acts_on_screen_values():
-    params, tone = LookLight(preset="game", hour=12, exposure=1).parameters(), screen_tone()
+    params, tone = LightSettings(preset="game", hour=12, exposure=1).parameters(), screen_tone()
     light = light_of(15, 0, 0, 0.6, 0.0, params)
     got = on_screen(*(tone.decode[200] * channel for channel in light), tone)
     ambient = np.array([params.ambient_r, params.ambient_g, params.ambient_b])
@@ -74,7 +74,7 @@ def test_the_game_s_light_acts_on_screen_values():
 
 @pytest.mark.parametrize("brightness", [0.0, 0.5, 1.0])
 def test_the_game_s_brightness_lifts_the_dark_as_in_the_game(brightness):
-    params = LookLight(preset="game", brightness=brightness, hour=12).parameters()
+    params = LightSettings(preset="game", brightness=brightness, hour=12).parameters()
     for level in range(1, 16):
         moody = (level / 15) / (4 - 3 * level / 15)
         expected = moody + brightness * (1 - (1 - moody) ** 4 - moody)
@@ -83,18 +83,18 @@ def test_the_game_s_brightness_lifts_the_dark_as_in_the_game(brightness):
 
 
 def test_the_game_s_lamps_add_nothing_to_full_daylight():
-    params = LookLight(preset="game", hour=12).parameters()
+    params = LightSettings(preset="game", hour=12).parameters()
     assert max(light_of(15, 15, 0, 1.0, 0.0, params)) == pytest.approx(1, abs=0.01)
 
 
 def test_too_much_light_is_white_and_not_black():
-    params = LookLight(preset="game", exposure=20).parameters()
+    params = LightSettings(preset="game", exposure=20).parameters()
     assert min(light_of(15, 15, 0, 1.0, 0.0, params)) > 1
 
 
 def test_a_place_is_brighter_with_more_light_and_darker_in_a_corner():
     for preset in ("shader", "game"):
-        params = LookLight(preset=preset).parameters()
+        params = LightSettings(preset=preset).parameters()
         levels = [light_of(level, 0, 0, 1.0, 0.0, params) for level in range(16)]
         lamps = [light_of(0, level, 0, 1.0, 0.0, params) for level in range(16)]
         corners = [light_of(15, 0, count, 1.0, 0.0, params)[1] for count in range(4)]
@@ -107,16 +107,16 @@ def test_a_place_is_brighter_with_more_light_and_darker_in_a_corner():
 
 
 def test_full_daylight_is_near_one_and_night_is_dark_and_blue():
-    day = light_of(15, 0, 0, 1.0, 0.0, LookLight(hour=12).parameters())
-    night = light_of(15, 0, 0, 1.0, 0.0, LookLight(hour=0).parameters())
+    day = light_of(15, 0, 0, 1.0, 0.0, LightSettings(hour=12).parameters())
+    night = light_of(15, 0, 0, 1.0, 0.0, LightSettings(hour=0).parameters())
     assert day == pytest.approx((1, 1, 1), abs=0.12)
     assert max(night) < 0.3
     assert night[2] > night[0]
 
 
 def test_the_sun_adds_what_its_shadow_lacks():
-    lit = LookLight(hour=12).parameters()
-    shadowed = LookLight(hour=12, sun_shadow=True).parameters()
+    lit = LightSettings(hour=12).parameters()
+    shadowed = LightSettings(hour=12, sun_shadow=True).parameters()
     assert lit.sun_r == 0
     in_sun = light_of(15, 0, 0, 1.0, shadowed.sun_y, shadowed)
     in_shadow = light_of(15, 0, 0, 1.0, 0.0, shadowed)
@@ -124,21 +124,21 @@ def test_the_sun_adds_what_its_shadow_lacks():
 
 
 def test_a_lamp_s_face_is_brighter_than_what_it_lights():
-    params = LookLight(hour=0).parameters()
+    params = LightSettings(hour=0).parameters()
     assert glow_of(15, params) > max(light_of(0, 14, 0, 1.0, 0.0, params))
     assert glow_of(0, params) == 0
 
 
 def test_exposure_scales_light():
-    once, twice = LookLight().parameters(1.0), LookLight().parameters(2.0)
+    once, twice = LightSettings().parameters(1.0), LightSettings().parameters(2.0)
     assert np.allclose(
         light_of(9, 4, 1, 0.7, 0, twice), 2 * np.array(light_of(9, 4, 1, 0.7, 0, once))
     )
-    assert LookLight(exposure=2.0).parameters(5.0) == twice
+    assert LightSettings(exposure=2.0).parameters(5.0) == twice
 
 
 def test_shades_are_those_of_the_game_for_upright_faces_and_mix_between():
-    params = LookLight(preset="game").parameters()
+    params = LightSettings(preset="game").parameters()
     got = [shade_of(*normal, 1.0, params) for normal in NORMALS]
     assert got == pytest.approx([0.6, 0.6, 0.5, 1.0, 0.8, 0.8])
     assert shade_of(np.sqrt(0.5), 0.0, np.sqrt(0.5), 1.0, params) == pytest.approx(0.7)
@@ -194,13 +194,13 @@ def test_the_day_goes_round():
 
 
 def test_the_sky_is_lightest_at_the_horizon_and_shows_the_sun():
-    look = LookLight(hour=9)
+    look = LightSettings(hour=9)
     background = look.background()
     up, level, down = (sky_of(*d, background) for d in ((0, 1, 0), (-1, 0, 0), (0, -1, 0)))
     assert sum(level) > sum(up)
     assert sum(level) > sum(down)
     assert min(sky_of(*look.sky.sun_direction, background)) > 1
-    grey = sky_of(0.0, 1.0, 0.0, LookLight(preset="neutral").background())
+    grey = sky_of(0.0, 1.0, 0.0, LightSettings(preset="neutral").background())
     assert grey == pytest.approx((0.85,) * 3, abs=0.03)
 
 
@@ -215,5 +215,5 @@ def test_the_sky_is_lightest_at_the_horizon_and_shows_the_sun():
 )
 def test_a_look_out_of_range_is_refused(wrong, reason):
     with pytest.raises(ValueError) as error:
-        LookLight(**wrong)
+        LightSettings(**wrong)
     assert str(error.value) == reason

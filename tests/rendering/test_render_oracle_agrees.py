@@ -17,7 +17,7 @@ from benchmarks.rival_rasteriser import mesh_of
 from oracle import Hits, WithoutGlass, has_face, oracle_picture
 from scenes import CAMERA
 
-from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.block_elements import BlockModel, Element
 
 
@@ -104,7 +104,7 @@ def test_the_rivals_mesh_has_no_faces_between_cubes():
     states = np.zeros((4, 3, 3), np.uint16)
     states[1:3, 1, 1] = 1
     volume = replace(flats(), states=states, semantic=states.astype(np.uint8), instance=states)
-    mesh = mesh_of(prepare_scene(volume).tables, LookLight().parameters(1.0))
+    mesh = mesh_of(prepare_scene(volume).tables, LightSettings().parameters(1.0))
     assert mesh.quads == 10
     places = mesh.vertices["place"]
     assert places.min(axis=0).tolist() == [1, 1, 1]

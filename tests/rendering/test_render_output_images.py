@@ -17,16 +17,16 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.rendering import render_volume
 from world2minecraft.rendering.output import (
     LAYERS,
-    FileChoice,
+    FileFormats,
     colour_bytes,
     depth_bytes,
     exr_bytes,
     file_name,
     id_names,
     index_bytes,
-    layers_named,
-    needs_of,
     number_bytes,
+    parse_layers,
+    required_outputs,
 )
 
 depths = hnp.arrays(
@@ -157,21 +157,21 @@ def test_another_suffix_is_told(make, text):
 
 
 def test_lists_of_layers_are_read_in_their_order_each_once():
-    assert layers_named("depth, RGB,id,class") == ("depth", "rgb", "state", "class", "instance")
-    assert layers_named("all") == tuple(LAYERS)
+    assert parse_layers("depth, RGB,id,class") == ("depth", "rgb", "state", "class", "instance")
+    assert parse_layers("all") == tuple(LAYERS)
     with pytest.raises(UnknownNameError, match="no output is named 'dept'; did you mean 'depth'"):
-        layers_named("rgb,dept")
+        parse_layers("rgb,dept")
     with pytest.raises(UnknownNameError, match="no output is named ','"):
-        layers_named(",")
+        parse_layers(",")
 
 
 def test_all_layers_of_a_picture_come_back():
     rng = np.random.default_rng(6)
     volume = random_volume(rng)
     picture = render_volume(
-        volume, CAMERA, random_pose(rng, volume), outputs=needs_of(layers_named("all"))
+        volume, CAMERA, random_pose(rng, volume), outputs=required_outputs(parse_layers("all"))
     )
-    choice = FileChoice(depth_suffix=".npy")
+    choice = FileFormats(depth_suffix=".npy")
     data = {name: layer.make(picture, volume, choice) for name, layer in LAYERS.items()}
     met = picture.block_index >= 0
     assert np.array_equal(np.asarray(image(data["rgb"])), picture.colour)
@@ -186,7 +186,7 @@ def test_all_layers_of_a_picture_come_back():
 
 
 def test_layers_have_their_files():
-    choice = FileChoice(colour_suffix=".jpg", depth_suffix=".exr")
+    choice = FileFormats(colour_suffix=".jpg", depth_suffix=".exr")
     assert [file_name("000001", name, choice) for name in ("rgb", "depth", "range", "class")] == [
         "000001.jpg", "000001.depth.exr", "000001.range.exr", "000001.class.png",
     ]  # fmt: skip

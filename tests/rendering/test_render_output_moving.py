@@ -9,7 +9,7 @@ from PIL import Image, ImageSequence
 
 from world2minecraft.core.errors import LimitError, MissingExtraError, OutputError, UsageError
 from world2minecraft.rendering.output import animation as moving
-from world2minecraft.rendering.output import moving_picture
+from world2minecraft.rendering.output import animation_writer
 
 TONES = (20, 120, 220)
 
@@ -19,7 +19,7 @@ def frame(tone):
 
 
 def write(path, tones=TONES, rate_hz=10.0):
-    with moving_picture(path, rate_hz) as take:
+    with animation_writer(path, rate_hz) as take:
         for tone in tones:
             take(frame(tone))
 
@@ -57,7 +57,7 @@ def test_videos_are_written_and_their_frames_come_back(tmp_path, suffix):
 
 def test_odd_sizes_lose_a_row_and_a_column(tmp_path):
     ffmpeg = pytest.importorskip("imageio_ffmpeg")
-    with moving_picture(tmp_path / "a.mp4", 10) as take:
+    with animation_writer(tmp_path / "a.mp4", 10) as take:
         take(np.zeros((37, 49, 3), np.uint8))
     assert next(ffmpeg.read_frames(str(tmp_path / "a.mp4")))["size"] == (48, 36)
 
@@ -68,7 +68,7 @@ def test_what_goes_wrong_midway_leaves_what_was_there(tmp_path, suffix):
         pytest.importorskip("imageio_ffmpeg")
     path = tmp_path / f"a{suffix}"
     path.write_bytes(b"old")
-    with pytest.raises(KeyError), moving_picture(path, 10) as take:
+    with pytest.raises(KeyError), animation_writer(path, 10) as take:
         take(frame(1))
         raise KeyError
     assert path.read_bytes() == b"old"

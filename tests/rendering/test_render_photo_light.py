@@ -6,7 +6,7 @@ from scenes import volume_of
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.rendering import LookLight, prepare_scene
+from world2minecraft.rendering import LightSettings, prepare_scene
 from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace, face_uv
 from world2minecraft.rendering.light.sky import sun_direction
 from world2minecraft.rendering.path_tracing import emitters_of
@@ -72,7 +72,7 @@ def film_of(
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
     film = new_film(camera.height_px, camera.width_px)
     trace_rows(
-        scene.tables, scene.material, scene.side_px, LookLight().tone.decode,
+        scene.tables, scene.material, scene.side_px, LightSettings().tone.decode,
         emitters_of(scene) if lamps is None else lamps, sky, pose, rays, (0, camera.height_px),
         (0, samples), np.uint32(seed), depth, new_path(), film,
     )  # fmt: skip
@@ -113,7 +113,7 @@ def test_a_closed_room_that_shines_everywhere_is_a_furnace():
 
 def test_no_light_comes_from_nothing():
     film = film_of(prepare_scene(volume(closed_room()), OneGrey()), (3, 3, 3), (5, 3, 3.2),
-                   sky_light(LookLight()), samples=4)  # fmt: skip
+                   sky_light(LightSettings()), samples=4)  # fmt: skip
     assert not radiance(film).any()
 
 
@@ -217,7 +217,7 @@ def test_a_lamp_that_is_turned_is_where_its_box_is():
 def test_shadows_point_away_from_the_sun(hour):
     states = floor_with((8, 1, 8, 1), (8, 2, 8, 1))
     scene = prepare_scene(volume(states), OneGrey())
-    sky = sky_light(LookLight(hour=hour))
+    sky = sky_light(LightSettings(hour=hour))
     black = uniform_sky(0.0, 0.0, 0.0).background
     sun = sky.background._replace(
         **{
@@ -263,11 +263,11 @@ def test_gloss_seen_edge_on_brings_numbers(rough):
 
     blocks = [(8, 3, 8, 2), *((i, 1, 4, 3) for i in range(17)), (2, 2, 12, 2)]
     scene = prepare_scene(volume(floor_with(*blocks), LAMP), Glossy(LAMP_LOOKS.kinds))
-    film = film_of(scene, (0.3, 1.1, 8.2), (16, 1.05, 9), sky_light(LookLight()), 64, 4)
+    film = film_of(scene, (0.3, 1.1, 8.2), (16, 1.05, 9), sky_light(LightSettings()), 64, 4)
     assert np.isfinite(film.gloss).all() and np.isfinite(film.light).all()
     assert film.gloss.max() > 0
 
 
 def test_photos_need_an_hour():
     with pytest.raises(ValueError, match="photos are lit by the hour: preset 'shader', not"):
-        sky_light(LookLight(preset="neutral"))
+        sky_light(LightSettings(preset="neutral"))

@@ -6,7 +6,7 @@ from scenes import random_pose, random_volume
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.path_tracing import Photo, emitters_of, render_photo
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
@@ -57,7 +57,7 @@ def test_a_budget_ends_with_what_is_there(world):
 def test_a_given_exposure_counts(world):
     scene, pose = world
     photos = [
-        render_photo(scene, SMALL, pose, samples=1, light=LookLight(exposure=value))
+        render_photo(scene, SMALL, pose, samples=1, light=LightSettings(exposure=value))
         for value in (0.5, 2.0)
     ]
     assert [photo.exposure for photo in photos] == [0.5, 2.0]

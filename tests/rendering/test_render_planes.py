@@ -4,7 +4,7 @@ import numpy as np
 from benchmarks.render_scenes import camera_of, poses, scene_looks, storeys
 from scenes import random_pose, random_volume
 
-from world2minecraft.rendering import DAY, LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import DAY, LightSettings, prepare_scene, render_volume
 
 OUTPUTS = ("colour", "semantic", "instance")
 FIELDS = ("colour", "depth_m", "range_m", "block_index", "face", "cube_index", *OUTPUTS[1:])
@@ -33,7 +33,7 @@ def test_heaps_are_the_same_by_tile_and_by_pixel():
 
 def test_the_sun_is_the_same_by_tile_and_by_pixel():
     rng = np.random.default_rng(9)
-    light = LookLight(hour=10.0, sun_shadow=True)
+    light = LightSettings(hour=10.0, sun_shadow=True)
     for _ in range(4):
         volume = random_volume(rng, share=0.05)
         assert_alike(prepare_scene(volume), camera_of(160, 120), random_pose(rng, volume), light)

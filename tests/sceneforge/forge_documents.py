@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
-from world2minecraft.editing.scene.scene_objects import facts
+from world2minecraft.editing.scene.scene_objects import object_key
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.editor import Editor
@@ -70,7 +70,7 @@ def held(editor: Editor) -> tuple:
     """Everything that a scene holds."""
     draft = editor.draft
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
-    objects = tuple(facts(draft.objects[n]) for n in sorted(draft.objects))
+    objects = tuple(object_key(draft.objects[n]) for n in sorted(draft.objects))
     return (*(array.tobytes() for array in arrays), objects)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from world2minecraft.editing.scene.difference import difference
+from world2minecraft.editing.scene.difference import compare_labels
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 
 VECTORS = Path(__file__).parent / "vectors" / "compare.json"
@@ -15,7 +15,7 @@ VECTORS = Path(__file__).parent / "vectors" / "compare.json"
 @pytest.mark.parametrize("row", json.loads(VECTORS.read_text())["cases"])
 def test_vectors_are_what_metrics_say(row):
     now, other = (np.array(row[name], np.uint8).reshape(-1, 1, 1) for name in ("now", "other"))
-    counts, found = count_occupancy(now, other), difference(now, other)
+    counts, found = count_occupancy(now, other), compare_labels(now, other)
     assert [int(getattr(found, name).sum()) for name in ("added", "removed", "changed")] == [
         row[name] for name in ("added", "removed", "changed")
     ]

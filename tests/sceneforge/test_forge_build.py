@@ -17,10 +17,9 @@ from hypothesis.extra import numpy as some
 from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.formats.occupancy_files import inner_corner_m
-from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
-from world2minecraft.minecraft.physics import step
+from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, step
 from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge import block_preview as blocks
@@ -76,7 +75,7 @@ def test_a_build_is_the_one_that_would_be_written(server, script):
     got = unpacked(script.get("/api/build").content, b"W2MB")
     grid = document.draft.grid()
     corner = inner_corner_m(grid)
-    volume = mended(build_volume(grid, (), (), corner_m=corner, name=document.name))[0]
+    volume = repair_volume(build_volume(grid, (), (), corner_m=corner, name=document.name))[0]
     mesh = mesh_of(volume)
     assert got["palette"] == list(volume.palette)
     assert (got["rev"], got["blocks_per_metre"], got["style"]) == (0, 4.0, "blocks")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.cell_patch import cells_of_runs
-from world2minecraft.editing.scene.difference import difference, labels_in_cells
+from world2minecraft.editing.scene.difference import compare_labels, resample_labels
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor
@@ -74,7 +74,7 @@ def test_an_opening_is_told_apart(editor):
 
 @given(labels_of, labels_of)
 def test_a_difference_is_what_the_counts_of_occupancy_count(labels, other):
-    found, counts = difference(labels, other), count_occupancy(labels, other)
+    found, counts = compare_labels(labels, other), count_occupancy(labels, other)
     assert found.added.sum() == counts.false_positives
     assert found.removed.sum() == counts.false_negatives
     right = np.diag(counts.table)[1:].sum()
@@ -134,7 +134,7 @@ def test_the_scene_is_compared_with_the_truth_of_a_generated_room(editor, tmp_pa
 def test_a_grid_of_the_same_cells_is_moved_by_whole_cells(labels, x, y):
     draft = SceneDraft(labels_grid(labels))
     moved = labels_grid(labels, origin_m=np.array([x, y, 0]) * 0.08)
-    got = labels_in_cells(moved, draft)
+    got = resample_labels(moved, draft)
     for cell in np.ndindex(labels.shape):
         there = (cell[0] - x, cell[1] - y, cell[2])
         inside = all(0 <= a < n for a, n in zip(there, labels.shape, strict=True))

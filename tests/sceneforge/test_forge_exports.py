@@ -14,7 +14,7 @@ from PIL import Image
 from world2minecraft.core.files import read_json
 from world2minecraft.formats.paper_json import read_occ_json
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.formats.volume_formats import form_names, read_form
+from world2minecraft.formats.volume_formats import read_volume, writable_format_names
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.reconstruction.stages import built_volume
 from world2minecraft.sceneforge.editor import Editor
@@ -71,7 +71,7 @@ def exported(script, form, **choice) -> tuple[str, bytes, list]:
 
 def test_every_form_that_is_written_is_offered():
     offered = {one.id for one in forms()}
-    assert set(form_names()) <= offered
+    assert set(writable_format_names()) <= offered
     assert {"world", "png", "npz", "occ", "centers", "stats"} <= offered
 
 
@@ -121,7 +121,7 @@ def test_a_model_and_a_picture_are_what_they_say(script, tmp_path):
     name, data, _ = exported(script, "glb", blocks_per_metre=1)
     assert name == "room.glb" and data[:4] == b"glTF"
     (tmp_path / name).write_bytes(data)
-    assert (read_form(tmp_path / name).states > 0).any()
+    assert (read_volume(tmp_path / name).states > 0).any()
     name, data, _ = exported(script, "png", blocks_per_metre=1)
     assert Image.open(io.BytesIO(data)).size == (1280, 960)
 

@@ -117,7 +117,7 @@ def test_the_network_learns():
 
 def test_the_agent_walks_turns_and_stops():
     pytest.importorskip("gymnasium", reason="gymnasium is not installed")
-    from world2minecraft.navigation.agents import Sight, Task
+    from world2minecraft.navigation.agents import Observation, Task
     from world2minecraft.navigation.moves import get_move_set
     from world2minecraft.navigation.values import Move, Stance
 
@@ -126,7 +126,7 @@ def test_the_agent_walks_turns_and_stops():
     stance, picture = Stance(0, 0, 0, 0), np.zeros((4, 4, 3), np.uint8)
     met = ((Move.FORWARD, True),)
     decided = [
-        agent.decide(Sight(step, picture, stance, done)).moves[0]
+        agent.decide(Observation(step, picture, stance, done)).moves[0]
         for step, done in ((0, ()), (1, met), (4, ()))
     ]
     assert decided == [Move.FORWARD, Move.LEFT, Move.STOP]

@@ -19,7 +19,7 @@ from tests.trainers.test_trainers import HERE, python_of, run
 
 from world2minecraft.external_models.chat_client import open_chat
 from world2minecraft.external_models.reply_cache import ReplyStore
-from world2minecraft.navigation.agents import ModelAgent
+from world2minecraft.navigation.agents import VlmAgent
 from world2minecraft.navigation.agents.question_answering import VlmAnswerer
 from world2minecraft.navigation.records import read_items
 from world2minecraft.navigation.running.episode_runner import walk_episode
@@ -84,7 +84,7 @@ def test_a_walk_by_a_live_model(server, tmp_path):
     scene = open_scene(write_flat(tmp_path / "flat"))
     ground = SceneSimulator(scene, camera=camera_of(224, 224, 79.0))
     chat = chat_at(server, tmp_path)
-    agent = ModelAgent(chat, history=1)
+    agent = VlmAgent(chat, history=1)
     episode = episode_of_sentence(scene, GoalRequest("Go to the piano", max_steps=4))
     begin = time.monotonic()
     walk = walk_episode(ground, episode, agent, observers=[TraceWriter(tmp_path)])

@@ -36,10 +36,10 @@ SOURCES = Registry(
         "colmap": "world2minecraft.capture.readers.datasets.colmap:ColmapSource",
         "nerfstudio": "world2minecraft.capture.readers.datasets.nerfstudio:NerfstudioSource",
         "seven_scenes": "world2minecraft.capture.readers.datasets.seven_scenes:SevenScenesSource",
-        "solid": "world2minecraft.capture.readers.meshes.mesh_source:SolidSource",
+        "solid": "world2minecraft.capture.readers.meshes.mesh_source:MeshSource",
         "video": "world2minecraft.capture.readers.video:VideoSource",
         "photos": "world2minecraft.capture.readers.photos:PhotoFolderSource",
-        "photo": "world2minecraft.capture.readers.single_photo:OnePhotoSource",
+        "photo": "world2minecraft.capture.readers.single_photo:SinglePhotoSource",
     },
 )
 TAKES_ANY = ("photos", "photo")  # Asked last, after those of other packages too.

@@ -64,7 +64,7 @@ def run(
     """
     if sum((list_, undo is not None, undo_all, redo is not None)) > 1:
         raise UsageError("--list, --undo, --undo-all and --redo go one at a time")
-    from world2minecraft.editing.cleanup.passes import RULES, mended
+    from world2minecraft.editing.cleanup.passes import RULES, repair_volume
 
     build = build_folder(source)
     history = opened(build)
@@ -77,7 +77,7 @@ def run(
     if undo or undo_all or redo:
         print(taken_back(history, undo, undo_all, redo))
     else:
-        edits = mended(history.volume, tuple(only or RULES))[1]
+        edits = repair_volume(history.volume, tuple(only or RULES))[1]
         first = 0 if dry_run else len(history.journal.edits)
         print(listed(edits, [True] * len(edits), first) or "Nothing is left to mend.")
         if dry_run or not edits:

@@ -8,7 +8,7 @@ import typer
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
-    from world2minecraft.minecraftocc.cell_predictions import SaidCells
+    from world2minecraft.minecraftocc.cell_predictions import PredictedCells
     from world2minecraft.minecraftocc.frame_completion import GridPlace
 
 EXAMPLES = """\
@@ -121,12 +121,12 @@ class _Frame:
         self.source, self.colour = source, colour
         self.depth_code, self.focal_px = depth_code, focal_px
 
-    def by_depth(self, place: "GridPlace") -> "SaidCells":
+    def by_depth(self, place: "GridPlace") -> "PredictedCells":
         """Return what the completion network says."""
         from world2minecraft.capture.depth_images import check_depth_kind
         from world2minecraft.capture.images import read_colour, read_header, read_raw
         from world2minecraft.core.errors import CaptureError
-        from world2minecraft.minecraftocc.cell_predictions import SaidCells
+        from world2minecraft.minecraftocc.cell_predictions import PredictedCells
         from world2minecraft.minecraftocc.frame_completion import (
             VOXEL_M,
             complete_frame,
@@ -149,13 +149,15 @@ class _Frame:
             )
         camera = self._camera(*depth_m.shape)
         found = complete_frame(depth_m, place, colour=photo, camera=camera)
-        return SaidCells(found.labels, found.confidence, found.observed, VOXEL_M, place.origin_m)
+        return PredictedCells(
+            found.labels, found.confidence, found.observed, VOXEL_M, place.origin_m
+        )
 
-    def by_network(self, place: "GridPlace", predictor: str) -> "SaidCells":
+    def by_network(self, place: "GridPlace", predictor: str) -> "PredictedCells":
         """Return what a monocular network says."""
         from world2minecraft.capture.images import read_colour, read_header
         from world2minecraft.core.errors import CaptureError
-        from world2minecraft.minecraftocc.cell_predictions import cells_by_network
+        from world2minecraft.minecraftocc.cell_predictions import predict_cells
         from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 
         photo = self.colour or self.source
@@ -165,7 +167,7 @@ class _Frame:
             )
         network = MonoPredictor(predictor.partition(":")[2]).network
         pixels = read_colour(photo)
-        return cells_by_network(pixels, self._camera(*pixels.shape[:2]), place, network)
+        return predict_cells(pixels, self._camera(*pixels.shape[:2]), place, network)
 
     def _camera(self, height: int, width: int) -> "Camera":
         from world2minecraft.core.types import Camera
@@ -182,14 +184,14 @@ def _of_capture(
     labels: Path | None,
     fov: float | None,
     keep: Path | None,
-) -> "SaidCells":
+) -> "PredictedCells":
     """Run a capture as far as its labels, and write what they are."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import (
-        cells_in_grid,
         cells_of_room,
+        resample_to_grid,
         write_cells,
     )
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
@@ -206,19 +208,19 @@ def _of_capture(
     if place is None:
         write_cells(out, cells, "xyz", scan_to_room=scan_to_room)
         return cells
-    cells = cells_in_grid(cells, scan_to_room, place)
+    cells = resample_to_grid(cells, scan_to_room, place)
     _write_frame(out, cells, place)
     return cells
 
 
-def _write_frame(out: Path, cells: "SaidCells", place: "GridPlace") -> None:
+def _write_frame(out: Path, cells: "PredictedCells", place: "GridPlace") -> None:
     """Write a frame in its file's own axes."""
     from world2minecraft.minecraftocc.cell_predictions import write_cells
 
     write_cells(out, cells, "xzy", camera_to_world=place.camera_to_world)
 
 
-def told(source: Path, out: Path, cells: "SaidCells", grid: Path | None) -> list[str]:
+def told(source: Path, out: Path, cells: "PredictedCells", grid: Path | None) -> list[str]:
     """Return what is printed of the cells of a capture or a photo."""
     import numpy as np
 

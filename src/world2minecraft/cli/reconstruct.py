@@ -198,13 +198,13 @@ def built_from_plan(
 
     UsageError for options that need frames, of which a plan has none.
     """
-    from world2minecraft.capture.readers.roomplan_only import plan_in
+    from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name
     from world2minecraft.runs import make_from_plan
 
-    drawn = plan_in(capture)
+    drawn = find_lone_roomplan(capture)
     if drawn is None:
         return False
     if needs_frames:

@@ -49,7 +49,7 @@ def run(
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
     from world2minecraft.capture import describe_capture
-    from world2minecraft.capture.readers.roomplan_only import plan_in
+    from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
     from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan
@@ -58,7 +58,7 @@ def run(
     if picture is not None and (no_picture or as_json):
         raise UsageError("--picture draws one; leave out --no-picture and --json")
     options = with_settings(Parameters(), settings or []).capture
-    plan = plan_in(capture)
+    plan = find_lone_roomplan(capture)
     if plan is not None:
         _print_all(plan_lines(capture, read_roomplan(plan)), as_json)
         return

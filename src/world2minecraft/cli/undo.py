@@ -42,13 +42,13 @@ def run(
     """
     if blocks and force:
         raise UsageError("--blocks and --force are two ways to undo; choose one")
-    from world2minecraft.editing.backups import steps_of
+    from world2minecraft.editing.backups import list_steps
     from world2minecraft.minecraft.worlds.level_dat import no_world
 
     if list_:
         if not (world / "level.dat").is_file():
             raise no_world(world)
-        steps = steps_of(world)
+        steps = list_steps(world)
         if not steps:
             print(f"{world}: nothing of World2Minecraft is there to undo.")
             return
@@ -57,9 +57,9 @@ def run(
         print(f"{counted(len(steps), 'step')} to undo, the last one first.")
         return
     if blocks:
-        from world2minecraft.editing.world_build import take_blocks_out
+        from world2minecraft.editing.world_build import remove_build
 
-        done = take_blocks_out(world)
+        done = remove_build(world)
         kept = f"; {counted(done.kept, 'block')} changed since stay" if done.kept else ""
         print(f"{world}: {counted(done.blocks, 'block')} put back as before{kept}.")
         return
@@ -72,25 +72,25 @@ def undo_files(world: Path, force: bool) -> str:
     Raises:
         UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
     """
-    from world2minecraft.editing.backups import changed_since, recover, steps_of, take_back
+    from world2minecraft.editing.backups import changed_since, list_steps, recover, revert_step
     from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     with session_lock(world):
-        cut_off = [step for step in steps_of(world) if step.state != "done"]
+        cut_off = [step for step in list_steps(world) if step.state != "done"]
         if cut_off:
             if force:
-                take_back(cut_off[-1])
+                revert_step(cut_off[-1])
             else:
                 recover(world)
             return f"{world}: a step that was cut off is taken back."
-        steps = steps_of(world)
+        steps = list_steps(world)
         if not steps:
             raise UsageError(f"{world}: nothing of World2Minecraft is there to undo")
         changed = changed_since(steps[-1])
         if changed and not force:
             reason = f"{changed[0]} was saved since; --blocks takes out what was built and keeps"
             raise ConflictError(world, f"{reason} the rest, --force brings the old files back")
-        take_back(steps[-1])
+        revert_step(steps[-1])
         files = counted(len(steps[-1].files), "file")
         return f"{world}: {files} brought back, byte by byte as before."
 

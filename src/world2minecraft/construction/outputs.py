@@ -4,7 +4,7 @@ from pathlib import Path
 
 from world2minecraft.construction.spawn import find_spawn
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.entities import check_displays
 from world2minecraft.minecraft.schematics.sponge import write_schem
@@ -52,7 +52,7 @@ def write_build(
         write_datapack(volume, target / "datapack.zip", version=version, name="room")
     else:
         (target / "datapack.zip").unlink(missing_ok=True)
-    scene = scene_of(
+    scene = scene_from_volume(
         volume,
         mc_version=version.name,
         data_version=version.data_version,

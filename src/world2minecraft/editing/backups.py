@@ -35,7 +35,7 @@ _ALLOWED = re.compile(
 
 
 @dataclass(frozen=True)
-class Touched:
+class FileChange:
     """One file of a step: its path in the world and the SHA-256 before and after, None for none."""
 
     path: str
@@ -52,7 +52,7 @@ class Step:
     folder: Path
     state: str
     what: str
-    files: tuple[Touched, ...]
+    files: tuple[FileChange, ...]
     made: tuple[str, ...]  # Folders that were not there before.
 
     @property
@@ -61,7 +61,7 @@ class Step:
         return self.folder.parent.parent
 
 
-def steps_of(world: Path) -> list[Step]:
+def list_steps(world: Path) -> list[Step]:
     """Return the steps that can be taken back, the first one first.
 
     Raises:
@@ -73,7 +73,7 @@ def steps_of(world: Path) -> list[Step]:
     return [_read_step(folder) for folder in folders]
 
 
-def commit(
+def commit_step(
     world: Path,
     files: Mapping[str, bytes | None],
     what: str,
@@ -123,7 +123,7 @@ def recover(world: Path) -> list[Step]:
     for folder in sorted((world / FOLDER).glob("[0-9]*")):
         if not (folder / MANIFEST).is_file():  # Cut off before it touched anything.
             shutil.rmtree(folder, ignore_errors=True)
-    cut_off = [step for step in steps_of(world) if step.state != DONE]
+    cut_off = [step for step in list_steps(world) if step.state != DONE]
     for step in reversed(cut_off):
         changed = changed_since(step)
         if changed:
@@ -145,7 +145,7 @@ def changed_since(step: Step) -> list[str]:
     ]
 
 
-def files_of_its_own(step: Step) -> dict[str, bytes | None]:
+def previous_data_packs(step: Step) -> dict[str, bytes | None]:
     """Return what a step's files beside the regions were before it, where they are as it left them.
 
     Raises:
@@ -160,7 +160,7 @@ def files_of_its_own(step: Step) -> dict[str, bytes | None]:
     return found
 
 
-def take_back(step: Step) -> None:
+def revert_step(step: Step) -> None:
     """Bring back every byte that a step changed, and forget the step.
 
     Raises:
@@ -176,7 +176,7 @@ def take_back(step: Step) -> None:
         (step.world / FOLDER).rmdir()
 
 
-def forget(step: Step) -> None:
+def discard_step(step: Step) -> None:
     """Remove a step's backup; the world keeps what the step did."""
     _forget(step)
     with suppress(OSError):
@@ -200,7 +200,7 @@ def _prepare(step: Step, files: Mapping[str, bytes | None], edit: BlockEdit | No
     _mark(step, PREPARED)
 
 
-def _exchange(step: Step, number: int, entry: Touched) -> None:
+def _exchange(step: Step, number: int, entry: FileChange) -> None:
     target = step.world / entry.path
     if entry.after is None:
         target.unlink(missing_ok=True)
@@ -253,7 +253,7 @@ def _read_step(folder: Path) -> Step:
     path = folder / MANIFEST
     raw = read_json(path, 16 << 20)
     try:
-        files = tuple(Touched(**entry) for entry in raw["files"])
+        files = tuple(FileChange(**entry) for entry in raw["files"])
         step = Step(folder, str(raw["state"]), str(raw["what"]), files, tuple(raw["made"]))
         for entry in files:
             _check_path(step.world, entry.path, path)
@@ -275,14 +275,14 @@ def _check_path(world: Path, name: Any, manifest: Path) -> None:
         raise DamagedFileError(manifest, f"names {name}, which is a link out of the world")
 
 
-def _touched(world: Path, name: str, data: bytes | None) -> Touched:
+def _touched(world: Path, name: str, data: bytes | None) -> FileChange:
     _check_path(world, name, world / name)
     path = world / name
     after = None if data is None else hashlib.sha256(data).hexdigest()
     if not path.exists():
-        return Touched(name, None, after)
+        return FileChange(name, None, after)
     stat = path.stat()
-    return Touched(name, _checksum(path), after, stat.st_mode & 0o777, stat.st_mtime_ns)
+    return FileChange(name, _checksum(path), after, stat.st_mode & 0o777, stat.st_mtime_ns)
 
 
 def _checksum(path: Path) -> str | None:

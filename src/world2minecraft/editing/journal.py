@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, LimitError, OutputError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, Entity
-from world2minecraft.editing.record_log import RecordFile, packed_record
+from world2minecraft.editing.record_log import RecordFile, pack_record
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
 
 EDIT_LIMITS = NbtLimits(depth=64, values=2_000_000, bytes=256 << 20)
@@ -185,7 +185,7 @@ class Journal:
 
 def write_journal(path: str | Path, edits: Sequence[BlockEdit]) -> None:
     """Write a whole journal of edits that are all done, atomically. Raises OutputError."""
-    records = [packed_record(DO, number, pack_edit(edit)) for number, edit in enumerate(edits)]
+    records = [pack_record(DO, number, pack_edit(edit)) for number, edit in enumerate(edits)]
     write_bytes(path, MARK + b"".join(records))
 
 

@@ -127,7 +127,7 @@ class RecordFile:
         """
         if NUMBER.size + len(content) > self.limit:
             raise LimitError(self.path, f"takes no edit of more than {self.limit:,} bytes")
-        packed = packed_record(verb, number, content)
+        packed = pack_record(verb, number, content)
         at = self.end or len(self.mark)
         is_new = not self.path.exists()
         try:
@@ -172,7 +172,7 @@ def _next(stream: BinaryIO, at: int, size: int) -> tuple[Record | None, bytes]:
     return None, b""
 
 
-def packed_record(verb: bytes, number: int, content: bytes = b"") -> bytes:
+def pack_record(verb: bytes, number: int, content: bytes = b"") -> bytes:
     """Return the bytes of one record."""
     packed = zlib.compress(NUMBER.pack(verb, number) + content, LEVEL)
     return HEAD.pack(len(packed), zlib.crc32(packed)) + packed

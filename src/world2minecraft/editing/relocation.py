@@ -11,7 +11,7 @@ from world2minecraft.minecraft.rules.attached_entities import attached
 from world2minecraft.minecraft.transforms import turn_volume
 
 
-def placed(
+def place_volume(
     volume: BlockVolume, at: tuple[int, int, int], turns: int, ground_y: int | None
 ) -> BlockVolume:
     """Return a volume without the air around it, turned and put to a place.
@@ -26,13 +26,13 @@ def placed(
     Raises:
         UsageError: the volume is empty.
     """
-    whole = trimmed(turn_volume(volume, turns))
+    whole = trim_air(turn_volume(volume, turns))
     low = whole.corner[1] if ground_y is None else ground_y
     x, _, z = whole.corner
-    return moved(whole, np.array(at) - (x, low, z))
+    return translate_volume(whole, np.array(at) - (x, low, z))
 
 
-def trimmed(volume: BlockVolume) -> BlockVolume:
+def trim_air(volume: BlockVolume) -> BlockVolume:
     """Return a volume without the layers of air around its blocks.
 
     Raises:
@@ -53,7 +53,7 @@ def trimmed(volume: BlockVolume) -> BlockVolume:
     )
 
 
-def moved(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
+def translate_volume(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
     """Return a volume moved by whole blocks, int [3]; every block keeps its room point."""
     back = np.eye(4)
     back[:3, 3] = -step

@@ -153,7 +153,9 @@ class Draft:
             held = self._palette[now.states[at]]
             return f"block {place} holds {held} now, not {was} as before the edit"
         gone = {entity_key(entity) for entity in edit.before.entities} - self._entities.keys()
-        if gone or data_keys(now.block_entities) != data_keys(edit.before.block_entities):
+        if gone or block_entity_keys(now.block_entities) != block_entity_keys(
+            edit.before.block_entities
+        ):
             return "a sign, a chest or an entity changed since"
         return ""
 
@@ -172,7 +174,7 @@ class Draft:
             self._entities[entity_key(entity)] = entity
 
 
-def applied(volume: BlockVolume, *edits: BlockEdit) -> BlockVolume:
+def apply_edits(volume: BlockVolume, *edits: BlockEdit) -> BlockVolume:
     """Return a volume with edits done, one after the other.
 
     Raises:
@@ -190,7 +192,7 @@ def entity_key(entity: Entity) -> bytes:
     return write_nbt(held)
 
 
-def data_keys(entities: Sequence[BlockEntity]) -> set[bytes]:
+def block_entity_keys(entities: Sequence[BlockEntity]) -> set[bytes]:
     """Return bytes for each block entity, the same for the same place, kind and data."""
     return {
         write_nbt({"id": e.id, "pos": list(map(int, e.block_pos)), "nbt": e.nbt}) for e in entities
@@ -222,7 +224,7 @@ class History:
 
     def do(self, edit: BlockEdit) -> None:
         """Do an edit. Raises ConflictError or OutputError; then nothing has changed."""
-        volume = applied(self.volume, edit)
+        volume = apply_edits(self.volume, edit)
         self.journal.do(edit)
         self.volume = volume
         self._undone.clear()
@@ -241,7 +243,7 @@ class History:
         if chosen not in done:
             known = ", ".join(str(place + 1) for place in done)
             raise UsageError(f"edit {chosen + 1} is not done; those that are: {known}")
-        volume = applied(self.volume, self.journal.edits[chosen].inverse())
+        volume = apply_edits(self.volume, self.journal.edits[chosen].inverse())
         self.journal.undo(chosen)
         self.volume = volume
         self._undone.append(chosen)
@@ -259,7 +261,7 @@ class History:
         chosen = self._undone[-1] if number is None else number
         if chosen >= len(self.journal.edits) or self.journal.is_done[chosen]:
             raise UsageError(f"edit {chosen + 1} was not taken back")
-        volume = applied(self.volume, self.journal.edits[chosen])
+        volume = apply_edits(self.volume, self.journal.edits[chosen])
         self.journal.redo(chosen)
         self.volume = volume
         if chosen in self._undone:

@@ -1,7 +1,7 @@
 """Blocks built into a world that exists, and taken out again.
 
-``build_into`` puts a volume into a world: blocks, what signs and chests hold, and entities; chunks
-keep everything else. ``take_blocks_out`` undoes the last such step block by block, in a world that
+``build_into_world`` puts a volume into a world: blocks, what signs and chests hold, and entities; chunks
+keep everything else. ``remove_build`` undoes the last such step block by block, in a world that
 was played in since.
 """
 
@@ -16,20 +16,20 @@ from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, BlockVolu
 from world2minecraft.editing.backups import (
     JOURNAL,
     Step,
-    commit,
-    files_of_its_own,
-    forget,
+    commit_step,
+    discard_step,
+    list_steps,
+    previous_data_packs,
     recover,
-    steps_of,
 )
 from world2minecraft.editing.journal import Journal
-from world2minecraft.editing.volume_draft import data_keys
+from world2minecraft.editing.volume_draft import block_entity_keys
 from world2minecraft.editing.world_region import (
     WorldBox,
     WorldEntities,
     is_void,
-    marked,
     read_world_box,
+    tag_entities,
 )
 from world2minecraft.minecraft.block_entities import block_entity_in_game, entity_in_game
 from world2minecraft.minecraft.block_states import BlockState, parse_state
@@ -42,7 +42,7 @@ FIRST_DISPLAY_VERSION = 3337  # 1.19.4, the first game with display entities.
 
 
 @dataclass(frozen=True)
-class Outcome:
+class BuildOutcome:
     """What a step did: ``step`` is None where the world was so already."""
 
     step: Step | None
@@ -52,7 +52,7 @@ class Outcome:
     recovered: int = 0  # Steps that had been cut off and were brought back first.
 
 
-def build_into(
+def build_into_world(
     world: Path,
     volume: BlockVolume,
     *,
@@ -60,7 +60,7 @@ def build_into(
     new_chunks: bool = False,
     extra: dict[str, bytes] | None = None,
     what: str = "a build",
-) -> Outcome:
+) -> BuildOutcome:
     """Build a volume into a world, where its ``corner`` says.
 
     Args:
@@ -81,7 +81,7 @@ def build_into(
     """
     with session_lock(world):
         recovered = len(recover(world))
-        mask = built_mask(volume, air)
+        mask = affected_mask(volume, air)
         box = read_world_box(world, volume.corner, volume.states.shape)
         _check_chunks(box, new_chunks or is_void(read_level(world)))
         _check_entities(volume.entities, box)
@@ -91,16 +91,16 @@ def build_into(
         data = _merged_data(box, come, mask)
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
         held = [entity_in_game(e, box.data_version) for e in volume.entities]
-        gone, arriving = found.built(), marked(held)
+        gone, arriving = found.built(), tag_entities(held)
         edit = _edit_of(box, after, data, gone, arriving)
         files = box.changed_files(after, data) | found.changed_files(gone, arriving)
         files |= extra or {}
-        step = commit(world, files, what, edit)
+        step = commit_step(world, files, what, edit)
     changed = 0 if edit is None or step is None else len(edit.cells)
-    return Outcome(step, changed, len(arriving) if step else 0, recovered=recovered)
+    return BuildOutcome(step, changed, len(arriving) if step else 0, recovered=recovered)
 
 
-def take_blocks_out(world: Path) -> Outcome:
+def remove_build(world: Path) -> BuildOutcome:
     """Undo the last step block by block, so that all that was done since stays.
 
     A block that is no longer the one that the step set is left as it is.
@@ -111,10 +111,10 @@ def take_blocks_out(world: Path) -> Outcome:
     """
     with session_lock(world):
         recovered = len(recover(world))
-        steps = steps_of(world)
+        steps = list_steps(world)
         if not steps:
             raise UsageError(f"{world}: nothing of World2Minecraft is there to undo")
-        edit = recorded_edit(steps[-1])
+        edit = edit_of_step(steps[-1])
         low, high = edit.cells.min(axis=0), edit.cells.max(axis=0) + 1
         corner = (int(low[0]), int(low[1]), int(low[2]))
         box = read_world_box(world, corner, (high - low).tolist())
@@ -131,15 +131,15 @@ def take_blocks_out(world: Path) -> Outcome:
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
         gone, come = edit.after.entities, edit.before.entities
         files = box.changed_files(after, data) | found.changed_files(gone, come)
-        files |= files_of_its_own(steps[-1])
-        step = commit(world, files, "taken back block by block")
+        files |= previous_data_packs(steps[-1])
+        step = commit_step(world, files, "taken back block by block")
         for old in (steps[-1], step):
             if old is not None:
-                forget(old)
-    return Outcome(step, int(same.sum()), len(gone), int((~same).sum()), recovered)
+                discard_step(old)
+    return BuildOutcome(step, int(same.sum()), len(gone), int((~same).sum()), recovered)
 
 
-def recorded_edit(step: Step) -> BlockEdit:
+def edit_of_step(step: Step) -> BlockEdit:
     """Return the blocks that a step changed.
 
     Raises:
@@ -160,7 +160,7 @@ def check_air(air: str) -> None:
         raise UsageError(f"--air must be {', '.join(AIR_CHOICES)}, not {air!r}")
 
 
-def built_mask(volume: BlockVolume, air: str) -> np.ndarray:
+def affected_mask(volume: BlockVolume, air: str) -> np.ndarray:
     """Return which cells, bool [X, Y, Z], of a volume a world takes over.
 
     Raises:
@@ -216,8 +216,8 @@ def _edit_of(
 ) -> BlockEdit | None:
     """The change as an edit of blocks: of those that change, or hold data."""
     moved = after != box.states
-    changed = data_keys(box.data) ^ data_keys(data)
-    old, new = ([e for e in held if data_keys([e]) <= changed] for held in (box.data, data))
+    changed = block_entity_keys(box.data) ^ block_entity_keys(data)
+    old, new = ([e for e in held if block_entity_keys([e]) <= changed] for held in (box.data, data))
     for entity in (*old, *new):
         moved[_cell_of(entity, box)] = True
     cells = np.argwhere(moved)

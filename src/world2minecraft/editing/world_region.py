@@ -35,7 +35,7 @@ MAX_CELLS = 64 << 20
 MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.
 Place = tuple[int, int]
 Corner = tuple[int, int, int]
-BUILT = "w2m_built"  # The tag of the entities that were built into a world.
+BUILT_TAG = "w2m_built"  # The tag of the entities that were built into a world.
 
 
 @dataclass
@@ -264,7 +264,9 @@ class WorldEntities:
 
     def built(self) -> tuple[Entity, ...]:
         """Return the entities in the box that an earlier build left there."""
-        found = [entity_of(nbt) for held in self._held.values() for nbt in held if _is_built(nbt)]
+        found = [
+            entity_from_nbt(nbt) for held in self._held.values() for nbt in held if _is_built(nbt)
+        ]
         return tuple(entity for entity in found if self._is_inside(entity))
 
     def changed_files(
@@ -301,7 +303,7 @@ class WorldEntities:
         self._roots[place] = root
         try:
             for nbt in held:
-                entity_of(nbt)
+                entity_from_nbt(nbt)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise DamagedFileError(region.path, "has an entity without id and place") from error
         return held
@@ -330,29 +332,29 @@ class WorldEntities:
         return bool(((offset >= 0) & (offset <= self._size)).all())
 
 
-def entity_of(nbt: dict[str, Any]) -> Entity:
+def entity_from_nbt(nbt: dict[str, Any]) -> Entity:
     """Return an entity of its NBT; all of its tags stay in ``nbt``."""
     x, y, z = (float(value) for value in nbt["Pos"])
     return Entity((x, y, z), str(nbt["id"]), dict(nbt))
 
 
-def marked(entities: Sequence[Entity]) -> tuple[Entity, ...]:
+def tag_entities(entities: Sequence[Entity]) -> tuple[Entity, ...]:
     """Return entities with their UUID and the tag by which a later build knows them."""
     found = []
     for number, entity in enumerate(entities):
         nbt = entity_nbt(entity, number)
-        tags = [tag for tag in entity_tags(nbt) if tag != BUILT]
-        found.append(entity_of(nbt | {"Tags": [*tags, BUILT]}))
+        tags = [tag for tag in entity_tags(nbt) if tag != BUILT_TAG]
+        found.append(entity_from_nbt(nbt | {"Tags": [*tags, BUILT_TAG]}))
     return tuple(found)
 
 
 def with_uuid(entity: Entity) -> Entity:
     """Return an entity whose NBT is whole, as a world holds it."""
-    return entity if "UUID" in entity.nbt and "Pos" in entity.nbt else marked([entity])[0]
+    return entity if "UUID" in entity.nbt and "Pos" in entity.nbt else tag_entities([entity])[0]
 
 
 def _is_built(nbt: dict[str, Any]) -> bool:
-    return BUILT in entity_tags(nbt)
+    return BUILT_TAG in entity_tags(nbt)
 
 
 def _uuid(nbt: Any) -> bytes:

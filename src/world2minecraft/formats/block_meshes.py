@@ -1,8 +1,14 @@
-"""A block volume as bodies: one mesh for each object, wall, floor, ceiling and window.
+"""Meshes of a block volume: one for each object, wall, floor, ceiling and window.
 
-In: a BlockVolume. Out: bodies in metres with y up (block axes times the block's size, from the
-room's origin), closed each for itself, with the colour of every face. Display entities belong to
-the object that they draw. What nobody sees (air, barriers, light blocks) has no body.
+Meshes are in metres with y up (block axes times the block's size, from the room's origin), closed
+each for itself, with the colour of every face. Display entities belong to the object that they
+draw. What nobody sees (air, barriers, light blocks) has no mesh.
+
+Boxes of one owner that touch hide each other's faces, and faces of one material that lie side by
+side become one rectangle (greedy meshing). What is left is exactly the surface of the union of an
+owner's boxes, where these share no volume. Owners do not hide each other: each is a closed mesh of
+its own, so that it can be moved. Through a clear material one sees what is behind, so it hides only
+what is clear too.
 """
 
 from collections.abc import Iterable
@@ -21,16 +27,14 @@ from world2minecraft.minecraft.commands.fill_boxes import merge_boxes
 from world2minecraft.minecraft.entities import display_cubes, owner_of
 from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
 
-# The visible faces of boxes, as few rectangles: what a mesh of blocks is made of.
-#
-# Boxes of one owner that touch hide each other's faces, and faces of one material that lie side by
-# side become one rectangle (greedy meshing). What is left is exactly the surface of the union of an
-# owner's boxes, where these share no volume. Owners do not hide each other: each is a closed body
-# of its own, so that it can be moved. Through a clear material one sees what is behind, so it hides
-# only what is clear too.
-
 # Which ends of u and v the four corners take, counter-clockwise for a face along its axis.
 _U_ENDS, _V_ENDS = np.array([0, 1, 1, 0]), np.array([0, 0, 1, 1])
+STEPS = 64  # Parts of a block that box corners are rounded to; the game's own table needs 32.
+CLEAR_ALPHA = 90  # Of 255: a pane is seen and seen through.
+CLEAR_NAMES = ("glass", "ice")  # Parts of names, as of glass_pane; not of packed_ice.
+OPAQUE_NAMES = ("packed_ice", "blue_ice", "tinted_glass")
+ANY_SIZE = 1 << 30
+_CLASSES = 1 << 16  # Owners below it are instances, above it classes without instances.
 
 
 class Faces(NamedTuple):
@@ -193,14 +197,6 @@ def _is_all(drawn, side, u, v0, v1, kind):  # pragma: no cover
         if drawn[side, u, v] != kind:
             return False
     return True
-
-
-STEPS = 64  # Parts of a block that box corners are rounded to; the game's own table needs 32.
-CLEAR_ALPHA = 90  # Of 255: a pane is seen and seen through.
-CLEAR_NAMES = ("glass", "ice")  # Parts of names, as of glass_pane; not of packed_ice.
-OPAQUE_NAMES = ("packed_ice", "blue_ice", "tinted_glass")
-ANY_SIZE = 1 << 30
-_CLASSES = 1 << 16  # Owners below it are instances, above it classes without instances.
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,15 @@
 """glTF: a volume as a binary ``.glb`` with one mesh for each object.
 
 Metres, y up, from the room's origin: room (x, y, z) stands at (x, z, -y). Each object is a node
-with its middle below as origin, and ``extras``: ``class`` (the id), ``class_name``, ``instance``
-and ``size_m`` along x, y and z. Colours are texels of one small texture, so that every viewer,
-engine and editor shows them; a second texture holds what glows.
+with the middle of its underside as origin, and ``extras``: ``class`` (the id), ``class_name``,
+``instance`` and ``size_m`` along x, y and z. Colours are texels of one small texture, so that every
+viewer, engine and editor shows them; a second texture holds what glows.
 
-The blocks themselves lie in a buffer view of their own, named by the root's ``extras``: from a
-file that no editor has written since, ``read_gltf`` gives the volume back, labels and all.
+A ``.glb`` is one JSON chunk and one chunk of little-endian numbers; each view of the numbers starts
+at a multiple of four. The blocks themselves lie in a buffer view of their own, named by the root's
+``extras``: one NBT tree, packed by gzip, of sides, corner, ``block_to_room``, palette, states,
+labels, block entities and entities. From a file that no editor has written since, ``read_gltf``
+gives the volume back, labels and all.
 """
 
 import io
@@ -27,11 +30,6 @@ from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.formats.block_meshes import BlockMesh, Look, volume_meshes
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
 
-# The container of binary glTF 2.0: one JSON chunk and one chunk of numbers.
-#
-# ``GlbWriter`` gathers arrays and lists and gives the bytes; ``read_glb`` gives the tree and the
-# numbers back, checked. The numbers are little-endian, each view starting at a multiple of four.
-
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 MAX_BYTES = 192 << 20
 MAX_JSON_BYTES = 8 << 20  # A thousand objects take one; JSON grows thirtyfold in memory.
@@ -39,6 +37,13 @@ VERTICES, INDICES = 34962, 34963  # Which buffer of a graphics card a view is fo
 _COMPONENTS = {np.dtype("<f4"): 5126, np.dtype("<u4"): 5125, np.dtype("<u2"): 5123}
 _KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _HEAD, _CHUNK = struct.Struct("<III"), struct.Struct("<II")
+MAX_CELLS = 32 << 20  # 320 blocks a side; with its labels such a volume takes 160 MB.
+LIMITS = NbtLimits(bytes=6 * MAX_CELLS)
+_ARRAYS = (("states", np.uint16), ("semantic", np.uint8), ("instance", np.uint16))
+EXTRAS_KEY = "world2minecraft"
+TRIANGLES = np.array([0, 1, 2, 0, 2, 3])
+NEAREST, CLAMP = 9728, 33071  # A texel keeps its own colour at any distance.
+OPAQUE, CLEAR = 0, 1  # The two materials.
 
 
 class GlbWriter:
@@ -151,16 +156,6 @@ def _tree_of(text: memoryview, path: str | Path) -> dict[str, Any]:
     return tree
 
 
-# A whole volume as bytes: what files that are no format of the game carry of it.
-#
-# One NBT tree, packed by gzip: sides, corner, ``block_to_room``, palette, states, labels, block
-# entities and entities. It is read within the same bounds as every NBT file.
-
-MAX_CELLS = 32 << 20  # 320 blocks a side; with its labels such a volume takes 160 MB.
-LIMITS = NbtLimits(bytes=6 * MAX_CELLS)
-_ARRAYS = (("states", np.uint16), ("semantic", np.uint8), ("instance", np.uint16))
-
-
 def pack_volume(volume: BlockVolume) -> bytes:
     """Return the bytes of a volume; the same volume gives the same bytes.
 
@@ -238,12 +233,6 @@ def _entity(row: dict[str, Any]) -> Entity:
     return Entity(
         (x, y, z), str(row["id"]), dict(row["nbt"]), int(row["class"]), int(row["instance"])
     )
-
-
-EXTRAS_KEY = "world2minecraft"
-TRIANGLES = np.array([0, 1, 2, 0, 2, 3])
-NEAREST, CLAMP = 9728, 33071  # A texel keeps its own colour at any distance.
-OPAQUE, CLEAR = 0, 1  # The two materials.
 
 
 def write_gltf(

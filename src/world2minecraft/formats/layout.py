@@ -20,7 +20,7 @@ from world2minecraft.formats.scan import read_room_size
 
 def write_layouts(path: str | Path, layouts: tuple[Layout, ...]) -> None:
     """Write the rooms, in the order given."""
-    write_json(path, [layout_row(layout) for layout in layouts])
+    write_json(path, [layout_to_json(layout) for layout in layouts])
 
 
 def read_layouts(path: str | Path) -> tuple[Layout, ...]:
@@ -35,13 +35,13 @@ def read_layouts(path: str | Path) -> tuple[Layout, ...]:
     layouts = []
     for number, row in enumerate(rows):
         try:
-            layouts.append(layout_of_row(row))
+            layouts.append(layout_from_json(row))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise DamagedFileError(path, f"row {number} is not valid ({error})") from error
     return tuple(layouts)
 
 
-def layout_row(layout: Layout) -> dict[str, Any]:
+def layout_to_json(layout: Layout) -> dict[str, Any]:
     """Return a room as plain values, without its objects."""
     return {
         "name": layout.name,
@@ -61,7 +61,7 @@ def layout_row(layout: Layout) -> dict[str, Any]:
     }
 
 
-def layout_of_row(row: dict[str, Any]) -> Layout:
+def layout_from_json(row: dict[str, Any]) -> Layout:
     """Return the room of a row.
 
     Raises:
@@ -81,12 +81,6 @@ def layout_of_row(row: dict[str, Any]) -> Layout:
 
 def _rounded(values: np.ndarray) -> list:
     return np.round(np.asarray(values, np.float64), 4).tolist()
-
-
-# The rooms of a run, each as a Layout: its outline, its height, its floor and its openings.
-#
-# They come from ``layout.json``; where a run has none, or it found no outline, from ``scan.json``:
-# one room, as long, deep and high as the capture was aligned to.
 
 
 def read_rooms(folder: str | Path, grid: OccupancyGrid) -> tuple[Layout, ...]:

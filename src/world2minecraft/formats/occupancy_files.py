@@ -1,6 +1,15 @@
-"""``occ.json`` and ``centers.json`` of any make: the paper prints no schema for either.
+"""Occupancy files: ours, the paper's, those of other programs, or a bare array of class ids.
 
-Read as voxels, whatever holds them (an object's first list of the names in ``_HOLDERS``):
+===================  ==========================================================================
+``room.npz``         all arrays of OccupancyGrid
+``*.npz``            ``labels`` uint8 [X, Y, Z]; optional ``voxel_m`` (0.08) and ``origin_m`` (0)
+``*.npy``            the labels alone
+``*.json``           ``occ.json``
+===================  ==========================================================================
+
+The paper prints no schema for ``occ.json`` and ``centers.json``, so ``read_any_occ`` and
+``read_any_centers`` accept many. They read as voxels, whatever holds them (an object's first list
+of the names in ``_HOLDERS``):
 
 - ``[[x, y, z, class], ...]``; ``[{"x", "y", "z", "class"}, ...]``; ``[{"position": [x, y, z],
   "class"}, ...]``; two lists of the same length, of places and of classes;
@@ -8,8 +17,8 @@ Read as voxels, whatever holds them (an object's first list of the names in ``_H
 - a class for each cell: ``[[[...]]]``, by x, y and z.
 
 Classes are numbers of 0 to 11, 255, or names. Places are cells where all are whole numbers, else
-metres: their middles. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their kin; what
-is missing is 0.08 m (of metres: the smallest step) and just large enough. Centres are read alike.
+metres: their middles. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their synonyms;
+what is missing is 0.08 m (of metres: the smallest step) and just large enough.
 """
 
 import math
@@ -26,16 +35,24 @@ from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
 
-# Any occupancy file: ours, the paper's, or a bare array of class ids.
-#
-# ===================  ==========================================================================
-# ``room.npz``         all arrays of OccupancyGrid
-# ``*.npz``            ``labels`` uint8 [X, Y, Z]; optional ``voxel_m`` (0.08) and ``origin_m`` (0)
-# ``*.npy``            the labels alone
-# ``*.json``           ``occ.json``
-# ===================  ==========================================================================
-
 DEFAULT_VOXEL_M = 0.08  # The paper's.
+CELLS, METRES = "cells", "metres"
+_HOLDERS = (
+    "voxels", "occupancy", "occ", "centers", "centres", "center_points", "cells", "points",
+    "grid", "data", "objects", "instances",
+)  # fmt: skip
+_PLACES = (
+    "position_m", "center_m", "position", "center", "centre", "coords", "coord", "coordinates",
+    "positions", "location", "point", "xyz", "indices", "index", "points",
+)  # fmt: skip
+_CLASSES = (
+    "class_id", "class", "label", "category", "category_id", "semantic", "type", "cls",
+    "labels", "classes", "categories", "value", "name",
+)  # fmt: skip
+_SIDES = ("voxel_m", "voxel_size", "voxelSize", "resolution", "voxel", "cell_size")
+_ORIGINS = ("origin_m", "origin", "min_bound", "offset", "min")
+_SHAPES = ("shape", "dims", "dimensions", "grid_size", "gridSize", "size")
+_OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0, "free": 0}
 
 
 def read_occupancy(path: str | Path) -> OccupancyGrid:
@@ -119,25 +136,6 @@ def _inner_cell(wall_counts: np.ndarray, occupied: np.ndarray) -> int:
     return int(occupied.argmax())
 
 
-CELLS, METRES = "cells", "metres"
-_HOLDERS = (
-    "voxels", "occupancy", "occ", "centers", "centres", "center_points", "cells", "points",
-    "grid", "data", "objects", "instances",
-)  # fmt: skip
-_PLACES = (
-    "position_m", "center_m", "position", "center", "centre", "coords", "coord", "coordinates",
-    "positions", "location", "point", "xyz", "indices", "index", "points",
-)  # fmt: skip
-_CLASSES = (
-    "class_id", "class", "label", "category", "category_id", "semantic", "type", "cls",
-    "labels", "classes", "categories", "value", "name",
-)  # fmt: skip
-_SIDES = ("voxel_m", "voxel_size", "voxelSize", "resolution", "voxel", "cell_size")
-_ORIGINS = ("origin_m", "origin", "min_bound", "offset", "min")
-_SHAPES = ("shape", "dims", "dimensions", "grid_size", "gridSize", "size")
-_OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0, "free": 0}
-
-
 class Center(NamedTuple):
     """The middle of an object, float64 [3], in the room frame, and its class."""
 
@@ -157,18 +155,20 @@ def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
         return read_occ_json(path), CELLS
     told = value if isinstance(value, dict) else {}
     try:
-        held = _held(value)
-        if (labels := _dense(held)) is not None:
-            unit, origin = CELLS, _told(told, _ORIGINS, [0.0] * 3)
-            voxel_m = float(_told(told, _SIDES, DEFAULT_VOXEL_M))
+        held = _voxel_list(value)
+        if (labels := _dense_labels(held)) is not None:
+            unit, origin = CELLS, _first_of(told, _ORIGINS, [0.0] * 3)
+            voxel_m = float(_first_of(told, _SIDES, DEFAULT_VOXEL_M))
         else:
             points, classes = _points(held)
             unit = CELLS if np.array_equal(points, np.round(points)) else METRES
             voxel_m = float(
-                _told(told, _SIDES, _step(points) if unit == METRES else DEFAULT_VOXEL_M)
+                _first_of(
+                    told, _SIDES, _smallest_step(points) if unit == METRES else DEFAULT_VOXEL_M
+                )
             )
-            cells, origin = _cells(points, unit, voxel_m, _told(told, _ORIGINS, None))
-            labels = _filled(path, cells, classes, _told(told, _SHAPES, None))
+            cells, origin = _cells(points, unit, voxel_m, _first_of(told, _ORIGINS, None))
+            labels = _fill_grid(path, cells, classes, _first_of(told, _SHAPES, None))
         low = np.array(origin, np.float64)
         return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
     except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
@@ -188,9 +188,9 @@ def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[
     """
     value = read_json(path)
     try:
-        held = _held(value)
+        held = _voxel_list(value)
         rows = held if isinstance(held, list) else []
-        in_metres = unit == METRES or _is_said(rows, ("position_m", "center_m"))
+        in_metres = unit == METRES or _has_any_key(rows, ("position_m", "center_m"))
         points, classes = _points(held)
         if not in_metres:
             points = grid.origin_m + (points + 0.5) * grid.voxel_m
@@ -199,19 +199,19 @@ def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[
         raise DamagedFileError(path, f"holds centres in no known form ({error})") from error
 
 
-def _held(value: Any) -> Any:
+def _voxel_list(value: Any) -> Any:
     """Return what holds the voxels: the value itself, or a part of it under a known name."""
     for name in _HOLDERS:
         if isinstance(value, dict) and isinstance(value.get(name), list | dict):
             names = (*_CLASSES, *_PLACES)
             has_twin = any(isinstance(value.get(other), list) for other in names if other != name)
-            if name in _PLACES and has_twin and _is_flat(value, name):
+            if name in _PLACES and has_twin and _has_class_list(value, name):
                 return value
-            return _held(value[name]) if isinstance(value[name], dict) else value[name]
+            return _voxel_list(value[name]) if isinstance(value[name], dict) else value[name]
     return value
 
 
-def _is_flat(value: Mapping[str, Any], name: str) -> bool:
+def _has_class_list(value: Mapping[str, Any], name: str) -> bool:
     """Whether a list of places has its classes in a list beside it."""
     return any(
         isinstance(value.get(other), list) and len(value[other]) == len(value[name])
@@ -219,7 +219,7 @@ def _is_flat(value: Mapping[str, Any], name: str) -> bool:
     )
 
 
-def _dense(held: Any) -> np.ndarray | None:
+def _dense_labels(held: Any) -> np.ndarray | None:
     """Return labels [X, Y, Z] where there is a class for each cell, else None."""
     try:
         is_deep = isinstance(held, list) and isinstance(held[0][0], list)
@@ -244,7 +244,7 @@ def _points(held: Any) -> tuple[np.ndarray, np.ndarray]:
 
 def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
     if isinstance(held, dict):
-        places, classes = _told(held, _PLACES, None), _told(held, _CLASSES, None)
+        places, classes = _first_of(held, _PLACES, None), _first_of(held, _CLASSES, None)
         if isinstance(places, list) and isinstance(classes, list):
             if len(places) != len(classes):
                 raise ValueError(f"{len(places)} places have {len(classes)} classes")
@@ -261,7 +261,7 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
     for row in held:
         if isinstance(row, list) and len(row) < 4:
             raise ValueError(f"{row} is not x, y, z and a class")
-        yield _place(row), row[3] if isinstance(row, list) else _told(row, _CLASSES, None)
+        yield _place(row), row[3] if isinstance(row, list) else _first_of(row, _CLASSES, None)
 
 
 def _place(row: Any) -> list[float]:
@@ -269,7 +269,7 @@ def _place(row: Any) -> list[float]:
         return [float(value) for value in row[:3]]
     if "x" in row:
         return [float(row[axis]) for axis in "xyz"]
-    place = _told(row, _PLACES, None)
+    place = _first_of(row, _PLACES, None)
     return [float(place[axis]) for axis in "xyz"] if isinstance(place, dict) else place[:3]
 
 
@@ -287,15 +287,15 @@ def _class(name: Any) -> int:
     return int(number)
 
 
-def _told(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
+def _first_of(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
     return next((row[name] for name in names if name in row), default)
 
 
-def _is_said(rows: Iterable[Any], names: Iterable[str]) -> bool:
+def _has_any_key(rows: Iterable[Any], names: Iterable[str]) -> bool:
     return any(name in row for row in rows if isinstance(row, dict) for name in names)
 
 
-def _step(points: np.ndarray) -> float:
+def _smallest_step(points: np.ndarray) -> float:
     """Return the smallest step between places, which is the side of a cell."""
     steps = [np.diff(np.unique(np.round(axis, 4))) for axis in points.T]
     found = [float(step.min()) for step in steps if len(step)]
@@ -317,7 +317,7 @@ def _cells(
     return np.floor((points - low) / voxel_m + 1e-6).astype(np.int64), low
 
 
-def _filled(path: str | Path, cells: np.ndarray, classes: np.ndarray, shape: Any) -> np.ndarray:
+def _fill_grid(path: str | Path, cells: np.ndarray, classes: np.ndarray, shape: Any) -> np.ndarray:
     if not len(cells) and shape is None:
         raise ValueError("there is no voxel, and no shape")
     least = cells.max(axis=0) + 1 if len(cells) else np.ones(3, np.int64)

@@ -1,7 +1,12 @@
-"""``centers.npz``: the density map, the candidates and their clusters (the paper's D, C and C').
+"""Arrays of a run's folder: ``room.npz``, ``evidence.npz`` and ``centers.npz``.
 
-Arrays: ``density`` float32 [X, Y, Z]; ``candidates`` int32 [M, 3], cells; ``cluster`` int32 [M],
-the number of each candidate's cluster, -1 for none.
+- ``room.npz``, an OccupancyGrid and where it stands in the scan: ``labels``, ``confidence``,
+  ``colour``, ``source``, ``instance`` as in OccupancyGrid; ``voxel_m`` float64; ``origin_m`` float64
+  [3]; ``scan_to_room`` float64 [4, 4].
+- ``evidence.npz``: FusedEvidence, enough to run the label stage and all after it again. Cells
+  without votes take most of the room, and compress to nothing.
+- ``centers.npz``, the paper's D, C and C': ``density`` float32 [X, Y, Z]; ``candidates`` int32
+  [M, 3], cells; ``cluster`` int32 [M], the number of each candidate's cluster, -1 for none.
 """
 
 from pathlib import Path
@@ -12,12 +17,17 @@ from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 
-# ``room.npz``: an OccupancyGrid, and where it stands in the scan.
-#
-# Arrays: ``labels``, ``confidence``, ``colour``, ``source``, ``instance`` as in OccupancyGrid;
-# ``voxel_m`` float64; ``origin_m`` float64 [3]; ``scan_to_room`` float64 [4, 4].
-
 GRID_ARRAYS = ("labels", "confidence", "colour", "source", "instance", "voxel_m", "origin_m")
+EVIDENCE_ARRAYS = (
+    "log_odds",
+    "votes",
+    "colour_sum",
+    "offset_sum",
+    "hits",
+    "voxel_m",
+    "origin_m",
+    "scan_to_room",
+)
 
 
 def write_room(path: str | Path, grid: OccupancyGrid, scan_to_room: np.ndarray) -> None:
@@ -40,22 +50,6 @@ def read_room(path: str | Path) -> tuple[OccupancyGrid, np.ndarray]:
         return OccupancyGrid(**arrays), np.asarray(scan_to_room, np.float64).reshape(4, 4)  # type: ignore[arg-type]
     except (ValueError, TypeError) as error:
         raise DamagedFileError(path, f"is no room ({error})") from error
-
-
-# ``evidence.npz``: FusedEvidence, enough to run the label stage and all after it again.
-#
-# Arrays as in FusedEvidence. Cells without votes take most of the room, and compress to nothing.
-
-EVIDENCE_ARRAYS = (
-    "log_odds",
-    "votes",
-    "colour_sum",
-    "offset_sum",
-    "hits",
-    "voxel_m",
-    "origin_m",
-    "scan_to_room",
-)
 
 
 def write_evidence(path: str | Path, evidence: FusedEvidence) -> None:

@@ -1,4 +1,8 @@
-"""``scan.json``: how a capture was read and aligned."""
+"""``scan.json`` and ``poses.npz``: how a capture was read and aligned, and what registration changed.
+
+``poses.npz`` holds, frame by frame: ``names`` [F]; ``pose_change`` float64 [F, 4, 4], scan to scan,
+applied on the left of a frame's pose; ``depth_scale`` float64 [F], what its depth is multiplied by.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,12 +15,8 @@ from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import Corrections, Scan
 
-# ``poses.npz``: what registration changed, frame by frame.
-#
-# ``names`` [F]; ``pose_change`` float64 [F, 4, 4], scan to scan, applied on the left of a frame's
-# pose; ``depth_scale`` float64 [F], what its depth is multiplied by.
-
 POSE_ARRAYS = ("names", "pose_change", "depth_scale")
+MAX_NAME_LENGTH = 60
 
 
 def write_poses(path: str | Path, corrections: Corrections) -> None:
@@ -44,9 +44,6 @@ def read_poses(path: str | Path) -> Corrections:
         return Corrections(names, arrays["pose_change"], arrays["depth_scale"])
     except (ValueError, TypeError) as error:
         raise DamagedFileError(path, f"holds no corrections ({error})") from error
-
-
-MAX_NAME_LENGTH = 60
 
 
 def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | None = None) -> None:

@@ -55,7 +55,7 @@ class Scene:
         return float(np.linalg.norm(self.block_to_room[:3, 0]))
 
 
-def scene_of(
+def scene_from_volume(
     volume: BlockVolume,
     *,
     mc_version: str,

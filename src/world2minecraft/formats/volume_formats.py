@@ -1,7 +1,8 @@
-"""Every form that a volume comes in: the game's formats, and those of other programs beside them.
+"""Volumes in any format: the game's, and those of other programs.
 
-In: a path. Out: a volume, or a file. A form is one class, as in ``minecraft.formats``, and one line
-of ``SCENE_FORMATS``. Beside the blocks, a run's folder and its ``build`` know what the blocks are.
+A scene format is one class, as in ``minecraft.formats``, and one line of ``SCENE_FORMATS``. Where a
+run's folder or its ``build`` holds a ``scene.json``, the volume that is read takes its labels and
+its scale from there.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,9 +25,14 @@ from world2minecraft.minecraft.formats import (
     read_blocks,
 )
 
-# Blocks and, from the ``scene.json`` beside them, what they are and how large they are.
-
 SCENE_FILE = "scene.json"
+SCENE_FORMATS = Registry(
+    "scene_format",
+    {
+        "glb": "world2minecraft.formats.volume_formats:GltfFormat",
+        "habitat": "world2minecraft.formats.volume_formats:HabitatFormat",
+    },
+)
 
 
 def find_blocks(path: Path) -> Path:
@@ -85,7 +91,9 @@ def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
     return wanted > 0 and met >= wanted / 2
 
 
-def overlapping_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+def overlapping_cells(
+    volume: BlockVolume, scene: Scene
+) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     """Return the cells that both hold, as slices of each."""
     low = np.maximum(volume.corner, scene.corner)
     high = np.minimum(
@@ -98,15 +106,6 @@ def overlapping_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, .
         return tuple(slice(max(int(a), 0), max(int(b), 0)) for a, b in steps)
 
     return window(volume.corner), window(scene.corner)
-
-
-SCENE_FORMATS = Registry(
-    "scene_format",
-    {
-        "glb": "world2minecraft.formats.volume_formats:GltfFormat",
-        "habitat": "world2minecraft.formats.volume_formats:HabitatFormat",
-    },
-)
 
 
 class GltfFormat(FileFormat):
@@ -271,7 +270,9 @@ def format_by_name(name: str) -> BlockFormat:
 def writable_format_names() -> list[str]:
     """Return the names of the forms that are written as files of their own."""
     pairs = [
-        (name, registry.load(name)()) for registry in (FORMATS, SCENE_FORMATS) for name in registry.names()
+        (name, registry.load(name)())
+        for registry in (FORMATS, SCENE_FORMATS)
+        for name in registry.names()
     ]
     return [name for name, form in pairs if form.can_write and form.suffix]
 

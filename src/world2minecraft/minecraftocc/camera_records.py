@@ -121,7 +121,7 @@ def paper_matrices(
     return k, e
 
 
-def camera_of_record(record: Mapping[str, Any]) -> tuple[Camera, np.ndarray]:
+def camera_from_record(record: Mapping[str, Any]) -> tuple[Camera, np.ndarray]:
     """Return the camera and ``camera_to_room``, float64 [4, 4], of a record.
 
     Raises:

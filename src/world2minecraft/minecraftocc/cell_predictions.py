@@ -22,7 +22,7 @@ OBSERVED = 1  # Of ``OccupancyGrid.source``.
 
 
 @dataclass(frozen=True, eq=False)
-class SaidCells:
+class PredictedCells:
     """Labels of a grid along its world's axes x, y, z up."""
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11, or 255 where nobody looked
@@ -32,7 +32,7 @@ class SaidCells:
     origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
 
 
-def write_cells(out: Path, cells: SaidCells, axes: str, **more: np.ndarray) -> None:
+def write_cells(out: Path, cells: PredictedCells, axes: str, **more: np.ndarray) -> None:
     """Write an npz: labels, confidence, observed, voxel_m, origin_m, axes and what is given.
 
     Args:
@@ -59,14 +59,16 @@ def write_cells(out: Path, cells: SaidCells, axes: str, **more: np.ndarray) -> N
     )
 
 
-def cells_of_room(grid: OccupancyGrid) -> SaidCells:
+def cells_of_room(grid: OccupancyGrid) -> PredictedCells:
     """Return what a room's grid says; unseen cells are 255."""
-    return SaidCells(
+    return PredictedCells(
         grid.labels, grid.confidence, grid.source == OBSERVED, grid.voxel_m, grid.origin_m
     )
 
 
-def cells_in_grid(room: SaidCells, scan_to_room: np.ndarray, place: GridPlace) -> SaidCells:
+def resample_to_grid(
+    room: PredictedCells, scan_to_room: np.ndarray, place: GridPlace
+) -> PredictedCells:
     """Return what a room's cells say of a grid file's cells: of each, the cell its centre is in.
 
     Args:
@@ -85,7 +87,7 @@ def cells_in_grid(room: SaidCells, scan_to_room: np.ndarray, place: GridPlace) -
     if not inside.any():
         raise InputError("grid", "lies beside all that the capture shows; is it of another world?")
     held = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
-    return SaidCells(
+    return PredictedCells(
         np.where(inside, room.labels[held], np.uint8(UNKNOWN)),
         np.where(inside, room.confidence[held], 0).astype(np.float32),
         inside & room.observed[held],
@@ -94,9 +96,9 @@ def cells_in_grid(room: SaidCells, scan_to_room: np.ndarray, place: GridPlace) -
     )
 
 
-def cells_by_network(
+def predict_cells(
     photo: np.ndarray, camera: Camera, place: GridPlace, network: OccupancyNetwork
-) -> SaidCells:
+) -> PredictedCells:
     """Return what a monocular network says of a frame's grid, from one photo.
 
     A network of cells twice as large says of each what it says of the eight in it. Nothing of it
@@ -135,7 +137,7 @@ def cells_by_network(
     )
     for axis in range(3):
         chance = np.repeat(chance, times, axis=axis)
-    return SaidCells(
+    return PredictedCells(
         chance.argmax(axis=-1).astype(np.uint8),
         chance.max(axis=-1),
         np.zeros(SHAPE, bool),

@@ -8,17 +8,17 @@ from PIL import Image, ImageDraw, ImageFont
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_camera
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_frames
 from world2minecraft.rendering.scene import BlockScene
 
 GAP_PX, LINE_PX = 6, 16
 PAPER, INK = (250, 250, 248), (40, 42, 46)
-MOST_PX = 60_000_000  # Of a sheet.
+MAX_PX = 60_000_000  # Of a sheet.
 
 
-def picture_sheet(
+def make_contact_sheet(
     pictures: Iterable[tuple[np.ndarray, str]], columns: int = 6, tile_px: int = 240
 ) -> np.ndarray:
     """Return a sheet of pictures with captions, uint8 [H, W, 3].
@@ -31,13 +31,13 @@ def picture_sheet(
     Raises:
         UsageError: there is no picture, or the sheet would be too large.
     """
-    tiles = [(_shrunk(colour, tile_px), caption) for colour, caption in pictures]
+    tiles = [(_thumbnail(colour, tile_px), caption) for colour, caption in pictures]
     if not tiles:
         raise UsageError("a sheet needs one picture or more")
     tall = max(tile.height for tile, _ in tiles) + LINE_PX + GAP_PX
     columns = min(columns, len(tiles))
     size = (columns * (tile_px + GAP_PX) + GAP_PX, -(-len(tiles) // columns) * tall + GAP_PX)
-    if size[0] * size[1] > MOST_PX:
+    if size[0] * size[1] > MAX_PX:
         raise UsageError(f"a sheet of {size[0]}x{size[1]} pixels is too large; ask for fewer")
     page = Image.new("RGB", size, PAPER)
     drawn, font = ImageDraw.Draw(page), ImageFont.load_default(12)
@@ -49,11 +49,11 @@ def picture_sheet(
     return np.asarray(page)
 
 
-def spread(count: int, most: int) -> list[int]:
+def spread_indices(count: int, most: int) -> list[int]:
     """Return up to ``most`` numbers below ``count``, evenly spread.
 
     Example:
-        >>> spread(10, 4)
+        >>> spread_indices(10, 4)
         [0, 3, 6, 9]
     """
     if count <= most:
@@ -61,11 +61,11 @@ def spread(count: int, most: int) -> list[int]:
     return [int(n) for n in np.round(np.linspace(0, count - 1, most))]
 
 
-def drawn_views(
+def draw_views(
     scene: BlockScene,
     views: Sequence[tuple[Camera, np.ndarray]],
     width_px: int,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
 ) -> Iterable[np.ndarray]:
     """Draw views small, uint8 [h, width_px, 3] each.
 
@@ -81,7 +81,7 @@ def drawn_views(
         yield np.asarray(picture.colour)
 
 
-def _shrunk(colour: np.ndarray, width_px: int) -> Image.Image:
+def _thumbnail(colour: np.ndarray, width_px: int) -> Image.Image:
     picture = Image.fromarray(colour)
     height_px = max(1, round(picture.height * width_px / picture.width))
     return picture.resize((width_px, height_px), Image.Resampling.BOX)

@@ -29,7 +29,7 @@ from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.world_reader import read_level, region_files
-from world2minecraft.minecraftocc.block_map import BlockMap, classify, load_block_map, remapped
+from world2minecraft.minecraftocc.block_map import BlockMap, classify, load_block_map, remap_labels
 from world2minecraft.minecraftocc.block_map.parser import MAPS
 from world2minecraft.minecraftocc.labels.fine_classes import fine_names
 
@@ -279,7 +279,9 @@ class SceneSource:
             return volume
         names = fine_names(volume, self.designs())
         fine = names.of_cells(np.arange(volume.states.size)).reshape(volume.states.shape)
-        return replace(volume, semantic=remapped(volume.semantic, fine, names.classes, self.rules))
+        return replace(
+            volume, semantic=remap_labels(volume.semantic, fine, names.classes, self.rules)
+        )
 
 
 def open_scene_source(

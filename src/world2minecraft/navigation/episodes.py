@@ -15,7 +15,7 @@ from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.oracle import ORACLE_VERSION, ExpertPath, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
+from world2minecraft.navigation.scores import EpisodeScore, WalkedPath, score_episode
 from world2minecraft.navigation.values import Episode, Instruction, MoveSet, Stance
 
 MIN_PATH_M, MAX_PATH_M = 1.0, 25.0  # Of the way on foot; shorter is no walk.
@@ -192,7 +192,7 @@ def score_walk(
     if not reference:
         way = plan_expert_path(scene, episode.start, episode.goals, moves_of(episode))
         reference = way.stances if way else (episode.start,)
-    walked = Walked(
+    walked = WalkedPath(
         scene.to_room_m([stance.feet for stance in stances]),
         np.array([scene.distance_m(stance.feet, episode.goals) for stance in stances]),
         stopped,

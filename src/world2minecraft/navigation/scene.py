@@ -19,7 +19,7 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume, Camera, Layout
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.volume_formats import (find_blocks)
+from world2minecraft.formats.volume_formats import find_blocks
 from world2minecraft.furniture.library import TEMPLATES
 from world2minecraft.minecraft.physics.any_angle_paths import (
     Lattice,
@@ -42,7 +42,7 @@ from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.navigation.landmarks import Landmark, landmarks_of
 from world2minecraft.navigation.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.navigation.values import Stance
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
@@ -309,7 +309,7 @@ class VlnScene:
         camera: Camera,
         *,
         outputs: Collection[str] = DEFAULT_OUTPUTS,
-        light: LookLight = DAY,
+        light: LightSettings = DAY,
         threads: int = 1,
     ) -> Picture:
         """Return what one who stands so sees."""

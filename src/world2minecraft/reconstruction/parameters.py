@@ -8,11 +8,11 @@ import math
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
-from world2minecraft.capture.sfm import PosingParameters
+from world2minecraft.capture.sfm import SfmParameters
 from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.formats.volume_formats import (format_by_name)
+from world2minecraft.formats.volume_formats import format_by_name
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
 from world2minecraft.reconstruction.instances import FindParameters
@@ -50,7 +50,7 @@ class Parameters:
     known: tuple[str, float] | None = None
     known_points: tuple[str, str, float] | None = None
     capture: dict[str, str] = field(default_factory=dict)
-    posing: PosingParameters = field(default_factory=PosingParameters)
+    posing: SfmParameters = field(default_factory=SfmParameters)
     stereo: StereoParameters = field(default_factory=StereoParameters)
     register: RegisterParameters = field(default_factory=RegisterParameters)
     occupy: OccupyParameters = field(default_factory=OccupyParameters)

@@ -13,7 +13,7 @@ from world2minecraft.construction import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
-from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
 from world2minecraft.formats.objects import (
@@ -26,15 +26,19 @@ from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_evidence, read_room, write_centers, write_room
 from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
-from world2minecraft.formats.volume_formats import (format_by_name, read_run_templates, write_volume_formats)
+from world2minecraft.formats.volume_formats import (
+    format_by_name,
+    read_run_templates,
+    write_volume_formats,
+)
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.reconstruction.fusion import (
     calibrate,
     close_structure,
     confidence_table,
+    read_out,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval import furnish
@@ -176,7 +180,7 @@ def _mended(folder: Path, chosen: Parameters) -> tuple[BlockVolume, tuple[BlockE
         parameters=chosen.build,
         name=scene_name(folder),
     )
-    return mended(volume) if chosen.mend else (volume, ())
+    return repair_volume(volume) if chosen.mend else (volume, ())
 
 
 def scene_name(folder: Path) -> str:

@@ -5,7 +5,7 @@ a whole room, ``cast_voxels`` scans a fine grid. Whoever takes many pictures of 
 its scene once, with ``prepare_scene`` or ``prepare_voxels``.
 """
 
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, NEUTRAL
 from world2minecraft.rendering.picture import Picture, render_parallel, render_volume
 from world2minecraft.rendering.preview import plan_view, preview
@@ -21,7 +21,7 @@ __all__ = [
     "DAY",
     "NEUTRAL",
     "BlockScene",
-    "LookLight",
+    "LightSettings",
     "Picture",
     "VoxelHits",
     "VoxelScene",

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light.exposure import scene_exposure
 from world2minecraft.rendering.ray_caster.shading import (
     ShadingParameters,
@@ -16,14 +16,14 @@ from world2minecraft.rendering.scene import BlockScene
 Backdrop = tuple[tuple[int, int, int], tuple[int, int, int]]
 
 EXPOSURE_CELLS = 8  # Eyes so near to each other see by one exposure.
-DAY = LookLight()
-NEUTRAL = LookLight(preset="neutral")
+DAY = LightSettings()
+NEUTRAL = LightSettings(preset="neutral")
 # A quiet, warm light grey, a little darker towards the bottom.
 BACKDROP: Backdrop = ((238, 238, 236), (214, 214, 212))
 
 
 def shading_parameters(
-    light: LookLight,
+    light: LightSettings,
     scene: BlockScene,
     background: Backdrop | None = None,
     eyes: np.ndarray | None = None,
@@ -40,7 +40,7 @@ def shading_parameters(
     return _cached_parameters(light, exposure_of(light, scene, eyes), background)
 
 
-def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
+def exposure_of(light: LightSettings, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
     """Return the exposure of pictures from some eyes; those in a lump of cells share one."""
     for stated in (light.exposure, scene.exposure):
         if stated is not None:
@@ -58,7 +58,7 @@ def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = N
 
 @lru_cache(maxsize=64)
 def _cached_parameters(
-    light: LookLight, exposure: float, background: Backdrop | None
+    light: LightSettings, exposure: float, background: Backdrop | None
 ) -> ShadingParameters:
     parameters, tone = light.parameters(exposure), light.tone
     if background is None and light.preset == "neutral":

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.free_space import observed_free_space
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
@@ -57,7 +57,7 @@ def render_volume(
     camera_to_room: np.ndarray,
     *,
     outputs: Collection[str] = DEFAULT_OUTPUTS,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
     samples: int = 1,
     threads: int = 1,
     background: Backdrop | None = None,
@@ -91,7 +91,7 @@ def render_parallel(
     camera_to_room: np.ndarray,
     *,
     outputs: Collection[str] = DEFAULT_OUTPUTS,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
     samples: int = 1,
     threads: int = 1,
     background: Backdrop | None = None,

@@ -15,7 +15,7 @@ from world2minecraft.construction import BuildParameters, build_volume, find_spa
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
-from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
 from world2minecraft.reconstruction.stages import corner_m
@@ -97,7 +97,7 @@ class Build:
             parameters=replace(BuildParameters(), style=options.style),
             name=scene.name,
         )
-        return cls(scene.rev, options, mended(volume)[0])
+        return cls(scene.rev, options, repair_volume(volume)[0])
 
     @cached_property
     def grid_to_room(self) -> np.ndarray:

@@ -12,7 +12,7 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import UNSEEN
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene.difference import labels_in_cells
+from world2minecraft.editing.scene.difference import resample_labels
 from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.formats.occupancy_files import read_occupancy
@@ -29,7 +29,7 @@ def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
         InputError: it is no occupancy file.
         UsageError: it lies beside the scene, or has larger cells.
     """
-    return labels_in_cells(read_occupancy(path), draft)
+    return resample_labels(read_occupancy(path), draft)
 
 
 def truth_folder(run: Path, capture: Path | None) -> Path | None:

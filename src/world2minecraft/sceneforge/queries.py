@@ -17,11 +17,11 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.progress import Progress
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.cell_patch import runs_of_cells
-from world2minecraft.editing.scene.command_registry import first_fault
-from world2minecraft.editing.scene.diagnostics import Doubt, find_doubts, ordered
-from world2minecraft.editing.scene.difference import difference
+from world2minecraft.editing.scene.command_registry import first_error
+from world2minecraft.editing.scene.diagnostics import Diagnostic, find_diagnostics, rank_diagnostics
+from world2minecraft.editing.scene.difference import compare_labels
 from world2minecraft.editing.scene.furniture_commands import ObjectClass
-from world2minecraft.editing.scene.object_boxes import object_named
+from world2minecraft.editing.scene.object_boxes import object_by_id
 from world2minecraft.editing.scene.object_transforms import Id
 from world2minecraft.editing.scene.planes import find_planes
 from world2minecraft.editing.scene.repair import (
@@ -175,7 +175,7 @@ class Compare(Query):
 
 def compared(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
     """Return what ``compare`` answers for other labels uint8 [X, Y, Z] in the scene's cells."""
-    found = difference(draft.labels, other)
+    found = compare_labels(draft.labels, other)
     masks = {"added": found.added, "removed": found.removed, "changed": found.changed}
     counts = count_occupancy(draft.labels, other)
     classes = zip(CLASS_NAMES[1:], counts.class_iou[1:].tolist(), strict=True)
@@ -237,7 +237,7 @@ class Alternatives(Query):
 
     def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"template", "quarter_turns", "iou"}]``, best first; none without cells."""
-        one = object_named(scene.draft, self.id)
+        one = object_by_id(scene.draft, self.id)
         found = instance_of(one, scene.draft.cells_of(one.id))
         rows = ranked_matches(scene.draft.grid(), found, OFFERED, scene.opened.rooms)
         return [{"template": name, "quarter_turns": turns, "iou": iou} for name, turns, iou in rows]
@@ -292,7 +292,9 @@ class Doubtful(Query):
 
     def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
-        found = ordered([*_clash_doubts(scene), *find_doubts(scene.draft, scene.progress)])
+        found = rank_diagnostics(
+            [*_clash_doubts(scene), *find_diagnostics(scene.draft, scene.progress)]
+        )
         return [
             {
                 "at_m": np.round(one.at_m, 3).tolist(),
@@ -306,7 +308,7 @@ class Doubtful(Query):
         ]
 
 
-def _clash_doubts(scene: QueriedScene) -> Iterator[Doubt]:
+def _clash_doubts(scene: QueriedScene) -> Iterator[Diagnostic]:
     for clash in _clashes(scene):
         number = clash["ids"][-1]
         name = CLASS_NAMES[scene.draft.objects[number].class_id]
@@ -314,7 +316,7 @@ def _clash_doubts(scene: QueriedScene) -> Iterator[Doubt]:
         if clash["kind"] == "collision":
             other = scene.draft.objects[clash["ids"][0]]
             doubt, why = 0.95, f"this {name} and {CLASS_NAMES[other.class_id]} {other.id} collide"
-        yield Doubt(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
+        yield Diagnostic(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
 
 
 def _clashes(scene: QueriedScene) -> Iterator[dict[str, Any]]:
@@ -360,4 +362,4 @@ def parse_query(name: str, fields: dict[str, Any]) -> Query:
     try:
         return QUERIES[name].model_validate(fields)
     except ValidationError as error:
-        raise UsageError(first_fault(name, error)) from error
+        raise UsageError(first_error(name, error)) from error

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from world2minecraft.capture.readers.roomplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import (
     ConflictError,
@@ -386,7 +386,7 @@ def is_capture(place: Path) -> bool:
         find_capture(place)
         return True
     except InputError:
-        return plan_in(place) is not None
+        return find_lone_roomplan(place) is not None
 
 
 def _folder_name(title: str) -> str:

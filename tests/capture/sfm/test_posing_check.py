@@ -5,12 +5,12 @@ import pytest
 from PIL import Image
 from tests.capture.sfm.box_room import CAMERA, jittered, photos, poses
 
-from world2minecraft.capture.sfm import PosingParameters, align_similarity, check_poses
+from world2minecraft.capture.sfm import SfmParameters, align_similarity, check_poses
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo
 
-SMALL = PosingParameters(working_px=76_800, most_features=800)
+SMALL = SfmParameters(working_px=76_800, most_features=800)
 LOOK_ASIDE = np.array([[0, 0, 1, 0.5], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1.0]])
 
 
@@ -102,7 +102,7 @@ def test_the_real_kitchen_states_the_depth_cameras_poses(shared_data):
         colour = np.asarray(Image.open(path).convert("RGB"))
         stated = Camera(640, 480, 585.0, 585.0, 320.0, 240.0)
         given.append(Photo(path.stem, colour, stated, False, pose))
-    scene = check_poses(given, PosingParameters(working_px=480_000))
+    scene = check_poses(given, SfmParameters(working_px=480_000))
     assert len(scene.names) == 10
     assert scene.facts["error_before_px"] > 1.2 and scene.facts["error_after_px"] < 0.6
     assert scene.cameras[0].fx_px == pytest.approx(525, abs=12)

@@ -7,21 +7,21 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
-from world2minecraft.capture.sfm import PosingParameters, find_poses
+from world2minecraft.capture.sfm import SfmParameters, find_poses
 from world2minecraft.capture.sfm import pycolmap_session as colmap
 from world2minecraft.capture.sfm import results as reasons
-from world2minecraft.capture.sfm.bundle_adjustment import projected
+from world2minecraft.capture.sfm.bundle_adjustment import project_points
 from world2minecraft.capture.sfm.camera_groups import (
+    default_camera,
     from_colmap,
-    is_sane,
-    normalised,
+    is_plausible_camera,
+    normalise_pixels,
     to_colmap,
-    usual_camera,
 )
 from world2minecraft.capture.sfm.features import sharpness
-from world2minecraft.capture.sfm.incremental_mapping import joined
-from world2minecraft.capture.sfm.matching import matches, worth_matching
-from world2minecraft.capture.sfm.pose_verification import outliers, sampson
+from world2minecraft.capture.sfm.incremental_mapping import merge_models
+from world2minecraft.capture.sfm.matching import match_descriptors, select_pairs
+from world2minecraft.capture.sfm.pose_verification import find_outliers, sampson_errors
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 from world2minecraft.core.types import Camera
@@ -51,33 +51,38 @@ def test_matches_are_those_of_the_definition():
     first = descriptors(rng, 60)
     noisy = first[::-1] + rng.integers(0, 12, first.shape).astype(np.uint8)
     second = np.concatenate([descriptors(rng, 20), noisy])
-    found = matches(first, second).tolist()
+    found = match_descriptors(first, second).tolist()
     assert len(found) > 40 and found == slow_matches(first, second)
 
 
 def test_nothing_matches_nothing():
     empty, one = np.zeros((0, 128), np.uint8), descriptors(np.random.default_rng(0), 1)
-    assert len(matches(empty, one)) == len(matches(one, empty)) == len(matches(one, one)) == 0
+    assert (
+        len(match_descriptors(empty, one))
+        == len(match_descriptors(one, empty))
+        == len(match_descriptors(one, one))
+        == 0
+    )
 
 
 def test_the_most_alike_and_neighbours_are_matched():
     alike = np.zeros((5, 5), np.int64)
     alike[0, 4] = alike[4, 0] = 30
     alike[1, 2] = alike[2, 1] = 5
-    chosen = worth_matching(alike, PosingParameters(partners=1, neighbours=1))
+    chosen = select_pairs(alike, SfmParameters(partners=1, neighbours=1))
     assert chosen == [(0, 4), (1, 2)]
 
 
 def test_seeing_undoes_what_a_bent_lens_does():
     rays = np.random.default_rng(0).uniform(-0.5, 0.5, (50, 2))
-    pixels = projected(BENT, np.concatenate([rays, np.ones((50, 1))], axis=1) * 3.0)
-    assert np.allclose(normalised(BENT, pixels), rays, atol=1e-8)
+    pixels = project_points(BENT, np.concatenate([rays, np.ones((50, 1))], axis=1) * 3.0)
+    assert np.allclose(normalise_pixels(BENT, pixels), rays, atol=1e-8)
 
 
 @pytest.mark.parametrize(
     "camera",
     [
-        usual_camera(640, 480),
+        default_camera(640, 480),
         Camera(640, 480, 500.0, 500.0, 310.0, 250.0, (-0.1, 0.02, 0, 0, 0)),
         Camera(640, 480, 500.0, 505.0, 310.0, 250.0, (-0.1, 0.02, 0.001, 0.002, 0)),
         BENT,
@@ -88,13 +93,15 @@ def test_cameras_come_back_from_colmap_and_see_alike(camera):
         made = to_colmap(pycolmap, camera, 1, simple=False)
         assert from_colmap(made) == camera
         points = np.random.default_rng(0).uniform([-1, -1, 2], [1, 1, 4], (20, 3))
-        assert np.allclose(made.img_from_cam(points), projected(camera, points), atol=1e-6)
+        assert np.allclose(made.img_from_cam(points), project_points(camera, points), atol=1e-6)
 
 
 def test_sane_lenses():
-    assert is_sane(usual_camera(640, 480)) and is_sane(usual_camera(640, 480, 0.4))
-    assert not is_sane(usual_camera(640, 480, 2.8))
-    assert not is_sane(Camera(640, 480, 512.0, 512.0, 320.0, 240.0, (1.2, 0, 0, 0, 0)))
+    assert is_plausible_camera(default_camera(640, 480)) and is_plausible_camera(
+        default_camera(640, 480, 0.4)
+    )
+    assert not is_plausible_camera(default_camera(640, 480, 2.8))
+    assert not is_plausible_camera(Camera(640, 480, 512.0, 512.0, 320.0, 240.0, (1.2, 0, 0, 0, 0)))
 
 
 def test_rays_that_meet_have_no_epipolar_error():
@@ -105,15 +112,15 @@ def test_rays_that_meet_have_no_epipolar_error():
         local = (points - pose[:3, 3]) @ pose[:3, :3]
         seen.append(local[:, :2] / local[:, 2:])
     change = np.linalg.inv(second) @ first
-    assert sampson(seen[0], seen[1], change).max() < 1e-12
-    assert np.median(sampson(seen[0], seen[1] + [0, 0.01], change)) > 0.003
+    assert sampson_errors(seen[0], seen[1], change).max() < 1e-12
+    assert np.median(sampson_errors(seen[0], seen[1] + [0, 0.01], change)) > 0.003
 
 
 def test_outliers_are_far_worse_than_the_rest():
-    usual = PosingParameters()
-    assert outliers({0: 0.5, 1: 0.6, 2: 40.0, 3: 0.7}, 1.0, usual) == {2}
-    assert outliers({0: 9.0, 1: 8.0, 2: 10.0, 3: 12.0}, 1.0, usual) == set()
-    assert outliers({0: 0.5, 1: 40.0, 2: 40.0}, 1.0, usual) == set()
+    usual = SfmParameters()
+    assert find_outliers({0: 0.5, 1: 0.6, 2: 40.0, 3: 0.7}, 1.0, usual) == {2}
+    assert find_outliers({0: 9.0, 1: 8.0, 2: 10.0, 3: 12.0}, 1.0, usual) == set()
+    assert find_outliers({0: 0.5, 1: 40.0, 2: 40.0}, 1.0, usual) == set()
 
 
 def test_blur_is_seen():
@@ -123,7 +130,7 @@ def test_blur_is_seen():
 
 
 def test_models_that_share_photos_are_joined():
-    every, camera = poses(10), usual_camera(320, 240)
+    every, camera = poses(10), default_camera(320, 240)
     turned = np.eye(4)
     turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     first = {i: (every[i], camera) for i in range(7)}
@@ -132,11 +139,11 @@ def test_models_that_share_photos_are_joined():
         pose = turned @ every[i]
         pose[:3, 3] *= 3
         second[i] = (pose, camera)
-    whole, count = joined([first, second])
+    whole, count = merge_models([first, second])
     assert count == 1 and sorted(whole) == list(range(10))
     assert np.allclose(whole[9][0], every[9], atol=1e-7)
     apart = {i: second[i] for i in (6, 7, 8, 9)}
-    assert joined([first, apart]) == (first, 0)
+    assert merge_models([first, apart]) == (first, 0)
 
 
 def test_progress_never_falls_and_ends():
@@ -183,4 +190,4 @@ def test_a_few_placed_photos_are_no_room():
 )
 def test_parameters_are_checked(bad):
     with pytest.raises(ValueError):
-        PosingParameters(**bad)
+        SfmParameters(**bad)

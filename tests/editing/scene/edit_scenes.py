@@ -10,8 +10,7 @@ from world2minecraft.core.types import (
     Operation,
     Placement,
 )
-from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene import objects_of
+from world2minecraft.editing.scene import SceneDraft, objects_of
 
 SHAPE = (7, 6, 5)
 
@@ -82,12 +81,12 @@ def random_operation(draft: SceneDraft, rng: np.random.Generator) -> Operation:
 
 def state(draft: SceneDraft) -> tuple:
     """Everything that a scene holds, in a form that compares."""
-    from world2minecraft.editing.scene.scene_objects import facts
+    from world2minecraft.editing.scene.scene_objects import object_key
 
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
     held = tuple(array.tobytes() for array in arrays)
     return (
         *held,
         draft.counts.tobytes(),
-        *(facts(draft.objects[n]) for n in sorted(draft.objects)),
+        *(object_key(draft.objects[n]) for n in sorted(draft.objects)),
     )

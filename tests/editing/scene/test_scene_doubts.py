@@ -9,7 +9,7 @@ from voxel_scenes import VOXEL_M, grid_of, object_at, random_scene, seeds
 
 from world2minecraft.core.types import Alternative
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.diagnostics import find_doubts
+from world2minecraft.editing.scene.diagnostics import find_diagnostics
 
 
 def table(iou=0.8, at=1, **changed) -> SceneDraft:
@@ -29,7 +29,7 @@ def table(iou=0.8, at=1, **changed) -> SceneDraft:
 
 
 def told(draft):
-    return [(one.kind, one.why, one.object_id) for one in find_doubts(draft)]
+    return [(one.kind, one.why, one.object_id) for one in find_diagnostics(draft)]
 
 
 def test_a_scene_without_faults_leaves_no_doubt():
@@ -70,7 +70,7 @@ def test_a_doubtful_object_is_told_in_a_sentence(draft, expected):
 
 def test_the_worst_reason_of_an_object_is_told_alone():
     draft = table(0.4, at=4)
-    assert [one.kind for one in find_doubts(draft)] == ["unsupported"]
+    assert [one.kind for one in find_diagnostics(draft)] == ["unsupported"]
 
 
 def test_what_was_not_seen_below_may_carry():
@@ -99,7 +99,7 @@ def test_doubtful_cells_are_told_and_mended_ones_are_not():
         ("crumb", "2 cells of objs, part of no object", 0),
         ("completed", "36 cells of floor, completed and never seen", 0),
     ]
-    at_m = find_doubts(draft)[0].at_m
+    at_m = find_diagnostics(draft)[0].at_m
     assert np.allclose(at_m, np.array([10.5, 10.5, 6.5]) * VOXEL_M)
     for cells, class_id in (
         (np.argwhere(np.isin(labels, (5, 11))), 0),
@@ -114,11 +114,11 @@ def test_doubtful_cells_are_told_and_mended_ones_are_not():
 @given(seeds)
 def test_doubts_are_ordered_and_name_objects_that_are_there_once(seed):
     draft = random_scene(seed)
-    found = find_doubts(draft)
+    found = find_diagnostics(draft)
     assert [one.doubt for one in found] == sorted((one.doubt for one in found), reverse=True)
     numbers = [one.object_id for one in found if one.object_id]
     assert len(numbers) == len(set(numbers)) and set(numbers) <= set(draft.objects)
     assert all(0 <= one.doubt <= 1 and one.why for one in found)
-    assert {one.kind for one in find_doubts(draft)} <= {
+    assert {one.kind for one in find_diagnostics(draft)} <= {
         "low_confidence", "low_iou", "floater", "unsupported", "crumb", "unsure_cells",
     }  # fmt: skip

@@ -10,7 +10,7 @@ from test_scene_objects import done, refusal
 
 from world2minecraft.core.types import ObjectInstance
 from world2minecraft.editing.scene import parse_command
-from world2minecraft.editing.scene.object_grouping import clusters_of
+from world2minecraft.editing.scene.object_grouping import cluster_cells
 
 COMMANDS = (
     {"op": "relabel_objects", "ids": [CHAIR, LAMP], "class_id": 10},
@@ -148,11 +148,11 @@ def test_an_object_snaps_onto_what_is_under_it_and_to_the_nearest_wall():
 def test_clusters_are_the_same_each_time_and_part_what_is_far_apart(count, size, chance):
     cells = np.array([[chance.randrange(9) for _ in range(3)] for _ in range(size)])
     cells = np.unique(cells, axis=0)
-    once = clusters_of(cells, count)
-    assert np.array_equal(once, clusters_of(cells.copy(), count))
+    once = cluster_cells(cells, count)
+    assert np.array_equal(once, cluster_cells(cells.copy(), count))
     assert once.min() >= 0 and once.max() < count
     far = np.concatenate([cells, cells + np.array([100, 0, 0])])
-    two = clusters_of(far, 2)
+    two = cluster_cells(far, 2)
     assert (two[: len(cells)] == two[0]).all() and (two[len(cells) :] == 1 - two[0]).all()
 
 

@@ -11,7 +11,7 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
 from world2minecraft.editing.scene.planes import find_planes
-from world2minecraft.editing.scene.repair import find_floaters, pinholes, plane_gaps, smoothed
+from world2minecraft.editing.scene.repair import find_floaters, pinholes, plane_gaps, smooth_labels
 
 AROUND = [step for step in itertools.product((-1, 0, 1), repeat=3) if any(step)]
 FACES = [step for step in AROUND if sum(map(abs, step)) == 1]
@@ -86,7 +86,7 @@ def test_smoothing_is_a_majority_of_neighbours(seed):
     rng = np.random.default_rng(seed)
     shares = rng.dirichlet([1, 1, 1, 1, 0.3])
     labels = rng.choice([0, 5, 8, 3, 255], (5, 4, 6), p=shares).astype(np.uint8)
-    result = smoothed(labels)
+    result = smooth_labels(labels)
     assert np.array_equal(result, slowly_smoothed(labels))
     kept = (labels == 3) | (labels == 255)
     assert (result[kept] == labels[kept]).all() and not ((result == 3) & ~kept).any()
@@ -97,7 +97,7 @@ def test_smoothing_fills_pits_and_leaves_inner_edges():
     labels[:, :, :3] = 7  # A seat
     labels[:, :3, 3:] = 7  # and its back; between them nine cells touch fifteen.
     labels[5, 6, 2] = 0
-    result = smoothed(labels)
+    result = smooth_labels(labels)
     assert result[5, 6, 2] == 7
     result[5, 6, 2] = 0
     assert np.array_equal(result, labels)
@@ -109,7 +109,7 @@ def test_smoothing_takes_bumps_and_leaves_legs():
     labels[2:7, 2:7, 5] = 8  # A table's top, one cell thick,
     labels[2, 2, 1:5] = labels[6, 6, 1:5] = 8  # two legs,
     labels[4, 4, 6] = 8  # and a bump.
-    result = smoothed(labels)
+    result = smooth_labels(labels)
     assert result[4, 4, 6] == 0
     result[4, 4, 6] = 8
     assert np.array_equal(result, labels)

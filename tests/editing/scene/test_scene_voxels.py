@@ -8,8 +8,8 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.scene_objects import component_of, parts_of_cells
-from world2minecraft.editing.scene.voxel_commands import colours_of
+from world2minecraft.editing.scene.scene_objects import connected_component, connected_parts
+from world2minecraft.editing.scene.voxel_commands import infer_colours
 
 STEPS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
@@ -77,7 +77,7 @@ def test_done_and_undone_a_command_is_nothing(seed):
 def test_a_component_is_what_a_flood_reaches(seed):
     draft = random_scene(seed)
     cell = tuple(int(a) for a in np.random.default_rng(seed).integers(draft.shape))
-    fast = [tuple(one) for one in component_of(draft.labels, cell).tolist()]
+    fast = [tuple(one) for one in connected_component(draft.labels, cell).tolist()]
     assert fast == slow_component(draft.labels, cell)
 
 
@@ -85,7 +85,7 @@ def test_a_component_is_what_a_flood_reaches(seed):
 def test_parts_are_apart_and_hold_together(seed, corners):
     mask = np.random.default_rng(seed).random((4, 4, 4)) < 0.3
     cells = np.argwhere(mask)
-    parts = parts_of_cells(cells, corners=corners)
+    parts = connected_parts(cells, corners=corners)
     assert sorted(np.concatenate([*parts, np.zeros(0, int)]).tolist()) == list(range(len(cells)))
     for one in parts:
         for other in parts:
@@ -125,7 +125,7 @@ def test_a_new_cell_has_a_colour_of_the_nearest_cells_of_its_class(seed):
     rng = np.random.default_rng(seed)
     cells = rng.permutation(np.argwhere(draft.labels % 255 == 0))[:5]
     class_id = int(rng.choice([2, 5, 6]))
-    colours = colours_of(draft, cells, np.full(len(cells), class_id, np.uint8))
+    colours = infer_colours(draft, cells, np.full(len(cells), class_id, np.uint8))
     known = np.argwhere((draft.labels == class_id) & draft.colour.any(axis=-1))
     for cell, colour in zip(cells, colours, strict=True):
         gaps = ((known - cell) ** 2).sum(axis=1)

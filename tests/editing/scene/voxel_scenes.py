@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.types import OccupancyGrid, Placement, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools
-from world2minecraft.editing.scene.scene_objects import facts
+from world2minecraft.editing.scene.scene_objects import object_key
 
 VOXEL_M = 0.08
 seeds = st.integers(0, 10_000)
@@ -60,7 +60,7 @@ TOOLS = Tools(match=no_match, find=lambda grid, fields: (grid.instance, ()))
 def held(draft: SceneDraft) -> tuple:
     """All that a scene holds, in values that compare."""
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
-    objects = tuple(facts(draft.objects[number]) for number in sorted(draft.objects))
+    objects = tuple(object_key(draft.objects[number]) for number in sorted(draft.objects))
     return (*(array.tobytes() for array in arrays), draft.counts.tolist(), objects)
 
 

@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Layout, Opening
-from world2minecraft.formats.layout import layout_row, write_layouts
+from world2minecraft.formats.layout import layout_to_json, write_layouts
 from world2minecraft.formats.objects import write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.paper.layouts import ComparedScene, score_scene
@@ -49,7 +49,7 @@ def capture(folder, width):
         {"class": "bed", "name": "bed", "center_m": [1, 1, 0.3], "size_m": [2, 1, 0.6],
          "yaw_deg": 0.0},
     ]  # fmt: skip
-    write(folder / "truth.json", {"objects": objects, "layouts": [layout_row(truth)]})
+    write(folder / "truth.json", {"objects": objects, "layouts": [layout_to_json(truth)]})
     write_npz(
         folder / "truth.npz",
         {

@@ -9,7 +9,7 @@ from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
 from world2minecraft import cli
-from world2minecraft.capture.readers.roomplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
 from world2minecraft.cli.reconstruct import say_plan
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
@@ -238,8 +238,8 @@ def test_openings_of_the_plan_join_those_that_were_found(plan):
 
 
 def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
-    assert plan_in(place) == place
-    assert plan_in(place.parent) == place
+    assert find_lone_roomplan(place) == place
+    assert find_lone_roomplan(place.parent) == place
     out = tmp_path / "OUT"
     built = make_from_plan(place, out, Parameters(blocks_per_metre=2.0), silent, "flat")
     say_plan(out, built)

@@ -19,8 +19,8 @@ from world2minecraft.capture.poster.canvas import (
     blend_colours,
 )
 from world2minecraft.capture.quality.picture_quality import Picture
-from world2minecraft.capture.quality.top_view import Plan
-from world2minecraft.capture.quality.view_directions import Directions
+from world2minecraft.capture.quality.top_view import TopView
+from world2minecraft.capture.quality.view_directions import ViewDirections
 from world2minecraft.capture.validation import spread_over
 
 # The chart of looks: how many pictures cover each heading and each height of look.
@@ -29,7 +29,9 @@ DEEP = blend_colours(FIRST, INK, 0.45)
 HEADINGS = ("N", "E", "S", "W", "N")
 
 
-def draw_view_directions(sheet: Sheet, directions: Directions, corner: Point, size: Point) -> None:
+def draw_view_directions(
+    sheet: Sheet, directions: ViewDirections, corner: Point, size: Point
+) -> None:
     """Draw the chart into a box: headings across, north at both ends; up at the top."""
     sheet.text(corner, "Looked at: heading and tilt", 18)
     most = int(directions.seen.max())
@@ -50,7 +52,7 @@ def draw_view_directions(sheet: Sheet, directions: Directions, corner: Point, si
         sheet.text((at, top + tall + 4), words, 16, INK, anchor=anchor)
 
 
-def direction_heatmap(directions: Directions) -> np.ndarray:
+def direction_heatmap(directions: ViewDirections) -> np.ndarray:
     """Return the counts as colours, uint8 [18, 36, 3], up at the top; none is the panel's."""
     seen = directions.seen[::-1]
     share = np.sqrt(seen / max(1, int(seen.max())))[..., None]
@@ -164,7 +166,7 @@ LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 
 def draw_plan(
-    sheet: Sheet, plan: Plan, directions: Directions | None, corner: Point, size: Point,
+    sheet: Sheet, plan: TopView, directions: ViewDirections | None, corner: Point, size: Point,
     doubtful: frozenset[int], has_unit: bool, walked: bool = True,
 ) -> None:  # fmt: skip
     """Draw the panel into a box of the sheet.
@@ -196,7 +198,7 @@ def draw_plan(
 class PanelTransform:
     """Where a plan lies in its panel; it keeps 54 px free below for the scale bar."""
 
-    def __init__(self, plan: Plan, corner: Point, size: Point):
+    def __init__(self, plan: TopView, corner: Point, size: Point):
         free = (size[0] - 32, size[1] - 32 - 54)
         self.px_per_m = float(min(free[0] / plan.size_m[0], free[1] / plan.size_m[1]))
         width, height = plan.size_m * self.px_per_m
@@ -215,7 +217,7 @@ class PanelTransform:
         )
 
 
-def shade_top_view(plan: Plan) -> np.ndarray:
+def shade_top_view(plan: TopView) -> np.ndarray:
     """Return the plan's raster as it is printed: relief from heights, walls in ink, uint8."""
     height = np.where(plan.seen, plan.height_m, 0.0)
     for axis in (0, 1):
@@ -231,7 +233,7 @@ def shade_top_view(plan: Plan) -> np.ndarray:
     return np.clip(colour * (1 - wall) + np.array(INK) * wall, 0, 255).astype(np.uint8)
 
 
-def _outside(plan: Plan) -> np.ndarray:
+def _outside(plan: TopView) -> np.ndarray:
     """Return float [H, W]: 1 beyond the room's walls, where noise and views out of windows lie."""
     if plan.room_size_m is None:
         return np.zeros(plan.seen.shape)
@@ -245,7 +247,7 @@ def _outside(plan: Plan) -> np.ndarray:
     return (beyond[1][:, None] | beyond[0][None]).astype(np.float64)
 
 
-def _draw_room_size(sheet: Sheet, plan: Plan, place: PanelTransform) -> None:
+def _draw_room_size(sheet: Sheet, plan: TopView, place: PanelTransform) -> None:
     """Write the room's measures at its sides."""
     if plan.room_size_m is None:
         return
@@ -279,7 +281,7 @@ def _draw_dashed_line(sheet: Sheet, start: Point, end: Point) -> None:
 
 
 def _draw_cameras(
-    sheet: Sheet, plan: Plan, place: PanelTransform, doubtful: frozenset[int], walked: bool
+    sheet: Sheet, plan: TopView, place: PanelTransform, doubtful: frozenset[int], walked: bool
 ) -> None:
     """Draw the way of the camera and what it looked at, from teal to orange in time."""
     poses, count = plan.cameras, len(plan.cameras)
@@ -342,7 +344,7 @@ def _draw_scale_bar(
     sheet.text((end + 10, low), f"{length:g} m", 17, INK, anchor="lm")
 
 
-def _draw_direction_rose(sheet: Sheet, directions: Directions, middle: Point) -> None:
+def _draw_direction_rose(sheet: Sheet, directions: ViewDirections, middle: Point) -> None:
     """Draw how much of each heading is seen: petals of eight sectors, gaps in orange."""
     sheet.dot(middle, 50, PAPER, RULE)
     for index, share in enumerate(directions.sectors()):

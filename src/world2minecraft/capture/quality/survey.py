@@ -9,8 +9,8 @@ from world2minecraft.capture.quality.picture_quality import (
     neighbour_overlaps,
     sample_pictures,
 )
-from world2minecraft.capture.quality.top_view import Plan, plan_of
-from world2minecraft.capture.quality.view_directions import Directions, directions_of
+from world2minecraft.capture.quality.top_view import TopView, make_top_view
+from world2minecraft.capture.quality.view_directions import ViewDirections, count_view_directions
 from world2minecraft.capture.validation import JudgedCapture
 
 PICTURES_POSED = 40  # Where poses tell what was seen, pictures are judged by a sample.
@@ -27,20 +27,20 @@ class Survey:
     judged: JudgedCapture
     pictures: tuple[Picture, ...]
     shares: np.ndarray
-    plan: Plan | None
-    directions: Directions | None
+    plan: TopView | None
+    directions: ViewDirections | None
 
 
 def survey_capture(judged: JudgedCapture) -> Survey:
     """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
     if judged.posed:
         pictures = sample_pictures(judged.frames, PICTURES_POSED)
-        plan = plan_of(judged)
+        plan = make_top_view(judged)
         lenses = [frame.colour_camera or frame.depth_camera for frame in judged.frames]
         # With depth, how much neighbours share matters little; stereo lives of it.
         unknown = np.full(max(0, len(pictures) - 1), np.nan)
         shares = unknown if judged.has_depth else neighbour_overlaps(pictures)
-        seen = directions_of(lenses, plan.cameras)
+        seen = count_view_directions(lenses, plan.cameras)
         return Survey(judged, tuple(pictures), shares, plan, seen)
     pictures = sample_pictures(judged.frames)
     return Survey(judged, tuple(pictures), neighbour_overlaps(pictures), None, None)

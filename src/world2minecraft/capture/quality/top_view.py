@@ -1,6 +1,6 @@
 """A first top view of a capture: coloured points of some frames, laid into one level frame.
 
-Points above ``CUT`` of the room's height are left out, so that one looks in from above; where a
+Points above ``CUT_HEIGHT_SHARE`` of the room's height are left out, so that one looks in from above; where a
 column holds points at many heights stands a wall or something tall.
 """
 
@@ -12,8 +12,8 @@ import numpy as np
 from world2minecraft.capture.alignment.gravity import rotation_to_z
 from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.frames import FrameFiles
-from world2minecraft.capture.open_scan import (ALIGNMENT_FRAMES)
-from world2minecraft.capture.quality.view_directions import up_of_cameras
+from world2minecraft.capture.open_scan import ALIGNMENT_FRAMES
+from world2minecraft.capture.quality.view_directions import estimate_up
 from world2minecraft.capture.validation import JudgedCapture, spread_over
 from world2minecraft.capture.view_stream import CaptureViews
 from world2minecraft.core.coordinates import apply
@@ -23,7 +23,7 @@ from world2minecraft.geometry.unprojection import project, unproject_depth
 
 POINTS_EACH = 60_000
 CELLS = 560  # Along the longer side of the plan.
-CUT, CUT_MOST_M = 0.85, 2.1
+CUT_HEIGHT_SHARE, MAX_CUT_M = 0.85, 2.1
 TOP_M = 0.08  # Of each cell's points, those this far below the highest give its colour.
 RISE_M = 0.10
 TALL_BINS = 9  # Points at so many heights, RISE_M apart, make a wall's full ink.
@@ -32,7 +32,7 @@ UNCOLOURED = np.array([176, 178, 180], np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class TopView:
     """A top view, +y (north) at the top of the picture.
 
     ``colour`` uint8 [H, W, 3], ``seen`` bool [H, W] and ``tall`` float32 [H, W] 0 to 1 have row 0
@@ -59,13 +59,13 @@ class Plan:
     trust: float | None = None
 
 
-def plan_of(judged: JudgedCapture) -> Plan:
+def make_top_view(judged: JudgedCapture) -> TopView:
     """Lay some frames of a posed capture into a plan; without depth, the cameras alone."""
     poses = np.array([np.asarray(frame.camera_to_world) for frame in judged.frames])
     with_depth = [frame for frame in judged.frames if frame.depth_path]
     if not with_depth:
-        return _plan_of_cameras(judged, poses)
-    gathered = _Gathered(judged, spread_over(with_depth, ALIGNMENT_FRAMES))
+        return _camera_top_view(judged, poses)
+    gathered = _PointCollector(judged, spread_over(with_depth, ALIGNMENT_FRAMES))
     problem, found = "", None
     try:
         found = align(gathered.views(), judged.capture.world_up)
@@ -77,11 +77,11 @@ def plan_of(judged: JudgedCapture) -> Plan:
             f"none of the {len(gathered.holes)} depth images looked at has any depth that the "
             "device trusts; scan again, nearer and slower",
         )
-    scan_to_level = _level(judged, poses) if found is None else found.scan_to_room
-    return _drawn(gathered, scan_to_level @ poses, scan_to_level, found, problem)
+    scan_to_level = _level_frame(judged, poses) if found is None else found.scan_to_room
+    return _rasterise(gathered, scan_to_level @ poses, scan_to_level, found, problem)
 
 
-class _Gathered:
+class _PointCollector:
     """Reads views once for ``align`` and keeps some coloured points of each on the way."""
 
     def __init__(self, judged: JudgedCapture, frames: Sequence[FrameFiles]):
@@ -108,12 +108,12 @@ class _Gathered:
             self.trusts.append(float(view.trust.mean()) / 255)
         points = points[:: max(1, len(points) // POINTS_EACH)].astype(np.float64)
         self.depths.append(points[::8, 2].astype(np.float32))
-        colours = _colours(view, apply(view.depth_to_colour, points))
+        colours = _sample_colours(view, apply(view.depth_to_colour, points))
         self.points.append(apply(view.depth_camera_to_scan, points).astype(np.float32))
         self.colours.append(colours)
 
 
-def _colours(view: View, points: np.ndarray) -> np.ndarray:
+def _sample_colours(view: View, points: np.ndarray) -> np.ndarray:
     """Return what the colour image shows at points of its camera, uint8 [N, 3]."""
     colours = np.tile(UNCOLOURED, (len(points), 1))
     if view.colour is None or view.colour_camera is None:
@@ -128,11 +128,11 @@ def _colours(view: View, points: np.ndarray) -> np.ndarray:
     return colours
 
 
-def _level(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
+def _level_frame(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
     """Return a turn that sets the scan upright, first look to the north, from what is known."""
     up = judged.capture.world_up
     turned = np.eye(4)
-    turned[:3, :3] = rotation_to_z(up_of_cameras(poses) if up is None else np.asarray(up))
+    turned[:3, :3] = rotation_to_z(estimate_up(poses) if up is None else np.asarray(up))
     look = turned[:3, :3] @ poses[0, :3, 2]
     if np.hypot(look[0], look[1]) > 0.1:
         angle = np.pi / 2 - np.arctan2(look[1], look[0])
@@ -142,14 +142,14 @@ def _level(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
     return turned
 
 
-def _plan_of_cameras(judged: JudgedCapture, poses: np.ndarray) -> Plan:
-    cameras = _level(judged, poses) @ poses
+def _camera_top_view(judged: JudgedCapture, poses: np.ndarray) -> TopView:
+    cameras = _level_frame(judged, poses) @ poses
     places = cameras[:, :2, 3]
     low, high = places.min(axis=0), places.max(axis=0)
     margin = max(MARGIN_M, 0.15 * float((high - low).max()))
     low, high = low - margin, high + margin
     empty = np.zeros((0, 0))
-    return Plan(
+    return TopView(
         empty[..., None].astype(np.uint8).reshape(0, 0, 1),
         empty.astype(bool),
         empty.astype(np.float32),
@@ -161,13 +161,13 @@ def _plan_of_cameras(judged: JudgedCapture, poses: np.ndarray) -> Plan:
     )
 
 
-def _drawn(
-    gathered: _Gathered,
+def _rasterise(
+    gathered: _PointCollector,
     cameras: np.ndarray,
     scan_to_level: np.ndarray,
     found: Alignment | None,
     problem: str,
-) -> Plan:
+) -> TopView:
     points = apply(scan_to_level, np.concatenate(gathered.points).astype(np.float64))
     colours = np.concatenate(gathered.colours)
     low, high = _extent(points, cameras[:, :2, 3], found)
@@ -188,11 +188,11 @@ def _drawn(
         column, shape[1] - 1
     )
     tall = _tallness(pixel, points[:, 2], shape)
-    below = points[:, 2] < min(CUT * height, CUT_MOST_M)
-    colour, seen, top = _topmost(pixel[below], points[below, 2], colours[below], shape)
+    below = points[:, 2] < min(CUT_HEIGHT_SHARE * height, MAX_CUT_M)
+    colour, seen, top = _top_colours(pixel[below], points[below, 2], colours[below], shape)
     depths = np.concatenate(gathered.depths)
     near, far = np.quantile(depths, [0.05, 0.95]) if len(depths) else (0.0, 0.0)
-    return Plan(
+    return TopView(
         colour,
         seen,
         tall,
@@ -233,7 +233,7 @@ def _tallness(pixel: np.ndarray, z: np.ndarray, shape: tuple[int, ...]) -> np.nd
     return np.minimum(count / TALL_BINS, 1.0).astype(np.float32)
 
 
-def _topmost(
+def _top_colours(
     pixel: np.ndarray, z: np.ndarray, colours: np.ndarray, shape: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the mean colour and height of the highest points of each cell, and which have any."""
@@ -247,13 +247,13 @@ def _topmost(
     sums = np.stack(
         [np.bincount(pixel, values, minlength=count) for values in (*channels, z)], axis=1
     )
-    sums, weight = _filled(sums.reshape(*shape, 4), weight.reshape(shape))
+    sums, weight = _fill_holes(sums.reshape(*shape, 4), weight.reshape(shape))
     seen = weight > 0
     mean = sums / np.maximum(weight, 1e-9)[..., None]
     return np.round(mean[..., :3]).astype(np.uint8), seen, mean[..., 3].astype(np.float32)
 
 
-def _filled(sums: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _fill_holes(sums: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Close small holes: a cell without points takes those of its neighbours, if three have any."""
     for _ in range(3):
         near, near_sums = np.zeros_like(weight), np.zeros_like(sums)

@@ -15,7 +15,7 @@ STEEP_DEG = 40.0  # Beyond it, from the middle of a usual room, one sees floor o
 
 
 @dataclass(frozen=True, eq=False)
-class Directions:
+class ViewDirections:
     """``seen`` int64 [18, 36]: pictures that look there.
 
     Rows are pitches from -85 to +85 degrees, columns headings from 5 to 355: clockwise from
@@ -46,7 +46,9 @@ class Directions:
         return float((self.seen[self.pitches_deg < -STEEP_DEG] > 0).mean())
 
 
-def directions_of(cameras: Sequence[Camera | None], camera_to_level: np.ndarray) -> Directions:
+def count_view_directions(
+    cameras: Sequence[Camera | None], camera_to_level: np.ndarray
+) -> ViewDirections:
     """Count for each direction the pictures that show it.
 
     Args:
@@ -64,7 +66,7 @@ def directions_of(cameras: Sequence[Camera | None], camera_to_level: np.ndarray)
         ahead = z > 1e-6
         depth = np.where(ahead, z, 1.0)
         seen += ahead & (np.abs(x / depth) <= across) & (np.abs(y / depth) <= down)
-    return Directions(seen)
+    return ViewDirections(seen)
 
 
 def _tangents(camera: Camera | None) -> tuple[float, float]:
@@ -74,7 +76,7 @@ def _tangents(camera: Camera | None) -> tuple[float, float]:
     return camera.width_px / 2 / camera.fx_px, camera.height_px / 2 / camera.fy_px
 
 
-def up_of_cameras(camera_to_world: np.ndarray) -> np.ndarray:
+def estimate_up(camera_to_world: np.ndarray) -> np.ndarray:
     """Return the direction that image rows are level to and columns point away from.
 
     Args:

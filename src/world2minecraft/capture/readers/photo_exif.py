@@ -26,7 +26,7 @@ SHARE_OF_DIAGONAL = (0.2, 15.0)  # From a fisheye to a long telephoto; else the 
 
 
 @dataclass(frozen=True)
-class PhotoFacts:
+class PhotoMetadata:
     """What a photo says of itself: its upright size, its lens, when it was taken, by a camera."""
 
     width_px: int
@@ -69,16 +69,16 @@ class UprightPhoto(NamedByFile):
         raise DamagedFileError(self, "holds colours, not single values")
 
 
-def photo_facts(path: AnyPath) -> PhotoFacts:
+def read_photo_metadata(path: AnyPath) -> PhotoMetadata:
     """Read what a photo says of itself. Raises what ``read_header`` raises."""
     with open_image(path) as image:
         width, height = _upright_size(image)
-        general, own = _tags(image)
-        focal = _focal_px(own, image.size)
-    return PhotoFacts(width, height, focal, _time_s(own), MAKE in general or FOCAL_MM in own)
+        general, own = _exif_tags(image)
+        focal = _focal_length_px(own, image.size)
+    return PhotoMetadata(width, height, focal, _time_s(own), MAKE in general or FOCAL_MM in own)
 
 
-def _tags(image: Image.Image) -> tuple[dict[int, Any], dict[int, Any]]:
+def _exif_tags(image: Image.Image) -> tuple[dict[int, Any], dict[int, Any]]:
     """Return the general and the camera's EXIF tags; damaged ones are none."""
     try:
         exif = image.getexif()
@@ -88,11 +88,11 @@ def _tags(image: Image.Image) -> tuple[dict[int, Any], dict[int, Any]]:
 
 
 def _upright_size(image: Image.Image) -> tuple[int, int]:
-    turned = _tags(image)[0].get(ORIENTATION) in (5, 6, 7, 8)
+    turned = _exif_tags(image)[0].get(ORIENTATION) in (5, 6, 7, 8)
     return (image.height, image.width) if turned else image.size
 
 
-def _focal_px(tags: dict[int, Any], size: tuple[int, int]) -> float | None:
+def _focal_length_px(tags: dict[int, Any], size: tuple[int, int]) -> float | None:
     """Return the focal length in pixels by the diagonal rule, else by the pixels' pitch."""
     diagonal_px = math.hypot(*size)
     film = _number(tags.get(FOCAL_35MM))

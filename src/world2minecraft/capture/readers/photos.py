@@ -16,7 +16,11 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import HEIF_SUFFIXES
 from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
 from world2minecraft.capture.poster_marker import is_saved_poster
-from world2minecraft.capture.readers.photo_exif import PhotoFacts, UprightPhoto, photo_facts
+from world2minecraft.capture.readers.photo_exif import (
+    PhotoMetadata,
+    UprightPhoto,
+    read_photo_metadata,
+)
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 
@@ -25,9 +29,9 @@ DEPTH_SUFFIXES = (".png", ".tif", ".tiff", ".npy")
 COLOUR_FOLDERS = ("rgb", "color", "colour", "image", "images", "photos")
 MOVIE_SUFFIXES = (".mov", ".mp4", ".m4v")
 MAX_PHOTOS = 20_000
-SMALLEST_PX = 240  # The longer side; less is a thumbnail.
+MIN_SIDE_PX = 240  # The longer side; less is a thumbnail.
 THUMBNAIL_SHARE = 0.35  # Of the longer side that half of the photos have.
-LONGEST_ASPECT = 2.4  # Wider is a panorama, which no one lens has taken.
+MAX_ASPECT = 2.4  # Wider is a panorama, which no one lens has taken.
 _SCREENSHOT = re.compile(r"screen[ _-]?shot|bildschirmfoto|capture d.?.cran|screen recording", re.I)
 _NOT_COLOUR = re.compile(r"[._-](depth|mask|labels?|conf(idence)?|normals?|pose)$", re.I)
 _OF_AN_APP = re.compile(r"\.(depth|conf)$|[._-](depth|pose)\.[a-z]+$|^transforms.*\.json$", re.I)
@@ -35,9 +39,9 @@ _EDITED = re.compile(r"(IMG_)E(\d+)")
 
 
 @dataclass(frozen=True)
-class _Found:
+class _PhotoFile:
     path: AnyPath
-    facts: PhotoFacts | None
+    facts: PhotoMetadata | None
     problem: str = ""
 
 
@@ -48,7 +52,7 @@ class PhotoFolderSource:
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether photos lie there, and not beside what a scanner app keeps of them."""
-        if not folder.is_dir() or any(_of_an_app(path.name) for path in folder.iterdir()):
+        if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
             return False
         return bool(_photos(_colour_folder(folder)))
 
@@ -64,14 +68,14 @@ class PhotoFolderSource:
             raise CaptureError(
                 folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
             )
-        kept, skipped = _kept(paths)
+        kept, skipped = _select_photos(paths)
         if len(kept) < MIN_FRAMES:
             why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
             count = f"{len(kept)} photo" + "s" * (len(kept) != 1)
             reason = f"holds {count} that can be used{why}; take 30 or more of the room"
             raise CaptureError(folder, reason)
-        kept = thinned(kept, options.frames)
-        depths = _depths(folder, colour_folder)
+        kept = evenly_thinned(kept, options.frames)
+        depths = _depth_files(folder, colour_folder)
         frames = _frames(kept, depths)
         notes = [*_notes(colour_folder, paths), _lens_note(frames)]
         if depths:
@@ -83,7 +87,7 @@ class PhotoFolderSource:
         )  # fmt: skip
 
 
-def _of_an_app(name: str) -> bool:
+def _is_app_file(name: str) -> bool:
     """Whether a name is of a broken capture of another kind, which must not pass for photos."""
     return bool(_OF_AN_APP.search(name))
 
@@ -94,7 +98,7 @@ def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
     return tuple((0, int(part[:18]), part) if part[0].isdigit() else (1, 0, part) for part in parts)
 
 
-def thinned(found: Sequence, wanted: int | None) -> list:
+def evenly_thinned(found: Sequence, wanted: int | None) -> list:
     """Return at most ``wanted`` of what was found, evenly spread from the first to the last."""
     if wanted is None or len(found) <= wanted:
         return list(found)
@@ -124,20 +128,22 @@ def _colour_folder(folder: AnyPath) -> AnyPath:
     return folder
 
 
-def _kept(paths: list[AnyPath]) -> tuple[list[_Found], list[tuple[str, str]]]:
+def _select_photos(paths: list[AnyPath]) -> tuple[list[_PhotoFile], list[tuple[str, str]]]:
     """Return the photos of the room, and the names of the others with reasons."""
-    found = [_looked_at(path) for path in paths]
+    found = [_inspect(path) for path in paths]
     sides = [max(item.facts.width_px, item.facts.height_px) for item in found if item.facts]
     usual = float(np.median(sides)) if sides else 0.0
     taken = [item.facts.by_camera for item in found if item.facts]
     by_phone = sum(taken) * 2 > len(taken)
-    kept: list[_Found] = []
+    kept: list[_PhotoFile] = []
     skipped: list[tuple[str, str]] = []
     seen: dict[str, str] = {}
     sizes = Counter(path.stat().st_size for path in paths)
     stems = {path.stem for path in paths}
     for item in found:
-        reason = _no_photo(item, usual, by_phone, stems) or _copied(item, sizes, seen)
+        reason = _reject_reason(item, usual, by_phone, stems) or _duplicate_reason(
+            item, sizes, seen
+        )
         if reason:
             skipped.append((item.path.name, reason))
         else:
@@ -145,14 +151,14 @@ def _kept(paths: list[AnyPath]) -> tuple[list[_Found], list[tuple[str, str]]]:
     return kept, skipped
 
 
-def _looked_at(path: AnyPath) -> _Found:
+def _inspect(path: AnyPath) -> _PhotoFile:
     try:
-        return _Found(path, photo_facts(path))
+        return _PhotoFile(path, read_photo_metadata(path))
     except InputError as error:
-        return _Found(path, None, error.reason)
+        return _PhotoFile(path, None, error.reason)
 
 
-def _no_photo(item: _Found, usual_px: float, by_phone: bool, stems: set[str]) -> str:
+def _reject_reason(item: _PhotoFile, usual_px: float, by_phone: bool, stems: set[str]) -> str:
     """Return why something is no photo of the room, or nothing."""
     if item.facts is None:
         return item.problem
@@ -163,14 +169,14 @@ def _no_photo(item: _Found, usual_px: float, by_phone: bool, stems: set[str]) ->
     strange = item.path.suffix.lower() == ".png" and by_phone and not item.facts.by_camera
     if _SCREENSHOT.search(item.path.stem) or strange:
         return "is a screenshot"
-    if sides[1] < max(SMALLEST_PX, THUMBNAIL_SHARE * usual_px):
+    if sides[1] < max(MIN_SIDE_PX, THUMBNAIL_SHARE * usual_px):
         return f"is a thumbnail of {item.facts.width_px}x{item.facts.height_px}"
-    if sides[1] > LONGEST_ASPECT * sides[0]:
+    if sides[1] > MAX_ASPECT * sides[0]:
         return f"is a panorama of {item.facts.width_px}x{item.facts.height_px}"
     return ""
 
 
-def _copied(item: _Found, sizes: Counter[int], seen: dict[str, str]) -> str:
+def _duplicate_reason(item: _PhotoFile, sizes: Counter[int], seen: dict[str, str]) -> str:
     """Return why a photo is there twice, or nothing; ``seen`` remembers those before it."""
     keys = [f"stem {item.path.stem}"]
     if sizes[item.path.stat().st_size] > 1:  # Files of different sizes need not be read.
@@ -182,7 +188,7 @@ def _copied(item: _Found, sizes: Counter[int], seen: dict[str, str]) -> str:
     return ""
 
 
-def _depths(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
+def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
     """Return the depth images beside a folder of photos, by the photos' names without suffix."""
     place = folder / "depth"
     if colour_folder == folder or not place.is_dir():
@@ -194,7 +200,7 @@ def _depths(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
     }
 
 
-def _frames(kept: Sequence[_Found], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
+def _frames(kept: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
     frames, used = [], set()
     for item in kept:
         plain = re.sub(r"[^A-Za-z0-9_.-]+", "_", item.path.stem).lstrip(".-")[:80] or "photo"

@@ -25,7 +25,7 @@ VERSION = 1
 _KIND = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
 DEPTH_KINDS = ("sensor", "stereo", "network", "exact")
 SCALES = ("metric", "estimated", "unknown")
-MOST_NOTES, MOST_NOTE = 30, 400  # Sentences, and letters of each.
+MAX_NOTES, MAX_NOTE_CHARS = 30, 400  # Sentences, and letters of each.
 JPEG_QUALITY = 95
 _CAMERA_FIELDS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
@@ -131,7 +131,7 @@ def _notes(path: AnyPath, stated: dict[str, Any]) -> tuple[str, ...]:
     notes = stated.get("notes", [])
     if not isinstance(notes, list) or not all(isinstance(note, str) for note in notes):
         raise CaptureError(path, '"notes" must be a list of sentences')
-    return tuple(" ".join(note.split())[:MOST_NOTE] for note in notes[:MOST_NOTES])
+    return tuple(" ".join(note.split())[:MAX_NOTE_CHARS] for note in notes[:MAX_NOTES])
 
 
 def _skipped(path: AnyPath, stated: dict[str, Any]) -> tuple[tuple[str, str], ...]:

@@ -8,7 +8,7 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.formats import roomplan
 
 
-def plan_in(capture: Path) -> AnyPath | None:
+def find_lone_roomplan(capture: Path) -> AnyPath | None:
     """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
 
     A capture with frames and a plan is a capture; its plan is given by ``--plan``.

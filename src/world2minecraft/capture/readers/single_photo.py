@@ -8,17 +8,21 @@ import re
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.photo_exif import PhotoFacts, UprightPhoto, photo_facts
+from world2minecraft.capture.readers.photo_exif import (
+    PhotoMetadata,
+    UprightPhoto,
+    read_photo_metadata,
+)
 from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import focal_px_of_fov
 from world2minecraft.core.types import Camera
 
 SOURCE = "photo"
-USUAL_FOCAL = 0.8  # Of the longer side: phones 0.7 to 0.9.
+DEFAULT_FOCAL = 0.8  # Of the longer side: phones 0.7 to 0.9.
 
 
-class OnePhotoSource:
+class SinglePhotoSource:
     """Reads one photo."""
 
     layout = "one photo (.jpg, .png, .heic, .webp)"
@@ -33,13 +37,13 @@ class OnePhotoSource:
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
         """List the photo, its lens as it is told."""
-        camera, note = _lens(photo_facts(folder), options.fov_deg)
+        camera, note = _lens(read_photo_metadata(folder), options.fov_deg)
         name = re.sub(r"[^A-Za-z0-9_.-]+", "_", folder.stem).lstrip(".-")[:80] or "photo"
         frame = FrameFiles(name, None, UprightPhoto(folder), camera)
         return Capture(folder, SOURCE, (frame,), notes=(note,), lens="guess", scale="unknown")
 
 
-def _lens(facts: PhotoFacts, fov_deg: float | None) -> tuple[Camera, str]:
+def _lens(facts: PhotoMetadata, fov_deg: float | None) -> tuple[Camera, str]:
     wide, high = facts.width_px, facts.height_px
     if fov_deg is not None:
         focal_px = focal_px_of_fov(high, fov_deg)
@@ -47,6 +51,6 @@ def _lens(facts: PhotoFacts, fov_deg: float | None) -> tuple[Camera, str]:
     elif facts.camera is not None:
         return facts.camera, "the photo's lens is as its EXIF says"
     else:
-        focal_px = USUAL_FOCAL * max(wide, high)
+        focal_px = DEFAULT_FOCAL * max(wide, high)
         note = "the photo says nothing of its lens; a usual one is taken: --fov tells another"
     return Camera(wide, high, focal_px, focal_px, wide / 2, high / 2), note

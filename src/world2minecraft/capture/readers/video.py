@@ -16,7 +16,7 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import MAX_PIXELS, ImagePlace
 from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
 from world2minecraft.capture.poster_marker import is_saved_poster
-from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open_movie
+from world2minecraft.capture.readers.apps.video_frames import VideoFrame, open_video
 from world2minecraft.capture.readers.photo_exif import DIAGONAL_MM
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.errors import (
@@ -37,16 +37,16 @@ from world2minecraft.core.types import Camera
 
 SMALL_PX = 192  # The longer side of the small pictures.
 BLOCK = 48  # The side of a block of them; shifts of up to half of it are seen.
-LEAST_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
-NEW_REFERENCE = 0.04  # Of the longer side: less than this is a shaking hand.
-STEP = 0.12  # Of the longer side, from one picture taken to the next: seven eighths overlap.
-REACH = 0.4  # How far from its place, in steps, the sharpest picture is looked for.
+MIN_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
+MIN_MOTION = 0.04  # Of the longer side: less than this is a shaking hand.
+FRAME_STEP = 0.12  # Of the longer side, from one picture taken to the next: seven eighths overlap.
+SEARCH_STEPS = 0.4  # How far from its place, in steps, the sharpest picture is looked for.
 MAX_SECONDS = 3600.0
 SHARP_ROWS = 6  # Each sixth row tells the sharpness.
 
 
 @dataclass(frozen=True, eq=False)
-class VideoLook:
+class VideoAnalysis:
     """What one pass over a video found, a value for each of its N pictures.
 
     ``times`` int64 [N] in ticks of ``tick_s``, ascending; ``path`` float64 [N] is how far the view
@@ -74,7 +74,7 @@ class VideoLook:
         return float((self.times[-1] - self.times[0]) * self.tick_s * count / (count - 1))
 
 
-def look_through(path: AnyPath) -> VideoLook:
+def analyse_video(path: AnyPath) -> VideoAnalysis:
     """Decode a video once, at low resolution; what was found is kept until its file changes.
 
     Raises:
@@ -86,11 +86,11 @@ def look_through(path: AnyPath) -> VideoLook:
         found = (path.path if isinstance(path, ArchivePath) else path).stat()
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _look(path, (found.st_size, found.st_mtime_ns))
+    return _analyse(path, (found.st_size, found.st_mtime_ns))
 
 
 @lru_cache(maxsize=4)
-def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
+def _analyse(path: AnyPath, stamp: tuple[int, int]) -> VideoAnalysis:
     try:
         import av  # noqa: PLC0415
         from av.error import FFmpegError  # noqa: PLC0415
@@ -99,7 +99,7 @@ def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
     failures = (FFmpegError, ValueError, IndexError, OSError)
     try:
         with path.open("rb") as file, av.open(file, "r") as container:
-            return _looked(path, container, failures)
+            return _analyse_container(path, container, failures)
     except InputError:
         raise
     except failures as error:
@@ -107,7 +107,9 @@ def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
         raise DamagedFileError(path, f"is no whole video ({reason}); copy it again") from error
 
 
-def _looked(path: AnyPath, container: Any, failures: tuple[type[Exception], ...]) -> VideoLook:
+def _analyse_container(
+    path: AnyPath, container: Any, failures: tuple[type[Exception], ...]
+) -> VideoAnalysis:
     if not container.streams.video:
         kind = "sound only" if container.streams.audio else "no video"
         raise DamagedFileError(path, f"holds {kind}; give a video of the room")
@@ -126,28 +128,28 @@ def _looked(path: AnyPath, container: Any, failures: tuple[type[Exception], ...]
     stream.thread_type = "AUTO"  # The pictures are the same on any number of threads.
     times: list[int] = []
     sharpness: list[float] = []
-    follower, turns, whole = _Follower(), 0, True
+    follower, turns, whole = _MotionTracker(), 0, True
     try:
         for frame in container.decode(stream):
             if frame.pts is None or (times and frame.pts <= times[-1]):
                 continue
-            light = _light(frame)
+            light = _luma(frame)
             turns = turns if times else round(getattr(frame, "rotation", 0) / 90) % 4
             times.append(frame.pts)
             sharpness.append(_sharpness(light))
-            follower.add(_small(light))
+            follower.add(_downscale(light))
     except failures:
         if not times:
             raise
         whole = False
     metadata = {**container.metadata, **stream.metadata}
-    return VideoLook(
+    return VideoAnalysis(
         size, np.array(times, np.int64), float(stream.time_base), np.array(follower.path),
         np.array(sharpness), stated_s, turns, metadata, whole,
     )  # fmt: skip
 
 
-def _light(frame: Any) -> np.ndarray:
+def _luma(frame: Any) -> np.ndarray:
     """Return the brightness plane as it lies in memory, uint8 [H, W], without a copy if it can."""
     kind = frame.format
     if not kind.name.startswith(("yuv", "gray", "nv12", "nv21")) or kind.components[0].bits > 8:
@@ -164,7 +166,7 @@ def _sharpness(light: np.ndarray) -> float:
     return float((bent * bent).mean()) if bent.size else 0.0
 
 
-def _small(light: np.ndarray) -> np.ndarray:
+def _downscale(light: np.ndarray) -> np.ndarray:
     """Return a picture of about ``SMALL_PX``: means along the rows, each n-th row."""
     step = max(1, max(light.shape) // SMALL_PX)
     height, width = (side // step * step for side in light.shape)
@@ -172,7 +174,7 @@ def _small(light: np.ndarray) -> np.ndarray:
     return rows.reshape(len(rows), -1, step).mean(axis=2, dtype=np.float32)
 
 
-class _Follower:
+class _MotionTracker:
     """Adds up how far the view has moved."""
 
     def __init__(self) -> None:
@@ -182,21 +184,21 @@ class _Follower:
 
     def add(self, small: np.ndarray) -> None:
         """Take the next picture."""
-        blocks = _spectra(small)
+        blocks = _block_spectra(small)
         if self._reference is None:
             self._reference = blocks
             self.path.append(0.0)
             return
-        moved = shift_of(self._reference, blocks) / max(small.shape)
+        moved = block_shift(self._reference, blocks) / max(small.shape)
         last = self.path[-1]
-        if moved > NEW_REFERENCE:
+        if moved > MIN_MOTION:
             self._gone = max(last, self._gone + moved)
             self._reference = blocks
             moved = 0.0
         self.path.append(max(last, self._gone + moved))
 
 
-def _spectra(small: np.ndarray) -> np.ndarray:
+def _block_spectra(small: np.ndarray) -> np.ndarray:
     """Return the spectra of B blocks of a small picture, complex [B, BLOCK, BLOCK // 2 + 1]."""
     high, wide = (min(BLOCK, side) for side in small.shape)
     window = np.outer(np.hanning(high), np.hanning(wide)).astype(np.float32)
@@ -207,7 +209,7 @@ def _spectra(small: np.ndarray) -> np.ndarray:
     return np.asarray(fft.rfft2(blocks, (BLOCK, BLOCK)))
 
 
-def shift_of(first: np.ndarray, second: np.ndarray) -> float:
+def block_shift(first: np.ndarray, second: np.ndarray) -> float:
     """Return by how many pixels blocks have moved between two pictures, the mean of those sure.
 
     Args:
@@ -221,7 +223,7 @@ def shift_of(first: np.ndarray, second: np.ndarray) -> float:
     cross /= np.maximum(np.abs(cross), 1e-3)
     peaks = np.asarray(fft.irfft2(cross, (BLOCK, BLOCK))).reshape(len(first), -1)
     best = peaks.argmax(axis=1)
-    sure = peaks[np.arange(len(peaks)), best] > LEAST_PEAK
+    sure = peaks[np.arange(len(peaks)), best] > MIN_PEAK
     marked = np.abs(first[:, 1:4, 1:4]).mean(axis=(1, 2)) > 40.0
     if not marked.any():
         return 0.0  # Nothing to see: a covered lens, a bare wall.
@@ -232,7 +234,7 @@ def shift_of(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.hypot(v, u).mean())
 
 
-def picked(look: VideoLook, wanted: int) -> list[int]:
+def select_frames(look: VideoAnalysis, wanted: int) -> list[int]:
     """Return which pictures to take, ascending: a steady way apart, each the sharpest near by.
 
     Args:
@@ -240,14 +242,14 @@ def picked(look: VideoLook, wanted: int) -> list[int]:
         wanted: how many at most; a camera that moves little gives fewer.
     """
     way = float(look.path[-1]) if len(look.path) else 0.0
-    count = min(wanted, int(way / STEP) + 1, len(look.path))
+    count = min(wanted, int(way / FRAME_STEP) + 1, len(look.path))
     if count < 2:
         return [int(look.sharpness.argmax())] if len(look.path) else []
     step = way / (count - 1)
     chosen: list[int] = []
     for place in np.arange(count) * step:
-        low = int(np.searchsorted(look.path, place - REACH * step))
-        high = int(np.searchsorted(look.path, place + REACH * step, side="right"))
+        low = int(np.searchsorted(look.path, place - SEARCH_STEPS * step))
+        high = int(np.searchsorted(look.path, place + SEARCH_STEPS * step, side="right"))
         near = np.arange(max(low, chosen[-1] + 1 if chosen else 0), high)
         if len(near):
             off = np.abs(look.path[near] - place) / step
@@ -258,7 +260,7 @@ def picked(look: VideoLook, wanted: int) -> list[int]:
 SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
 DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.
 FOCAL_KEYS = ("com.apple.quicktime.camera.focal_length.35mm_equivalent",)
-_IMAGES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", ".tif", ".tiff")
+_IMAGE_SUFFIXES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", ".tif", ".tiff")
 
 
 class VideoSource:
@@ -281,10 +283,10 @@ class VideoSource:
             raise CaptureError(folder, "holds no video, or several; give one by its own name")
         if path.stat().st_size == 0:
             raise DamagedFileError(path, "is empty; copy it again")
-        look = look_through(path)
-        _check(path, look)
+        look = analyse_video(path)
+        _check_video(path, look)
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
-        chosen = picked(look, wanted)
+        chosen = select_frames(look, wanted)
         if len(chosen) < MIN_FRAMES:
             places = f"{len(chosen)} place" + "s" * (len(chosen) != 1)
             raise CaptureError(
@@ -305,13 +307,13 @@ def _video_in(place: AnyPath) -> AnyPath | None:
     if not place.is_dir():
         return None
     held = [path for path in place.iterdir() if not path.name.startswith(".")]
-    if any(path.suffix.lower() in _IMAGES and not is_saved_poster(path) for path in held):
+    if any(path.suffix.lower() in _IMAGE_SUFFIXES and not is_saved_poster(path) for path in held):
         return None
     videos = [path for path in held if path.suffix.lower() in SUFFIXES and path.is_file()]
     return videos[0] if len(videos) == 1 else None
 
 
-def _check(path: AnyPath, look: VideoLook) -> None:
+def _check_video(path: AnyPath, look: VideoAnalysis) -> None:
     """Refuse a video that cannot be used.
 
     Raises:
@@ -334,15 +336,15 @@ def _check(path: AnyPath, look: VideoLook) -> None:
         )
 
 
-def _frames(path: AnyPath, look: VideoLook, chosen: list[int]) -> tuple[FrameFiles, ...]:
-    numbers = {time: number for number, time in enumerate(open_movie(path).times)}
+def _frames(path: AnyPath, look: VideoAnalysis, chosen: list[int]) -> tuple[FrameFiles, ...]:
+    numbers = {time: number for number, time in enumerate(open_video(path).times)}
     camera = _camera(look)
     frames = []
     for index in chosen:
         number = numbers.get(int(look.times[index]))
         if number is None:
             continue
-        image: ImagePlace = MoviePicture(path, number)
+        image: ImagePlace = VideoFrame(path, number)
         if look.quarter_turns:
             image = RotatedImage(image, look.quarter_turns)
         time_s = float(look.times[index] * look.tick_s)
@@ -352,7 +354,7 @@ def _frames(path: AnyPath, look: VideoLook, chosen: list[int]) -> tuple[FrameFil
     return tuple(frames)
 
 
-def _camera(look: VideoLook) -> Camera | None:
+def _camera(look: VideoAnalysis) -> Camera | None:
     """Return a first guess of the lens where the phone wrote it down."""
     width, height = look.size if look.quarter_turns % 2 == 0 else look.size[::-1]
     focal_mm = _focal_35mm(look.metadata)
@@ -373,7 +375,7 @@ def _focal_35mm(metadata: dict[str, Any]) -> float | None:
     return None
 
 
-def _notes(look: VideoLook, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
+def _notes(look: VideoAnalysis, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
     notes = [
         f"{len(frames)} of the video's {len(look.times):,} pictures are taken: sharp ones, well "
         f"apart ({look.duration_s:.0f} s, {look.size[0]}x{look.size[1]})"

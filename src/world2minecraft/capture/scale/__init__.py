@@ -1,18 +1,18 @@
 """The metric scale of a capture whose unit nobody knows, as photos give it.
 
 ``collect_unscaled`` gathers the surface, ``estimate_scale`` finds the factor to metres from the
-habits of rooms and people, or from lengths that the user knows: ``parse_known`` takes one by its
-name, ``KnownPoints`` by two pixels.
+habits of rooms and people, or from lengths that the user knows: ``parse_known_length`` takes one by its
+name, ``KnownDistance`` by two pixels.
 """
 
 from world2minecraft.capture.scale.estimate import ScaleEstimate, estimate_scale
 from world2minecraft.capture.scale.known_lengths import (
-    Known,
-    KnownPoints,
+    KnownDistance,
+    KnownLength,
     length_between,
-    parse_known,
+    parse_known_length,
 )
-from world2minecraft.capture.scale.measurements import collect_unscaled, resized
+from world2minecraft.capture.scale.measurements import collect_unscaled, scale_points
 
 __all__ = [
     "Known",
@@ -22,5 +22,5 @@ __all__ = [
     "estimate_scale",
     "length_between",
     "parse_known",
-    "resized",
+    "scale_points",
 ]

@@ -8,15 +8,21 @@ import numpy as np
 
 from world2minecraft.capture.alignment.room_frame import MIN_POINTS, ImplausibleRoomError
 from world2minecraft.capture.scale import priors
-from world2minecraft.capture.scale.known_lengths import LEVELS, Known, candidates
-from world2minecraft.capture.scale.measurements import Level, Measures, measure
+from world2minecraft.capture.scale.known_lengths import (
+    LEVEL_HEIGHTS,
+    KnownLength,
+    candidate_lengths,
+)
+from world2minecraft.capture.scale.measurements import LevelFace, RoomMeasurements, measure_room
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
 # How likely each scale of a scan is, and what that comes to: the best mode and its sigma.
 
-REACH = 1.2  # Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
+LOG_RANGE = (
+    1.2  # Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
+)
 STEPS = 961
-LEAST_SIGMA = 0.03  # No prior of furniture is better than that.
+MIN_SIGMA = 0.03  # No prior of furniture is better than that.
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +40,7 @@ class Posterior:
 
 
 @dataclass(frozen=True)
-class Summary:
+class ScaleMode:
     """The scale of the heaviest mode, the relative sigma of the whole, and a rival mode.
 
     ``rival`` is the scale of the next mode and its share, None where it has under a fifth.
@@ -45,13 +51,13 @@ class Summary:
     rival: tuple[float, float] | None
 
 
-def posterior_of(measures: Measures) -> Posterior:
+def scale_posterior(measures: RoomMeasurements) -> Posterior:
     """Return how likely each scale is by all that was measured."""
-    log_scale = np.log(measures.rough) + np.linspace(-REACH, REACH, STEPS)
+    log_scale = np.log(measures.rough) + np.linspace(-LOG_RANGE, LOG_RANGE, STEPS)
     return Posterior(log_scale, log_density(measures, np.exp(log_scale)))
 
 
-def log_density(measures: Measures, scale: np.ndarray) -> np.ndarray:
+def log_density(measures: RoomMeasurements, scale: np.ndarray) -> np.ndarray:
     """Return how likely scales are, float64 [N], up to one constant."""
     total = priors.camera_likelihood(scale * measures.camera, measures.floor_seen)
     if measures.ceiling is not None:
@@ -66,27 +72,27 @@ def log_density(measures: Measures, scale: np.ndarray) -> np.ndarray:
     return total
 
 
-def summed(posterior: Posterior) -> Summary:
+def main_mode(posterior: Posterior) -> ScaleMode:
     """Return the heaviest mode of a posterior, and how far the truth may be from it."""
     weight = posterior.weight
-    modes = _modes(weight)
+    modes = _mode_ranges(weight)
     shares = [float(weight[a:b].sum()) for a, b in modes]
     order = sorted(range(len(modes)), key=lambda n: -shares[n])
-    means = [_mean(posterior, weight, *modes[n]) for n in order]
+    means = [_mode_mean(posterior, weight, *modes[n]) for n in order]
     off = posterior.log_scale - means[0]
-    sigma = max(float(np.sqrt((weight * off * off).sum())), LEAST_SIGMA)
+    sigma = max(float(np.sqrt((weight * off * off).sum())), MIN_SIGMA)
     rival = None
     if len(order) > 1 and shares[order[1]] > 0.2:
         rival = (float(np.exp(means[1])), shares[order[1]])
-    return Summary(float(np.exp(means[0])), sigma, rival)
+    return ScaleMode(float(np.exp(means[0])), sigma, rival)
 
 
-def _mean(posterior: Posterior, weight: np.ndarray, first: int, last: int) -> float:
+def _mode_mean(posterior: Posterior, weight: np.ndarray, first: int, last: int) -> float:
     part = weight[first:last]
     return float((part * posterior.log_scale[first:last]).sum() / part.sum())
 
 
-def _modes(weight: np.ndarray) -> list[tuple[int, int]]:
+def _mode_ranges(weight: np.ndarray) -> list[tuple[int, int]]:
     """Return the ranges of the modes: parted where the density falls to half of both sides."""
     bounds, low, high = [0], 0, 0
     for n in range(1, len(weight)):
@@ -102,10 +108,10 @@ def _modes(weight: np.ndarray) -> list[tuple[int, int]]:
     return list(pairwise(bounds))
 
 
-WRONG_SHARE = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
-DISAGREE = 0.05  # Two known lengths that differ by more are told.
+OUTLIER_PROBABILITY = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
+MAX_LOG_DIFFERENCE = 0.05  # Two known lengths that differ by more are told.
 PRIOR_WEIGHT = 0.5  # A known length outweighs habits, but these say which table was meant.
-NAMED_LEVELS = 2  # More would make the sentence long.
+MAX_NAMED_LEVELS = 2  # More would make the sentence long.
 
 
 @dataclass(frozen=True)
@@ -125,7 +131,7 @@ class ScaleEstimate:
             raise ValueError(f"scale and sigma must be above 0, not {self.scale}, {self.sigma}")
 
 
-def estimate_scale(surface: OrientedPoints, knowns: Sequence[Known] = ()) -> ScaleEstimate:
+def estimate_scale(surface: OrientedPoints, knowns: Sequence[KnownLength] = ()) -> ScaleEstimate:
     """Return the scale of a scan whose unit is unknown.
 
     Args:
@@ -143,12 +149,12 @@ def estimate_scale(surface: OrientedPoints, knowns: Sequence[Known] = ()) -> Sca
             f"only {len(surface.points_m)} places of the depth are smooth surface; at least "
             f"{MIN_POINTS} are needed to find the scale: take more photos of floor and walls"
         )
-    measures = measure(surface)
-    return _by_knowns(measures, knowns) if knowns else _by_habits(measures)
+    measures = measure_room(surface)
+    return _from_known_lengths(measures, knowns) if knowns else _from_priors(measures)
 
 
-def _by_habits(measures: Measures) -> ScaleEstimate:
-    found = summed(posterior_of(measures))
+def _from_priors(measures: RoomMeasurements) -> ScaleEstimate:
+    found = main_mode(scale_posterior(measures))
     sources = [("the cameras' height", measures.camera * found.scale)]
     if measures.ceiling is not None:
         sources.append(("the ceiling", measures.ceiling * found.scale))
@@ -166,7 +172,7 @@ def _by_habits(measures: Measures) -> ScaleEstimate:
     return ScaleEstimate(found.scale, found.sigma, tuple(told), tuple(name for name, _ in sources))
 
 
-def _named_levels(measures: Measures, scale: float) -> list[tuple[str, float]]:
+def _named_levels(measures: RoomMeasurements, scale: float) -> list[tuple[str, float]]:
     """Return the largest level faces that are of a usual height, by name."""
     named: list[tuple[str, float]] = []
     for level in sorted(measures.levels, key=lambda level: -level.area):
@@ -174,7 +180,7 @@ def _named_levels(measures: Measures, scale: float) -> list[tuple[str, float]]:
         name = None if kind is None else f"a {kind.name}"
         if name is not None and name not in dict(named):
             named.append((name, level.height * scale))
-    return named[:NAMED_LEVELS]
+    return named[:MAX_NAMED_LEVELS]
 
 
 def _listed(sources: list[tuple[str, float]]) -> str:
@@ -182,10 +188,10 @@ def _listed(sources: list[tuple[str, float]]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def _by_knowns(measures: Measures, knowns: Sequence[Known]) -> ScaleEstimate:
+def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength]) -> ScaleEstimate:
     """Return the scale at which the known lengths and the room fit best."""
     choices = [
-        [(known.length_m / length, weight) for length, weight in candidates(known, measures)]
+        [(known.length_m / length, weight) for length, weight in candidate_lengths(known, measures)]
         for known in knowns
     ]
     tried = np.array([scale for each in choices for scale, _ in each])
@@ -194,48 +200,54 @@ def _by_knowns(measures: Measures, knowns: Sequence[Known]) -> ScaleEstimate:
         fit = fit + _fit(known, each, tried)
     best = float(tried[int(np.argmax(fit))])
     nearest = [min((abs(np.log(s / best)), s) for s, _ in each)[1] for each in choices]
-    agreeing = [n for n, s in enumerate(nearest) if abs(np.log(s / best)) < DISAGREE]
+    agreeing = [n for n, s in enumerate(nearest) if abs(np.log(s / best)) < MAX_LOG_DIFFERENCE]
     trust = np.array([knowns[n].sigma ** -2.0 for n in agreeing])
     logs = np.log([nearest[n] for n in agreeing])
     scale = float(np.exp((trust * logs).sum() / trust.sum()))
     sigma = max(float(trust.sum() ** -0.5), float(np.std(logs)))
     told = [
-        f"scale taken from {_meant(known, known.length_m / near, measures, scale)}: "
+        f"scale taken from {_describe_match(known, known.length_m / near, measures, scale)}: "
         f"{scale:.3g} +- {100 * sigma:.1f} %"
         if n in agreeing
         else f"{known.name} ({known.length_m:g} m) contradicts the other lengths by "
         f"{100 * abs(near / scale - 1):.0f} % and was left out"
         for n, (known, near) in enumerate(zip(knowns, nearest, strict=True))
     ]
-    told += _doubts(measures, knowns, tried, fit, best)
+    told += _contradictions(measures, knowns, tried, fit, best)
     return ScaleEstimate(scale, sigma, tuple(told), tuple(knowns[n].name for n in agreeing))
 
 
-def _fit(known: Known, choices: list[tuple[float, float]], tried: np.ndarray) -> np.ndarray:
+def _fit(known: KnownLength, choices: list[tuple[float, float]], tried: np.ndarray) -> np.ndarray:
     """Return how well each tried scale explains a known length, as a log-likelihood."""
     total = sum(weight for _, weight in choices)
     parts = [
         np.log(weight / total) - 0.5 * (np.log(tried / scale) / known.sigma) ** 2
         for scale, weight in choices
     ]
-    return np.logaddexp(np.logaddexp.reduce(parts, axis=0), np.log(WRONG_SHARE))
+    return np.logaddexp(np.logaddexp.reduce(parts, axis=0), np.log(OUTLIER_PROBABILITY))
 
 
-def _meant(known: Known, length: float, measures: Measures, scale: float) -> str:
+def _describe_match(
+    known: KnownLength, length: float, measures: RoomMeasurements, scale: float
+) -> str:
     """Return a known length and the thing it was found to be, in words."""
     words = f"the {known.name} given ({known.length_m:g} m)"
-    if known.name not in LEVELS:
+    if known.name not in LEVEL_HEIGHTS:
         return words
-    level: Level = min(measures.levels, key=lambda at: abs(at.height - length))
+    level: LevelFace = min(measures.levels, key=lambda at: abs(at.height - length))
     return f"{words}, a level face of {level.area * scale**2:.1f} m2"
 
 
-def _doubts(
-    measures: Measures, knowns: Sequence[Known], tried: np.ndarray, fit: np.ndarray, best: float
+def _contradictions(
+    measures: RoomMeasurements,
+    knowns: Sequence[KnownLength],
+    tried: np.ndarray,
+    fit: np.ndarray,
+    best: float,
 ) -> list[str]:
     """Return what speaks for another reading of the known lengths, or against the whole."""
     said = []
-    others = np.abs(np.log(tried / best)) > DISAGREE
+    others = np.abs(np.log(tried / best)) > MAX_LOG_DIFFERENCE
     if others.any() and fit[others].max() > fit.max() - 1.5:
         other = float(tried[others][int(np.argmax(fit[others]))])
         said.append(

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.scale.measurements import Measures
+from world2minecraft.capture.scale.measurements import RoomMeasurements
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View
 
-LEVELS = ("table height", "counter height", "seat height", "bed height")
+LEVEL_HEIGHTS = ("table height", "counter height", "seat height", "bed height")
 LENGTHS_M: dict[str, tuple[float, float]] = {
     "table height": (0.3, 1.3),
     "counter height": (0.6, 1.3),
@@ -22,16 +22,16 @@ LENGTHS_M: dict[str, tuple[float, float]] = {
     "camera height": (0.05, 12.0),
     "distance": (0.02, 40.0),
 }
-BY_POINTS = ("door height", "door width", "window width", "window height")  # No level face.
+NEEDS_POINTS = ("door height", "door width", "window width", "window height")  # No level face.
 # How exactly each is measured in the scan, relative: a hand that holds a camera rises and sinks.
 SIGMA = {"camera height": 0.03, "ceiling height": 0.01, "room height": 0.01, "distance": 0.01}
 USUAL_SIGMA = 0.015
-WINDOW = 2  # Pixels on each side of a clicked one: a median of 5 x 5.
+WINDOW_RADIUS_PX = 2  # Pixels on each side of a clicked one: a median of 5 x 5.
 EXAMPLE = "such as 'table height' 0.72"
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownLength:
     """A length that the user knows. ``measured`` is the same in the scan's unit, if known too."""
 
     name: str
@@ -57,7 +57,7 @@ class Known:
 
 
 @dataclass(frozen=True)
-class KnownPoints:
+class KnownDistance:
     """Two pixels, each x and y in the depth image's or colour image's own size, and their distance.
 
     ``image_a`` and ``image_b`` are names of views; they may be the same.
@@ -69,17 +69,17 @@ class KnownPoints:
     point_b: tuple[float, float]
     length_m: float
 
-    def known(self, views: Iterable[View]) -> Known:
+    def known(self, views: Iterable[View]) -> KnownLength:
         """Return the known length with what it measures in the scan.
 
         Raises:
             UsageError: an image is not there, or has no depth at its point.
         """
         at = ((self.image_a, self.point_a), (self.image_b, self.point_b))
-        return Known("distance", self.length_m, length_between(views, *at))
+        return KnownLength("distance", self.length_m, length_between(views, *at))
 
 
-def parse_known(name: str, length_m: float) -> Known:
+def parse_known_length(name: str, length_m: float) -> KnownLength:
     """Return a known length by its name; spaces, dashes and underscores are alike.
 
     Raises:
@@ -88,14 +88,14 @@ def parse_known(name: str, length_m: float) -> Known:
     plain = " ".join(name.lower().replace("_", " ").replace("-", " ").split())
     if plain == "distance":
         raise UsageError(f"a distance needs two points of the photos; or give a name, {EXAMPLE}")
-    if plain in BY_POINTS:
+    if plain in NEEDS_POINTS:
         raise UsageError(
             f"{plain} is not measured by itself: give two points of the photos at its ends, "
             f"or another length, {EXAMPLE}"
         )
     if plain not in LENGTHS_M:
         raise UnknownNameError("known length", name, sorted(set(LENGTHS_M) - {"distance"}))
-    return Known(plain, float(length_m))
+    return KnownLength(plain, float(length_m))
 
 
 def length_between(
@@ -118,7 +118,7 @@ def length_between(
         names.append(view.name)
         for index, (name, pixel) in enumerate((a, b)):
             if view.name == name:
-                found[index] = _lifted(view, pixel)
+                found[index] = _unproject_pixel(view, pixel)
     for index, (name, _) in enumerate((a, b)):
         if index not in found:
             raise UnknownNameError("image", name, names)
@@ -128,7 +128,7 @@ def length_between(
     return length
 
 
-def _lifted(view: View, pixel: tuple[float, float]) -> np.ndarray:
+def _unproject_pixel(view: View, pixel: tuple[float, float]) -> np.ndarray:
     """Return the surface point [3] under a pixel, in the scan's frame."""
     depth, camera = view.depth_m, view.depth_camera
     if depth is None or camera is None:
@@ -142,7 +142,8 @@ def _lifted(view: View, pixel: tuple[float, float]) -> np.ndarray:
     if not (0 <= column < camera.width_px and 0 <= row < camera.height_px):
         raise UsageError(f"point {pixel[0]:g},{pixel[1]:g} lies outside image {view.name}")
     near = depth[
-        max(row - WINDOW, 0) : row + WINDOW + 1, max(column - WINDOW, 0) : column + WINDOW + 1
+        max(row - WINDOW_RADIUS_PX, 0) : row + WINDOW_RADIUS_PX + 1,
+        max(column - WINDOW_RADIUS_PX, 0) : column + WINDOW_RADIUS_PX + 1,
     ]
     near = near[near > 0]
     if not len(near):
@@ -155,7 +156,7 @@ def _lifted(view: View, pixel: tuple[float, float]) -> np.ndarray:
     return (view.depth_camera_to_scan @ np.array(point))[:3]
 
 
-def candidates(known: Known, measures: Measures) -> list[tuple[float, float]]:
+def candidate_lengths(known: KnownLength, measures: RoomMeasurements) -> list[tuple[float, float]]:
     """Return what may be meant by a known length: (length in the scan's unit, weight) each.
 
     Raises:
@@ -163,7 +164,7 @@ def candidates(known: Known, measures: Measures) -> list[tuple[float, float]]:
     """
     if known.measured is not None:
         return [(known.measured, 1.0)]
-    if known.name in LEVELS:
+    if known.name in LEVEL_HEIGHTS:
         if not measures.levels:
             raise UsageError(_unseen(known.name, "no level face was seen over the floor"))
         return [(level.height, level.area) for level in measures.levels]

@@ -36,10 +36,10 @@ def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> OrientedPo
     if middle <= 0:
         return collect_oriented_points((), most_each)
     factor = USUAL_DEPTH_M / middle
-    return resized(collect_oriented_points(_resized_views(views, factor), most_each), 1 / factor)
+    return scale_points(collect_oriented_points(_scale_views(views, factor), most_each), 1 / factor)
 
 
-def resized(surface: OrientedPoints, factor: float) -> OrientedPoints:
+def scale_points(surface: OrientedPoints, factor: float) -> OrientedPoints:
     """Return the surface with all its lengths multiplied by a factor above 0."""
     cameras = surface.cameras.copy()
     cameras[:, :3, 3] *= factor
@@ -62,7 +62,7 @@ def _median_depth(views: Iterable[View]) -> float:
     return float(np.median(middles)) if middles else 0.0
 
 
-def _resized_views(views: Iterable[View], factor: float) -> Iterator[View]:
+def _scale_views(views: Iterable[View], factor: float) -> Iterator[View]:
     for view in views:
         if view.depth_m is None:
             continue
@@ -81,19 +81,19 @@ def _resized_views(views: Iterable[View], factor: float) -> Iterator[View]:
 
 USUAL_CAMERA_M = 1.45  # A person who stands and holds a phone before the chest or the eyes.
 USUAL_RANGE_M = 2.0  # How far off the patches are; only the first guess rests on it.
-FACING = 0.94  # Cosine of 20 degrees.
-LEVEL_M = (0.25, 1.30)  # What stands on a floor and has a top to measure by.
-LEVEL_LEAST_M2 = 0.10  # A seat has 0.16.
-CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
-CEILING_LEAST_M2, CEILING_SHARE = 0.5, 0.4
-OTHER_STOREY = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
-STOREY_SHARE = 0.9  # Of the cameras that stand on the lowest floor where it is the only one.
+MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
+LEVEL_RANGE_M = (0.25, 1.30)  # What stands on a floor and has a top to measure by.
+MIN_LEVEL_M2 = 0.10  # A seat has 0.16.
+MIN_CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
+MIN_CEILING_M2, MIN_CEILING_SHARE = 0.5, 0.4
+OTHER_STOREY_RATIO = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
+SINGLE_STOREY_SHARE = 0.9  # Of the cameras that stand on the lowest floor where it is the only one.
 TOP_QUANTILE = 0.995
-MERGED_M = 0.035  # Two peaks nearer than that are one noisy face.
+MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
 @dataclass(frozen=True)
-class Level:
+class LevelFace:
     """A level face that looks up: its height over the floor, and its area, in the scan's unit."""
 
     height: float
@@ -101,7 +101,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Measures:
+class RoomMeasurements:
     """The lengths of a room in the scan's unit; None where a thing was not seen.
 
     ``camera`` is the cameras' middle height over the floor, ``camera_spread`` how much it varies,
@@ -116,36 +116,38 @@ class Measures:
     floor_seen: bool
     top: float | None
     ceiling: float | None
-    levels: tuple[Level, ...]
+    levels: tuple[LevelFace, ...]
     length: float | None
     width: float | None
 
 
-def measure(surface: OrientedPoints) -> Measures:
+def measure_room(surface: OrientedPoints) -> RoomMeasurements:
     """Measure a room in a surface of any unit and tilt.
 
     Args:
         surface: at least a few hundred points, and the cameras that saw them.
     """
     rough = _rough_scale(surface)
-    level, _ = _levelled(resized(surface, rough))
+    level, _ = _level_points(scale_points(surface, rough))
     camera = _lowest_camera(level.cameras[:, 2, 3])
     again = float(np.clip(USUAL_CAMERA_M / max(camera, 0.2), 0.2, 5.0))
     rough *= again
-    level, seen = _levelled(resized(surface, rough))
+    level, seen = _level_points(scale_points(surface, rough))
     camera = _lowest_camera(level.cameras[:, 2, 3])
     heights = level.cameras[:, 2, 3]
-    near = heights[heights < OTHER_STOREY * camera]
-    length, width = _sides(level)
-    ceiling = _ceiling(level, camera)
-    return Measures(
+    near = heights[heights < OTHER_STOREY_RATIO * camera]
+    length, width = _side_lengths(level)
+    ceiling = _ceiling_height(level, camera)
+    return RoomMeasurements(
         rough=rough,
         camera=camera / rough,
         camera_spread=float(np.std(near) / camera) if len(near) else 0.0,
         floor_seen=seen,
-        top=_top(level) / rough if len(near) > STOREY_SHARE * len(heights) else None,
+        top=_top_height(level) / rough if len(near) > SINGLE_STOREY_SHARE * len(heights) else None,
         ceiling=None if ceiling is None else ceiling / rough,
-        levels=tuple(Level(at.height / rough, at.area / rough**2) for at in _levels(level)),
+        levels=tuple(
+            LevelFace(at.height / rough, at.area / rough**2) for at in _level_faces(level)
+        ),
         length=None if length is None else length / rough,
         width=None if width is None else width / rough,
     )
@@ -157,7 +159,7 @@ def _rough_scale(surface: OrientedPoints) -> float:
     return USUAL_RANGE_M / max(float(np.median(np.linalg.norm(away, axis=1))), 1e-12)
 
 
-def _levelled(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
+def _level_points(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
     """Return the surface with the floor at z = 0 and z up, and whether a floor was seen."""
     ground = find_ground(surface)
     to_level = np.eye(4)
@@ -169,45 +171,45 @@ def _levelled(surface: OrientedPoints) -> tuple[OrientedPoints, bool]:
 def _lowest_camera(heights: np.ndarray) -> float:
     """Return the middle height of the cameras of the lowest storey, above 0."""
     low = float(np.quantile(heights, 0.1))
-    near = heights[heights <= OTHER_STOREY * max(low, 0.05)]
+    near = heights[heights <= OTHER_STOREY_RATIO * max(low, 0.05)]
     return max(float(np.median(near if len(near) else heights)), 0.05)
 
 
-def _levels(level: OrientedPoints) -> list[Level]:
+def _level_faces(level: OrientedPoints) -> list[LevelFace]:
     """Return the faces that look up between a stool's height and the chest's, from low to high."""
-    up = level.points_m[level.normals[:, 2] > FACING]
+    up = level.points_m[level.normals[:, 2] > MIN_FACING_COSINE]
     found = axis_profile(up, 2, 0.02)
-    peaks = [at for at in found.peaks(LEVEL_LEAST_M2) if LEVEL_M[0] <= at <= LEVEL_M[1]]
-    levels: list[Level] = []
+    peaks = [at for at in found.peaks(MIN_LEVEL_M2) if LEVEL_RANGE_M[0] <= at <= LEVEL_RANGE_M[1]]
+    levels: list[LevelFace] = []
     for place in peaks:
         area = found.area_at(float(place))
-        if levels and place - levels[-1].height < MERGED_M:
+        if levels and place - levels[-1].height < MERGE_DISTANCE_M:
             if area <= levels[-1].area:
                 continue
             levels.pop()
         near = up[np.abs(up[:, 2] - place) < 0.03, 2]
-        levels.append(Level(float(np.median(near)), area))
+        levels.append(LevelFace(float(np.median(near)), area))
     return levels
 
 
-def _top(level: OrientedPoints) -> float:
+def _top_height(level: OrientedPoints) -> float:
     return float(np.quantile(level.points_m[:, 2], TOP_QUANTILE))
 
 
-def _ceiling(level: OrientedPoints, camera: float) -> float | None:
+def _ceiling_height(level: OrientedPoints, camera: float) -> float | None:
     """Return the height of the lowest large face that looks down over the cameras."""
-    down = level.points_m[level.normals[:, 2] < -FACING]
+    down = level.points_m[level.normals[:, 2] < -MIN_FACING_COSINE]
     found = axis_profile(down, 2, 0.03)
-    least = CEILING_OVER_CAMERA * camera
-    places = [float(at) for at in found.peaks(CEILING_LEAST_M2) if at > least]
+    least = MIN_CEILING_OVER_CAMERA * camera
+    places = [float(at) for at in found.peaks(MIN_CEILING_M2) if at > least]
     if not places:
         return None
     most = max(found.area_at(at) for at in places)
-    lowest = next(at for at in places if found.area_at(at) >= CEILING_SHARE * most)
+    lowest = next(at for at in places if found.area_at(at) >= MIN_CEILING_SHARE * most)
     return float(np.median(down[np.abs(down[:, 2] - lowest) < 0.045, 2]))
 
 
-def _sides(level: OrientedPoints) -> tuple[float | None, float | None]:
+def _side_lengths(level: OrientedPoints) -> tuple[float | None, float | None]:
     """Return the longer and the shorter side of the room, each None where a wall is missing."""
     box = find_room_box(level.transformed(rotation_about_z(-find_yaw(level))))
     sides = []

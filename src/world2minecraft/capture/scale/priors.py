@@ -13,7 +13,7 @@ from scipy.special import log_ndtr
 
 
 @dataclass(frozen=True)
-class Usual:
+class HeightPrior:
     """A kind of thing: its usual height, the relative spread and how common it is."""
 
     name: str
@@ -22,29 +22,33 @@ class Usual:
     share: float
 
 
-LEVELS = (
-    Usual("table", 0.74, 0.030, 0.30),
-    Usual("counter", 0.90, 0.030, 0.14),
-    Usual("seat", 0.46, 0.050, 0.20),
-    Usual("bed", 0.53, 0.120, 0.08),
-    Usual("low table", 0.42, 0.100, 0.06),
-    Usual("sideboard", 0.83, 0.070, 0.07),
+LEVEL_PRIORS = (
+    HeightPrior("table", 0.74, 0.030, 0.30),
+    HeightPrior("counter", 0.90, 0.030, 0.14),
+    HeightPrior("seat", 0.46, 0.050, 0.20),
+    HeightPrior("bed", 0.53, 0.120, 0.08),
+    HeightPrior("low table", 0.42, 0.100, 0.06),
+    HeightPrior("sideboard", 0.83, 0.070, 0.07),
 )
 BACKGROUND = 0.15 / 1.65  # Of anything else: evenly over the logarithm from 0.25 to 1.3 m.
 LEVEL_TRUST = 0.7  # Faces of one room are not independent: two of a table's leaves say one thing.
 FULL_AREA_M2 = 0.4  # A smaller face counts less: a stack of books has a top as well.
-LEAST_LEVEL_TRUST = 0.15
+MIN_LEVEL_TRUST = 0.15
 
 
 def camera_likelihood(height_m: np.ndarray, floor_seen: bool) -> np.ndarray:
     """Return the log-density of the cameras' middle height over the floor."""
     wide = 0.16 if floor_seen else 0.22
-    return _mixed(height_m, ((0.80, 1.45, 0.105), (0.15, 1.40, wide * 1.5), (0.05, 1.3, 0.5)))
+    return _mixture_log_density(
+        height_m, ((0.80, 1.45, 0.105), (0.15, 1.40, wide * 1.5), (0.05, 1.3, 0.5))
+    )
 
 
 def ceiling_likelihood(height_m: np.ndarray) -> np.ndarray:
     """Return the log-density of a ceiling's height."""
-    return _mixed(height_m, ((0.70, 2.50, 0.055), (0.25, 2.70, 0.13), (0.05, 3.2, 0.35)))
+    return _mixture_log_density(
+        height_m, ((0.70, 2.50, 0.055), (0.25, 2.70, 0.13), (0.05, 3.2, 0.35))
+    )
 
 
 def top_likelihood(height_m: np.ndarray) -> np.ndarray:
@@ -54,32 +58,36 @@ def top_likelihood(height_m: np.ndarray) -> np.ndarray:
 
 def side_likelihood(side_m: np.ndarray) -> np.ndarray:
     """Return the log-density of a room's mean side: rooms of 2 to 8 m, and whole flats."""
-    return _mixed(side_m, ((0.7, 4.0, 0.40), (0.3, 9.0, 0.60)))
+    return _mixture_log_density(side_m, ((0.7, 4.0, 0.40), (0.3, 9.0, 0.60)))
 
 
 def level_likelihood(height_m: np.ndarray, area_m2: np.ndarray) -> np.ndarray:
     """Return the log-density of a level face's height; small faces count less."""
-    parts = [(kind.share, kind.height_m, kind.spread) for kind in LEVELS]
-    density = np.logaddexp(_mixed(height_m, parts), np.log(BACKGROUND))
-    return density * np.clip(area_m2 / FULL_AREA_M2, LEAST_LEVEL_TRUST, 1.0) * LEVEL_TRUST
+    parts = [(kind.share, kind.height_m, kind.spread) for kind in LEVEL_PRIORS]
+    density = np.logaddexp(_mixture_log_density(height_m, parts), np.log(BACKGROUND))
+    return density * np.clip(area_m2 / FULL_AREA_M2, MIN_LEVEL_TRUST, 1.0) * LEVEL_TRUST
 
 
-def likeliest_level(height_m: float) -> Usual | None:
+def likeliest_level(height_m: float) -> HeightPrior | None:
     """Return what a level face at a height is taken for, None where it is nothing usual."""
     density = {
-        kind: kind.share * np.exp(_normal(np.array(height_m), kind.height_m, kind.spread))
-        for kind in LEVELS
+        kind: kind.share
+        * np.exp(_normal_log_density(np.array(height_m), kind.height_m, kind.spread))
+        for kind in LEVEL_PRIORS
     }
     best = max(density, key=lambda kind: density[kind])
     return best if density[best] > BACKGROUND else None
 
 
-def _mixed(values: np.ndarray, parts: tuple | list) -> np.ndarray:
-    terms = [np.log(share) + _normal(values, middle, spread) for share, middle, spread in parts]
+def _mixture_log_density(values: np.ndarray, parts: tuple | list) -> np.ndarray:
+    terms = [
+        np.log(share) + _normal_log_density(values, middle, spread)
+        for share, middle, spread in parts
+    ]
     return np.logaddexp.reduce(terms, axis=0)
 
 
-def _normal(values: np.ndarray, middle: float, spread: float) -> np.ndarray:
+def _normal_log_density(values: np.ndarray, middle: float, spread: float) -> np.ndarray:
     """Return the log-density, over the logarithm of a length, of a normal one."""
     off = np.log(values / middle) / spread
     return -0.5 * off * off - np.log(spread * np.sqrt(2 * np.pi))

@@ -1,8 +1,8 @@
 """Where photos were taken: found from nothing, or measured and put right where poses are stated."""
 
 from world2minecraft.capture.sfm.incremental_mapping import find_poses
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pose_verification import check_poses
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 
-__all__ = ["PosingParameters", "Similarity", "align_similarity", "check_poses", "find_poses"]
+__all__ = ["SfmParameters", "Similarity", "align_similarity", "check_poses", "find_poses"]

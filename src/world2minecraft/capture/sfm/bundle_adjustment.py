@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.sfm.camera_groups import (
-    Lens,
-    each_camera,
+    CameraGroup,
+    camera_by_photo,
     from_colmap,
-    normalised,
+    normalise_pixels,
     to_colmap,
 )
-from world2minecraft.capture.sfm.features import Features, unit_px
-from world2minecraft.capture.sfm.matching import Links
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.features import Features, pixel_unit
+from world2minecraft.capture.sfm.matching import MatchGraph
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.core.types import Camera
 
@@ -42,20 +42,20 @@ def anchor_pixels(camera: Camera) -> np.ndarray:
 
 def anchor_points(camera: Camera, pose: np.ndarray, depth: float) -> np.ndarray:
     """Return the anchors of a photo with a stated pose, float64 [8, 3], for a middle depth."""
-    rays = normalised(camera, anchor_pixels(camera)[: ANCHORS // 2])
+    rays = normalise_pixels(camera, anchor_pixels(camera)[: ANCHORS // 2])
     local = np.concatenate([rays, np.ones((len(rays), 1))], axis=1)
     local *= depth * np.repeat(DEPTHS, len(CORNERS))[:, None]
     return local @ pose[:3, :3].T + pose[:3, 3]
 
 
-def anchored(
+def add_anchors(
     pycolmap: Any, model: Any, stated: dict[int, np.ndarray], cameras: dict[int, Camera]
 ) -> list[int]:
     """Add the anchors of stated poses to a model whose images end with them; return their ids."""
     inside = [i for i in sorted(stated) if model.exists_image(i + 1)]
     if not inside or not model.num_points3D():
         return []
-    depth = _middle_depth(model, inside)
+    depth = _median_depth(model, inside)
     added = []
     for i in inside:
         first = model.image(i + 1).num_points2D() - ANCHORS
@@ -67,7 +67,7 @@ def anchored(
     return added
 
 
-def _middle_depth(model: Any, inside: list[int]) -> float:
+def _median_depth(model: Any, inside: list[int]) -> float:
     points = np.array([model.point3D(n).xyz for n in sorted(model.point3D_ids())])
     depths = []
     for i in inside:
@@ -77,13 +77,13 @@ def _middle_depth(model: Any, inside: list[int]) -> float:
     return float(np.median(np.concatenate(depths)))
 
 
-LEAST_DEG = 1.5  # Rays that meet at less tell no depth.
-LEAST_POINTS = 20  # A photo that sees fewer is not held by them.
-RICH = 15  # With so many photos a lens takes a second term of distortion.
+MIN_ANGLE_DEG = 1.5  # Rays that meet at less tell no depth.
+MIN_POINTS = 20  # A photo that sees fewer is not held by them.
+MIN_PHOTOS_FOR_RADIAL = 15  # With so many photos a lens takes a second term of distortion.
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class SparseModel:
     """Poses with the points that they give.
 
     ``poses`` maps photo numbers to float64 [4, 4] camera-to-world, ``cameras`` to their lens.
@@ -109,17 +109,17 @@ class Solved:
         return float(np.median(self.error_px)) if len(self.error_px) else float("inf")
 
 
-def solved(
+def triangulate_and_adjust(
     photos: list[Features],
-    links: Links,
+    links: MatchGraph,
     poses: dict[int, np.ndarray],
-    lenses: list[Lens],
+    lenses: list[CameraGroup],
     gate_px: float,
-    parameters: PosingParameters,
+    parameters: SfmParameters,
     free: bool = True,
     tolerance: float = 1e-6,
     stated: dict[int, np.ndarray] | None = None,
-) -> Solved:
+) -> SparseModel:
     """Return points for the posed photos, and with ``free`` better poses and lenses.
 
     Args:
@@ -133,28 +133,34 @@ def solved(
         tolerance: adjusting ends when a step gains a smaller share.
         stated: poses that hold their photos where these see little (see ``anchors``).
     """
-    unit = unit_px(photos)
+    unit = pixel_unit(photos)
     gate_px = gate_px * unit
     with colmap() as pycolmap:
-        model = _model(pycolmap, photos, poses, lenses, free)
-        graph = _graph(pycolmap, photos, links, poses)
+        model = _build_model(pycolmap, photos, poses, lenses, free)
+        graph = _build_graph(pycolmap, photos, links, poses)
         manager = pycolmap.ObservationManager(model, graph)
         _triangulate(pycolmap, model, graph, manager, gate_px, parameters)
-        manager.filter_all_points3D(gate_px, LEAST_DEG)
+        manager.filter_all_points3D(gate_px, MIN_ANGLE_DEG)
         if model.num_points3D():
-            options = _adjusting(pycolmap, free, unit, tolerance)
+            options = _adjustment_options(pycolmap, free, unit, tolerance)
             fixed = [n + 1 for n, lens in enumerate(lenses) if lens.is_fixed or not free]
-            held = anchored(pycolmap, model, stated or {}, each_camera(lenses)) if free else []
+            held = (
+                add_anchors(pycolmap, model, stated or {}, camera_by_photo(lenses)) if free else []
+            )
             _adjust(pycolmap, model, options, fixed, held)
-            manager.filter_all_points3D(gate_px, LEAST_DEG)
-        return _read(photos, model, poses)
+            manager.filter_all_points3D(gate_px, MIN_ANGLE_DEG)
+        return _read_model(photos, model, poses)
 
 
-def _model(pycolmap: Any, photos: list[Features], poses: dict, lenses: list[Lens], free: bool):
+def _build_model(
+    pycolmap: Any, photos: list[Features], poses: dict, lenses: list[CameraGroup], free: bool
+):
     model = pycolmap.Reconstruction()
     for number, lens in enumerate(lenses):
         placed = [i for i in lens.photos if i in poses]
-        simple = free and len(placed) < RICH and not any(lens.camera.distortion[1:])
+        simple = (
+            free and len(placed) < MIN_PHOTOS_FOR_RADIAL and not any(lens.camera.distortion[1:])
+        )
         camera = to_colmap(pycolmap, lens.camera, number + 1, simple)
         model.add_camera_with_trivial_rig(camera)
         for i in placed:
@@ -168,7 +174,7 @@ def _model(pycolmap: Any, photos: list[Features], poses: dict, lenses: list[Lens
     return model
 
 
-def _graph(pycolmap: Any, photos: list[Features], links: Links, poses: dict) -> Any:
+def _build_graph(pycolmap: Any, photos: list[Features], links: MatchGraph, poses: dict) -> Any:
     graph = pycolmap.CorrespondenceGraph()
     for i in sorted(poses):
         graph.add_image(i + 1, len(photos[i].pixels) + ANCHORS)
@@ -185,7 +191,7 @@ def _triangulate(
     focal = min(camera.mean_focal_length() for camera in model.cameras.values())
     options = pycolmap.IncrementalTriangulatorOptions()
     options.random_seed = parameters.seed
-    options.min_angle = LEAST_DEG
+    options.min_angle = MIN_ANGLE_DEG
     angle = float(np.degrees(max(gate_px, 4.0) / focal))
     options.create_max_angle_error = options.continue_max_angle_error = 1.5 * angle
     options.merge_max_reproj_error = options.complete_max_reproj_error = gate_px
@@ -196,7 +202,7 @@ def _triangulate(
     triangulator.merge_all_tracks(options)
 
 
-def _adjusting(pycolmap: Any, free: bool, unit: float, tolerance: float) -> Any:
+def _adjustment_options(pycolmap: Any, free: bool, unit: float, tolerance: float) -> Any:
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
     options.refine_rig_from_world = free
@@ -224,7 +230,7 @@ def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int], held: lis
         model.delete_point3D(point)
 
 
-def _read(photos: list[Features], model: Any, poses: dict[int, np.ndarray]) -> Solved:
+def _read_model(photos: list[Features], model: Any, poses: dict[int, np.ndarray]) -> SparseModel:
     cameras = {i: from_colmap(model.camera(model.image(i + 1).camera_id)) for i in sorted(poses)}
     found = {}
     for i in poses:
@@ -238,23 +244,25 @@ def _read(photos: list[Features], model: Any, poses: dict[int, np.ndarray]) -> S
         track += [(number, e.image_id - 1, e.point2D_idx) for e in one.track.elements]
     rows = np.array(sorted(track), np.int64).reshape(-1, 3)
     every = np.array(points, np.float64).reshape(-1, 3)
-    errors = _errors(photos, found, cameras, every, rows)
-    return Solved(found, cameras, every, rows[:, 0], rows[:, 1], rows[:, 2], errors)
+    errors = _reprojection_errors(photos, found, cameras, every, rows)
+    return SparseModel(found, cameras, every, rows[:, 0], rows[:, 1], rows[:, 2], errors)
 
 
-def _errors(photos: list[Features], poses: dict, cameras: dict, points, rows) -> np.ndarray:
+def _reprojection_errors(
+    photos: list[Features], poses: dict, cameras: dict, points, rows
+) -> np.ndarray:
     """Return how far each observation is from where its point is seen, in pixels."""
     errors = np.zeros(len(rows))
     for i, pose in poses.items():
         mine = rows[:, 1] == i
         world_to_camera = np.linalg.inv(pose)
         local = points[rows[mine, 0]] @ world_to_camera[:3, :3].T + world_to_camera[:3, 3]
-        off = projected(cameras[i], local) - photos[i].pixels[rows[mine, 2]]
+        off = project_points(cameras[i], local) - photos[i].pixels[rows[mine, 2]]
         errors[mine] = np.linalg.norm(off, axis=1)
     return errors
 
 
-def projected(camera: Camera, points: np.ndarray) -> np.ndarray:
+def project_points(camera: Camera, points: np.ndarray) -> np.ndarray:
     """Return the pixels float64 [K, 2] at which a camera sees points [K, 3] in front of it."""
     k1, k2, p1, p2, k3 = camera.distortion
     x, y = (points[:, :2] / points[:, 2:]).T

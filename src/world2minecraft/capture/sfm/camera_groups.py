@@ -8,14 +8,18 @@ import numpy as np
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.core.types import Camera
 
-GUESS = 0.8  # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
-SAME = 0.02  # Focal lengths nearer than that are one lens that breathes with its focus.
-SHORTEST, LONGEST = 0.3, 2.0  # Focal lengths by the longer side that rooms are taken with.
-MOST_BENT = 0.6  # Terms of distortion; wide phones have 0.3.
+DEFAULT_FOCAL = (
+    0.8  # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
+)
+SAME_FOCAL_TOLERANCE = (
+    0.02  # Focal lengths nearer than that are one lens that breathes with its focus.
+)
+MIN_FOCAL, MAX_FOCAL = 0.3, 2.0  # Focal lengths by the longer side that rooms are taken with.
+MAX_DISTORTION = 0.6  # Terms of distortion; wide phones have 0.3.
 
 
 @dataclass(frozen=True)
-class Lens:
+class CameraGroup:
     """A lens that several photos share: its camera, the photos' numbers, and how it is known.
 
     ``known`` is "stated", "guessed" (EXIF), "unknown" (a usual lens is where the search begins) or
@@ -32,18 +36,18 @@ class Lens:
         return self.known == "assumed"
 
 
-def each_camera(lenses: list[Lens]) -> dict[int, Camera]:
+def camera_by_photo(lenses: list[CameraGroup]) -> dict[int, Camera]:
     """Return the camera of each photo's lens."""
     return {i: lens.camera for lens in lenses for i in lens.photos}
 
 
-def usual_camera(width_px: int, height_px: int, focal: float = GUESS) -> Camera:
+def default_camera(width_px: int, height_px: int, focal: float = DEFAULT_FOCAL) -> Camera:
     """Return a camera without distortion whose focal length is usual for the longer side."""
     focal_px = focal * max(width_px, height_px)
     return Camera(width_px, height_px, focal_px, focal_px, width_px / 2, height_px / 2)
 
 
-def shared_lenses(photos: list[Features]) -> list[Lens]:
+def group_cameras(photos: list[Features]) -> list[CameraGroup]:
     """Return the lenses of the photos: those of one size whose stated focal lengths are near.
 
     Each lens takes the middle camera of its photos.
@@ -51,29 +55,29 @@ def shared_lenses(photos: list[Features]) -> list[Lens]:
     groups: list[list[int]] = []
     for i, photo in enumerate(photos):
         for group in groups:
-            if _same(photos[group[0]], photo):
+            if _share_camera(photos[group[0]], photo):
                 group.append(i)
                 break
         else:
             groups.append([i])
-    return [_lens(photos, group) for group in groups]
+    return [_make_group(photos, group) for group in groups]
 
 
-def _same(one: Features, other: Features) -> bool:
+def _share_camera(one: Features, other: Features) -> bool:
     if one.size != other.size:
         return False
     if one.camera is None or other.camera is None:
         return one.camera is other.camera
-    return abs(one.camera.fx_px / other.camera.fx_px - 1) < SAME
+    return abs(one.camera.fx_px / other.camera.fx_px - 1) < SAME_FOCAL_TOLERANCE
 
 
-def _lens(photos: list[Features], group: list[int]) -> Lens:
+def _make_group(photos: list[Features], group: list[int]) -> CameraGroup:
     cameras = [camera for i in group if (camera := photos[i].camera) is not None]
     if not cameras:
-        return Lens(usual_camera(*photos[group[0]].size), tuple(group), "unknown")
+        return CameraGroup(default_camera(*photos[group[0]].size), tuple(group), "unknown")
     middle = sorted(cameras, key=lambda camera: camera.fx_px)[len(cameras) // 2]
     guessed = any(photos[i].camera_guessed for i in group)
-    return Lens(middle, tuple(group), "guessed" if guessed else "stated")
+    return CameraGroup(middle, tuple(group), "guessed" if guessed else "stated")
 
 
 def to_colmap(pycolmap: Any, camera: Camera, number: int, simple: bool) -> Any:
@@ -114,7 +118,7 @@ def from_colmap(made: Any) -> Camera:
     return Camera(made.width, made.height, fx, fy, cx, cy, distortion)
 
 
-def normalised(camera: Camera, pixels: np.ndarray) -> np.ndarray:
+def normalise_pixels(camera: Camera, pixels: np.ndarray) -> np.ndarray:
     """Return where rays cross the plane z = 1, float64 [K, 2], for pixels [K, 2] of a lens."""
     k1, k2, p1, p2, k3 = camera.distortion
     bent = (pixels - [camera.cx_px, camera.cy_px]) / [camera.fx_px, camera.fy_px]
@@ -134,11 +138,11 @@ def normalised(camera: Camera, pixels: np.ndarray) -> np.ndarray:
     return straight
 
 
-def is_sane(camera: Camera) -> bool:
+def is_plausible_camera(camera: Camera) -> bool:
     """Return whether a lens that was found is one that rooms are taken with.
 
     Photos of one flat surface, or of few details, let it run away.
     """
     longer = max(camera.width_px, camera.height_px)
-    in_range = SHORTEST * longer < camera.fx_px < LONGEST * longer
-    return in_range and max(abs(term) for term in camera.distortion) < MOST_BENT
+    in_range = MIN_FOCAL * longer < camera.fx_px < MAX_FOCAL * longer
+    return in_range and max(abs(term) for term in camera.distortion) < MAX_DISTORTION

@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream
 
-MOST_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
-PEAK = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
+MAX_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
+PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,28 +42,30 @@ class Features:
         return self.width_px, self.height_px
 
 
-def unit_px(photos: list[Features]) -> float:
+def pixel_unit(photos: list[Features]) -> float:
     """Return what a pixel of a picture of 640 is in these, 0.5 to 3: limits in pixels grow so."""
     longer = float(np.median([max(photo.size) for photo in photos])) if photos else 640.0
     return min(max(longer / 640, 0.5), 3.0)
 
 
-def gather(photos: PhotoStream, parameters: PosingParameters, steps: Steps) -> list[Features]:
+def extract_features(
+    photos: PhotoStream, parameters: SfmParameters, steps: Steps
+) -> list[Features]:
     """Return the features of all photos, in their order.
 
     Raises:
         CaptureError: two photos share a name.
         LimitError: there are too many.
     """
-    if len(photos) > MOST_PHOTOS:
+    if len(photos) > MAX_PHOTOS:
         raise LimitError(
-            PLACE, f"are {len(photos)}, over {MOST_PHOTOS}; take fewer: --set capture.every=10"
+            PLACE, f"are {len(photos)}, over {MAX_PHOTOS}; take fewer: --set capture.every=10"
         )
     gathered: list[Features] = []
     with colmap() as pycolmap:
         extractor = _extractor(pycolmap, parameters)
         for photo in photos:
-            gathered.append(_features(photo, extractor, pycolmap, parameters))
+            gathered.append(_extract_photo(photo, extractor, pycolmap, parameters))
             steps.done("features")
     names = [photo.name for photo in gathered]
     if len(set(names)) != len(names):
@@ -72,18 +74,18 @@ def gather(photos: PhotoStream, parameters: PosingParameters, steps: Steps) -> l
     return gathered
 
 
-def _extractor(pycolmap: Any, parameters: PosingParameters) -> Any:
+def _extractor(pycolmap: Any, parameters: SfmParameters) -> Any:
     options = pycolmap.FeatureExtractionOptions()
     options.num_threads = 1
     options.use_gpu = False
     options.sift.first_octave = 0  # The image is enlarged before.
-    options.sift.peak_threshold = PEAK
+    options.sift.peak_threshold = PEAK_THRESHOLD
     options.sift.max_num_features = 2 * parameters.most_features
     return pycolmap.FeatureExtractor.create(options, pycolmap.Device.cpu)
 
 
-def _features(
-    photo: Photo, extractor: Any, pycolmap: Any, parameters: PosingParameters
+def _extract_photo(
+    photo: Photo, extractor: Any, pycolmap: Any, parameters: SfmParameters
 ) -> Features:
     height, width = photo.colour.shape[:2]
     times = min(2.0, (parameters.working_px / (width * height)) ** 0.5)

@@ -6,22 +6,26 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.sfm import results as reasons
-from world2minecraft.capture.sfm.bundle_adjustment import LEAST_POINTS, Solved, solved
-from world2minecraft.capture.sfm.camera_groups import (
-    LONGEST,
-    MOST_BENT,
-    SHORTEST,
-    Lens,
-    each_camera,
-    from_colmap,
-    is_sane,
-    shared_lenses,
-    to_colmap,
-    usual_camera,
+from world2minecraft.capture.sfm.bundle_adjustment import (
+    MIN_POINTS,
+    SparseModel,
+    triangulate_and_adjust,
 )
-from world2minecraft.capture.sfm.features import Features, gather
-from world2minecraft.capture.sfm.matching import Links, link_photos
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.camera_groups import (
+    MAX_DISTORTION,
+    MAX_FOCAL,
+    MIN_FOCAL,
+    CameraGroup,
+    camera_by_photo,
+    default_camera,
+    from_colmap,
+    group_cameras,
+    is_plausible_camera,
+    to_colmap,
+)
+from world2minecraft.capture.sfm.features import Features, extract_features
+from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.capture.sfm.results import middle_depth, scene
@@ -35,11 +39,11 @@ from world2minecraft.core.types.photos import PhotoStream
 Model = dict[int, tuple[np.ndarray, Camera]]
 
 
-def mapped(
+def run_mapper(
     photos: list[Features],
-    links: Links,
-    lenses: list[Lens],
-    parameters: PosingParameters,
+    links: MatchGraph,
+    lenses: list[CameraGroup],
+    parameters: SfmParameters,
     steps: Steps,
 ) -> list[Model]:
     """Return the models that the links give, the one of most photos first.
@@ -49,7 +53,7 @@ def mapped(
     """
     with colmap() as pycolmap:
         pycolmap.set_random_seed(parameters.seed)
-        cache = _cache(pycolmap, photos, links, lenses)
+        cache = _database_cache(pycolmap, photos, links, lenses)
         manager = pycolmap.ReconstructionManager()
         pipeline = pycolmap.IncrementalPipeline(
             _options(pycolmap, lenses, parameters), cache, manager
@@ -63,11 +67,13 @@ def mapped(
         kinds = pycolmap.IncrementalPipelineCallback
         pipeline.add_callback(int(kinds.NEXT_IMAGE_REG_CALLBACK), told)
         pipeline.run()
-        models = [_model(manager.get(n)) for n in range(manager.size())]
+        models = [_read_model(manager.get(n)) for n in range(manager.size())]
     return sorted(models, key=lambda model: (-len(model), sorted(model)))
 
 
-def _cache(pycolmap: Any, photos: list[Features], links: Links, lenses: list[Lens]) -> Any:
+def _database_cache(
+    pycolmap: Any, photos: list[Features], links: MatchGraph, lenses: list[CameraGroup]
+) -> Any:
     """Return what mapping reads, made in memory: no file and no database."""
     cache = pycolmap.DatabaseCache()
     for number, lens in enumerate(lenses):
@@ -92,7 +98,7 @@ def _cache(pycolmap: Any, photos: list[Features], links: Links, lenses: list[Len
     return cache
 
 
-def _options(pycolmap: Any, lenses: list[Lens], parameters: PosingParameters) -> Any:
+def _options(pycolmap: Any, lenses: list[CameraGroup], parameters: SfmParameters) -> Any:
     options = pycolmap.IncrementalPipelineOptions()
     for part in (options, options.mapper, options.triangulation):
         part.random_seed = parameters.seed
@@ -100,8 +106,8 @@ def _options(pycolmap: Any, lenses: list[Lens], parameters: PosingParameters) ->
     options.extract_colors = False
     options.min_model_size = 3
     options.max_num_models = 10
-    options.min_focal_length_ratio, options.max_focal_length_ratio = SHORTEST, LONGEST
-    options.max_extra_param = MOST_BENT
+    options.min_focal_length_ratio, options.max_focal_length_ratio = MIN_FOCAL, MAX_FOCAL
+    options.max_extra_param = MAX_DISTORTION
     fixed = {number + 1 for number, lens in enumerate(lenses) if lens.is_fixed}
     options.constant_cameras = options.mapper.constant_cameras = fixed
     if fixed:
@@ -111,7 +117,7 @@ def _options(pycolmap: Any, lenses: list[Lens], parameters: PosingParameters) ->
     return options
 
 
-def _model(found: Any) -> Model:
+def _read_model(found: Any) -> Model:
     model: Model = {}
     for image in sorted(found.reg_image_ids()):
         there = np.eye(4)
@@ -123,12 +129,12 @@ def _model(found: Any) -> Model:
 
 # Several models become one, where they share photos and agree on how these stand.
 
-LEAST_SHARED = 3  # Two photos fit any two models.
-MOST_DEG = 3.0  # How far shared photos may be turned after the best similarity,
-MOST_SHARE = 0.05  # and moved, by the way between the farthest of them.
+MIN_SHARED_PHOTOS = 3  # Two photos fit any two models.
+MAX_ROTATION_DEG = 3.0  # How far shared photos may be turned after the best similarity,
+MAX_SHIFT_SHARE = 0.05  # and moved, by the way between the farthest of them.
 
 
-def joined(models: list[Model]) -> tuple[Model, int]:
+def merge_models(models: list[Model]) -> tuple[Model, int]:
     """Return the largest model with those joined to it that fit, and how many these were.
 
     Args:
@@ -137,19 +143,19 @@ def joined(models: list[Model]) -> tuple[Model, int]:
     whole = dict(models[0])
     waiting, count = list(models[1:]), 0
     while True:
-        fitting = next((one for one in waiting if _carried(one, whole) is not None), None)
+        fitting = next((one for one in waiting if _register_model(one, whole) is not None), None)
         if fitting is None:
             return whole, count
-        carried = _carried(fitting, whole) or {}
+        carried = _register_model(fitting, whole) or {}
         whole = {**carried, **whole}
         waiting.remove(fitting)
         count += 1
 
 
-def _carried(model: Model, whole: Model) -> Model | None:
+def _register_model(model: Model, whole: Model) -> Model | None:
     """Return the photos of a model in the frame of the whole, or None where it does not fit."""
     shared = sorted(set(model) & set(whole))
-    if len(shared) < LEAST_SHARED or len(shared) == len(model):
+    if len(shared) < MIN_SHARED_PHOTOS or len(shared) == len(model):
         return None
     given = np.array([model[i][0] for i in shared])
     wanted = np.array([whole[i][0] for i in shared])
@@ -158,23 +164,26 @@ def _carried(model: Model, whole: Model) -> Model | None:
     except ValueError:
         return None
     way = float(np.linalg.norm(np.ptp(wanted[:, :3, 3], axis=0)))
-    if np.median(found.off_deg) > MOST_DEG or np.median(found.off_m) > MOST_SHARE * way:
+    if (
+        np.median(found.off_deg) > MAX_ROTATION_DEG
+        or np.median(found.off_m) > MAX_SHIFT_SHARE * way
+    ):
         return None
     names = sorted(model)
     poses = found.poses(np.array([model[i][0] for i in names]))
     return {i: (pose, model[i][1]) for i, pose in zip(names, poses, strict=True)}
 
 
-MIDDLE_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
+MEDIAN_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
 OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
-ENOUGH = 0.6  # A model of this share of the linked photos needs no second trial.
-LEAST_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
-LEAST_PHOTOS = 3
+ENOUGH_SHARE = 0.6  # A model of this share of the linked photos needs no second trial.
+MIN_PLACED_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
+MIN_PHOTOS = 3
 
 
 def find_poses(
     photos: PhotoStream,
-    parameters: PosingParameters | None = None,
+    parameters: SfmParameters | None = None,
     progress: Progress = silent,
 ) -> SparseScene:
     """Return where photos were taken, from their pixels alone.
@@ -186,22 +195,22 @@ def find_poses(
         CaptureError: too few photos, or they cannot be placed; the message tells what to do.
         MissingExtraError: pycolmap is not installed.
     """
-    chosen = parameters or PosingParameters()
+    chosen = parameters or SfmParameters()
     count = len(photos)
     steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
-    features = gather(photos, chosen, steps)
-    reasons.check_enough(features, LEAST_PHOTOS)
-    lenses = shared_lenses(features)
-    links = link_photos(features, lenses, chosen, steps)
-    found, notes, models = solved_from_nothing(features, lenses, links, chosen, steps)
-    if len(found.poses) < LEAST_SHARE * len(features):
+    features = extract_features(photos, chosen, steps)
+    reasons.check_enough(features, MIN_PHOTOS)
+    lenses = group_cameras(features)
+    links = match_photos(features, lenses, chosen, steps)
+    found, notes, models = map_from_scratch(features, lenses, links, chosen, steps)
+    if len(found.poses) < MIN_PLACED_SHARE * len(features):
         raise reasons.too_few(len(found.poses), len(features))
     steps.end()
     change = Similarity(
-        MIDDLE_DEPTH / middle_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
+        MEDIAN_DEPTH / middle_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
     )
     out = reasons.left_out(features, found.poses, links)
-    if len(found.poses) < ENOUGH * len(features):
+    if len(found.poses) < ENOUGH_SHARE * len(features):
         notes.append(f"only {len(found.poses)} of {len(features)} photos could be placed")
     return scene(
         features,
@@ -213,98 +222,98 @@ def find_poses(
     )
 
 
-def solved_from_nothing(
+def map_from_scratch(
     photos: list[Features],
-    lenses: list[Lens],
-    links: Links,
-    parameters: PosingParameters,
+    lenses: list[CameraGroup],
+    links: MatchGraph,
+    parameters: SfmParameters,
     steps: Steps,
-) -> tuple[Solved, list[str], int]:
+) -> tuple[SparseModel, list[str], int]:
     """Return the photos placed from their links alone, notes, and how many models there were.
 
     Raises:
         CaptureError: no model of three photos was found.
     """
-    models, lenses = _best_models(photos, lenses, links, parameters, steps)
-    if not models or len(models[0]) < LEAST_PHOTOS:
-        raise reasons.refuse(photos, links, each_camera(lenses))
-    whole, count = joined(models)
+    models, lenses = _best_trial(photos, lenses, links, parameters, steps)
+    if not models or len(models[0]) < MIN_PHOTOS:
+        raise reasons.refuse(photos, links, camera_by_photo(lenses))
+    whole, count = merge_models(models)
     notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
     poses = {i: pose for i, (pose, _) in sorted(whole.items())}
     cameras = {i: camera for i, (_, camera) in whole.items()}
     gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
-    found = refined(photos, links, poses, with_cameras(lenses, cameras), gates, parameters)
-    if len(found.poses) < LEAST_PHOTOS or len(found.points) < LEAST_POINTS:
-        raise reasons.refuse(photos, links, each_camera(lenses))
+    found = refine_poses(photos, links, poses, replace_cameras(lenses, cameras), gates, parameters)
+    if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
+        raise reasons.refuse(photos, links, camera_by_photo(lenses))
     if any(lens.is_fixed for lens in lenses):
         notes.append("the photos cannot tell their lens: a usual one was assumed")
     return found, notes, len(models)
 
 
-def _best_models(
+def _best_trial(
     photos: list[Features],
-    lenses: list[Lens],
-    links: Links,
-    parameters: PosingParameters,
+    lenses: list[CameraGroup],
+    links: MatchGraph,
+    parameters: SfmParameters,
     steps: Steps,
-) -> tuple[list[Model], list[Lens]]:
+) -> tuple[list[Model], list[CameraGroup]]:
     """Return the models, and the lenses that they began from.
 
     Where lenses are not known and the usual ones lead nowhere, they are held as they are, and then
     others are tried.
     """
     linked = {i for pair in links.matches for i in pair}
-    best: tuple[list[Model], list[Lens]] = ([], lenses)
-    if len(linked) < LEAST_PHOTOS:
+    best: tuple[list[Model], list[CameraGroup]] = ([], lenses)
+    if len(linked) < MIN_PHOTOS:
         return best
-    for trial in _trials(lenses):
+    for trial in _initial_cameras(lenses):
         models = [
             model
-            for model in mapped(photos, links, trial, parameters, steps)
-            if all(is_sane(camera) for _, camera in model.values())
+            for model in run_mapper(photos, links, trial, parameters, steps)
+            if all(is_plausible_camera(camera) for _, camera in model.values())
         ]
         if models and len(models[0]) > sum(len(model) for model in best[0][:1]):
             best = models, trial
-        if best[0] and len(best[0][0]) >= ENOUGH * len(linked):
+        if best[0] and len(best[0][0]) >= ENOUGH_SHARE * len(linked):
             break
     return best
 
 
-def _trials(lenses: list[Lens]) -> list[list[Lens]]:
+def _initial_cameras(lenses: list[CameraGroup]) -> list[list[CameraGroup]]:
     """Return the lenses to begin from, one trial after another."""
     held = [replace(lens, known="assumed") for lens in lenses]
     others = [[_with_focal(lens, focal) for lens in lenses] for focal in OTHER_FOCALS]
     return [lenses, held, *(others if any(lens.known == "unknown" for lens in lenses) else [])]
 
 
-def _with_focal(lens: Lens, focal: float) -> Lens:
+def _with_focal(lens: CameraGroup, focal: float) -> CameraGroup:
     if lens.known != "unknown":
         return lens
     size = lens.camera.width_px, lens.camera.height_px
-    return replace(lens, camera=usual_camera(*size, focal))
+    return replace(lens, camera=default_camera(*size, focal))
 
 
-def refined(
+def refine_poses(
     photos: list[Features],
-    links: Links,
+    links: MatchGraph,
     poses: dict[int, np.ndarray],
-    lenses: list[Lens],
+    lenses: list[CameraGroup],
     gates_px: tuple[float, ...],
-    parameters: PosingParameters,
+    parameters: SfmParameters,
     stated: dict[int, np.ndarray] | None = None,
-) -> Solved:
+) -> SparseModel:
     """Return poses and lenses after a round for each gate; photos that see too little are left."""
     found = None
     for gate in gates_px:
         last = gate == gates_px[-1]
-        found = solved(
+        found = triangulate_and_adjust(
             photos, links, poses, lenses, gate, parameters,
             tolerance=1e-5 if last else 1e-3, stated=stated,
         )  # fmt: skip
-        poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= LEAST_POINTS}
-        lenses = with_cameras(lenses, found.cameras)
+        poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= MIN_POINTS}
+        lenses = replace_cameras(lenses, found.cameras)
         if last and len(poses) < len(found.poses):
-            found = solved(
+            found = triangulate_and_adjust(
                 photos, links, poses, lenses, gate, parameters, tolerance=1e-5, stated=stated
             )
     if found is None:
@@ -312,7 +321,7 @@ def refined(
     return found
 
 
-def with_cameras(lenses: list[Lens], cameras: dict) -> list[Lens]:
+def replace_cameras(lenses: list[CameraGroup], cameras: dict) -> list[CameraGroup]:
     """Return the lenses with the cameras that were found for their photos."""
     return [
         replace(lens, camera=next((cameras[i] for i in lens.photos if i in cameras), lens.camera))
@@ -320,7 +329,7 @@ def with_cameras(lenses: list[Lens], cameras: dict) -> list[Lens]:
     ]
 
 
-def focal_facts(photos: list[Features], found: Solved, lenses: list[Lens]) -> dict:
+def focal_facts(photos: list[Features], found: SparseModel, lenses: list[CameraGroup]) -> dict:
     """Return the focal length found and given for the lens of most photos, in pixels."""
     main = max(lenses, key=lambda lens: sum(i in found.poses for i in lens.photos))
     placed = next((i for i in main.photos if i in found.poses), None)

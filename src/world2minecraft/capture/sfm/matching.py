@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from world2minecraft.capture.sfm.camera_groups import Lens, to_colmap
+from world2minecraft.capture.sfm.camera_groups import CameraGroup, to_colmap
 from world2minecraft.capture.sfm.features import Features
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.capture.sfm.pycolmap_session import colmap
 from world2minecraft.core.machine import usable_cores
@@ -21,16 +21,16 @@ from world2minecraft.core.types import Camera
 # Descriptors are bytes, so their products are whole numbers below 2^24 and float32 holds them
 # exactly: no order of summing, and so no number of threads, can change a match.
 
-FULL = 512.0**2  # A descriptor times itself.
-RATIO = 0.8  # The next best must be so much farther (Lowe's).
-FARTHEST = 0.7  # rad between two descriptors; COLMAP's.
-WORDS = 512  # Descriptors of the photos themselves that tell alike ones, where there are many.
-MOST_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
+SELF_PRODUCT = 512.0**2  # A descriptor times itself.
+MAX_RATIO = 0.8  # The next best must be so much farther (Lowe's).
+MAX_ANGLE_RAD = 0.7  # rad between two descriptors; COLMAP's.
+MAX_WORDS = 512  # Descriptors of the photos themselves that tell alike ones, where there are many.
+MAX_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
 
 Pair = tuple[int, int]
 
 
-def matches(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return int64 [M, 2]: rows of the two descriptor arrays uint8 [K, 128] that are each other's.
 
     A match is the best both ways, clearly better than the next one, and near.
@@ -41,38 +41,40 @@ def matches(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     products = a @ b.T
     rows = np.arange(len(a))
     best = products.argmax(axis=1)
-    angle = np.arccos(np.minimum(products[rows, best] / FULL, 1))
+    angle = np.arccos(np.minimum(products[rows, best] / SELF_PRODUCT, 1))
     products[rows, best] = -1
-    next_angle = np.arccos(np.minimum(products.max(axis=1) / FULL, 1))
-    some = np.flatnonzero((angle < FARTHEST) & (angle < RATIO * next_angle))
+    next_angle = np.arccos(np.minimum(products.max(axis=1) / SELF_PRODUCT, 1))
+    some = np.flatnonzero((angle < MAX_ANGLE_RAD) & (angle < MAX_RATIO * next_angle))
     back = (b[best[some]] @ a.T).argmax(axis=1)
     some = some[back == some]
     return np.stack([some, best[some]], axis=1)
 
 
-def likeness(photos: list[Features], parameters: PosingParameters, steps: Steps) -> np.ndarray:
+def count_common_features(
+    photos: list[Features], parameters: SfmParameters, steps: Steps
+) -> np.ndarray:
     """Return int [N, N]: how many of their largest features each two photos share.
 
     Pairs that were not compared have 0.
     """
     strong = [photo.descriptors[: parameters.strong] for photo in photos]
-    pairs = _candidates(strong, parameters)
+    pairs = _candidate_pairs(strong, parameters)
     alike = np.zeros((len(photos), len(photos)), np.int64)
     rows: dict[int, list[int]] = {}
     for i, j in pairs:
         rows.setdefault(i, []).append(j)
 
     def row(i: int) -> list[int]:
-        return [len(matches(strong[i], strong[j])) for j in rows[i]]
+        return [len(match_descriptors(strong[i], strong[j])) for j in rows[i]]
 
-    with ThreadPoolExecutor(threads()) as pool:
+    with ThreadPoolExecutor(thread_count()) as pool:
         for n, (i, counts) in enumerate(zip(rows, pool.map(row, rows), strict=True)):
             alike[i, rows[i]] = alike[rows[i], i] = counts
             steps.done("alike", n + 1, len(rows))
     return alike
 
 
-def worth_matching(alike: np.ndarray, parameters: PosingParameters) -> list[Pair]:
+def select_pairs(alike: np.ndarray, parameters: SfmParameters) -> list[Pair]:
     """Return the pairs (i < j) that are matched in full: the most alike of each, and neighbours."""
     pairs: set[Pair] = set()
     count = len(alike)
@@ -86,17 +88,17 @@ def worth_matching(alike: np.ndarray, parameters: PosingParameters) -> list[Pair
     return sorted(pairs)
 
 
-def threads() -> int:
+def thread_count() -> int:
     """The number of threads that matching uses; it changes no result."""
-    return min(usable_cores(), MOST_THREADS)
+    return min(usable_cores(), MAX_THREADS)
 
 
-def _candidates(strong: list[np.ndarray], parameters: PosingParameters) -> list[Pair]:
+def _candidate_pairs(strong: list[np.ndarray], parameters: SfmParameters) -> list[Pair]:
     count = len(strong)
     if count <= parameters.exhaustive:
         return [(i, j) for i in range(count) for j in range(i + 1, count)]
     pairs = {(i, j) for i in range(count) for j in range(i + 1, min(count, i + 11))}
-    words = _words(strong)
+    words = _visual_words(strong)
     shared = words @ words.T
     np.fill_diagonal(shared, -1)
     for i in range(count):
@@ -105,7 +107,7 @@ def _candidates(strong: list[np.ndarray], parameters: PosingParameters) -> list[
     return sorted(pairs)
 
 
-def _words(strong: list[np.ndarray]) -> np.ndarray:
+def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
     """Return float64 [N, WORDS], of length 1: how often each photo holds each word, rare ones more.
 
     The words are some of the photos' own descriptors, so none have to be brought along.
@@ -113,7 +115,7 @@ def _words(strong: list[np.ndarray]) -> np.ndarray:
     every = np.concatenate([photo[::4] for photo in strong])
     if len(every) == 0:
         return np.zeros((len(strong), 1))
-    some = np.linspace(0, len(every) - 1, min(WORDS, len(every))).astype(np.intp)
+    some = np.linspace(0, len(every) - 1, min(MAX_WORDS, len(every))).astype(np.intp)
     words = every[some].astype(np.float32)
     counts = np.zeros((len(strong), len(words)))
     for i, photo in enumerate(strong):
@@ -126,21 +128,25 @@ def _words(strong: list[np.ndarray]) -> np.ndarray:
     return np.round(weighed / np.maximum(length, 1e-12), 9)
 
 
-TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
-NEAR = 0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
-FLAT = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
-TURNED = 1.1  # A turn has singular values that are all one; a focal length 10 % off shows so.
+MAX_TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
+MAX_ERROR_SHARE = (
+    0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
+)
+PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
+MAX_ROTATION_STRETCH = (
+    1.1  # A turn has singular values that are all one; a focal length 10 % off shows so.
+)
 
 
 @dataclass(frozen=True, eq=False)
-class Links:
+class MatchGraph:
     """What connects photos.
 
-    ``matches`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
+    ``match_descriptors`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
     pycolmap's value for the same; ``alike`` int [N, N] is a first count for all pairs.
     """
 
-    matches: dict[Pair, np.ndarray]
+    match_descriptors: dict[Pair, np.ndarray]
     geometry: dict[Pair, Any]
     alike: np.ndarray
 
@@ -150,7 +156,7 @@ class Links:
 
     def flat(self) -> float:
         """Return the share of links that one flat surface, or a mere turn, explains."""
-        return sum(one.config in FLAT for one in self.geometry.values()) / max(
+        return sum(one.config in PLANAR_CONFIGS for one in self.geometry.values()) / max(
             1, len(self.geometry)
         )
 
@@ -158,26 +164,26 @@ class Links:
         """Return the share of links that a camera that only turned, on one spot, would make."""
         count = 0
         for (i, j), one in self.geometry.items():
-            if one.config in FLAT and one.H is not None:
+            if one.config in PLANAR_CONFIGS and one.H is not None:
                 turn = np.linalg.inv(cameras[j].matrix) @ one.H @ cameras[i].matrix
                 stretch = np.linalg.svd(turn, compute_uv=False)
-                count += stretch[0] / stretch[2] < TURNED
+                count += stretch[0] / stretch[2] < MAX_ROTATION_STRETCH
         return count / max(1, len(self.geometry))
 
 
-def link_photos(
-    photos: list[Features], lenses: list[Lens], parameters: PosingParameters, steps: Steps
-) -> Links:
+def match_photos(
+    photos: list[Features], lenses: list[CameraGroup], parameters: SfmParameters, steps: Steps
+) -> MatchGraph:
     """Return the links of photos whose lenses are about right."""
     with threadpool_limits(1, "blas"):  # Small products: our threads are enough.
-        return _linked(photos, lenses, parameters, steps)
+        return _match_and_verify(photos, lenses, parameters, steps)
 
 
-def _linked(
-    photos: list[Features], lenses: list[Lens], parameters: PosingParameters, steps: Steps
-) -> Links:
-    alike = likeness(photos, parameters, steps)
-    pairs = worth_matching(alike, parameters)
+def _match_and_verify(
+    photos: list[Features], lenses: list[CameraGroup], parameters: SfmParameters, steps: Steps
+) -> MatchGraph:
+    alike = count_common_features(photos, parameters, steps)
+    pairs = select_pairs(alike, parameters)
     found: dict[Pair, np.ndarray] = {}
     geometry: dict[Pair, Any] = {}
     with colmap() as pycolmap:
@@ -189,34 +195,34 @@ def _linked(
         options = _options(pycolmap, max(max(photo.size) for photo in photos), parameters)
 
         def link(pair: Pair) -> tuple[np.ndarray, Any]:
-            return _link(pycolmap, photos, cameras, pair, options)
+            return _verify_pair(pycolmap, photos, cameras, pair, options)
 
-        with ThreadPoolExecutor(threads()) as pool:
+        with ThreadPoolExecutor(thread_count()) as pool:
             for n, (pair, (both, one)) in enumerate(_in_order(pairs, pool.map(link, pairs))):
                 if len(both) >= parameters.least_matches:
                     found[pair], geometry[pair] = both, one
                 steps.done("matches", n + 1, len(pairs))
-    return Links(found, geometry, alike)
+    return MatchGraph(found, geometry, alike)
 
 
 def _in_order(pairs: list[Pair], results: Iterable[tuple[np.ndarray, Any]]):
     return zip(pairs, results, strict=True)
 
 
-def _options(pycolmap: Any, longest: int, parameters: PosingParameters) -> Any:
+def _options(pycolmap: Any, longest: int, parameters: SfmParameters) -> Any:
     options = pycolmap.TwoViewGeometryOptions()
     options.min_num_inliers = parameters.least_matches
     options.detect_watermark = False
     options.ransac.random_seed = parameters.seed
-    options.ransac.max_num_trials = TRIALS
-    options.ransac.max_error = max(4.0, NEAR * longest)
+    options.ransac.max_num_trials = MAX_TRIALS
+    options.ransac.max_error = max(4.0, MAX_ERROR_SHARE * longest)
     options.ransac.num_threads = 1
     return options
 
 
-def _link(pycolmap: Any, photos: list[Features], cameras: dict, pair: Pair, options: Any):
+def _verify_pair(pycolmap: Any, photos: list[Features], cameras: dict, pair: Pair, options: Any):
     i, j = pair
-    both = matches(photos[i].descriptors, photos[j].descriptors)
+    both = match_descriptors(photos[i].descriptors, photos[j].descriptors)
     if len(both) < options.min_num_inliers:
         return both[:0], None
     rows = np.repeat(np.arange(len(both), dtype=np.uint32)[:, None], 2, axis=1)

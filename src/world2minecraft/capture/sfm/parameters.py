@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class PosingParameters:
+class SfmParameters:
     """How features are taken, matched, and made into poses. Pixels are those of 640 wide pictures.
 
     working_px: pixels of the image that features are sought in; smaller pictures are enlarged up

@@ -5,23 +5,23 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from world2minecraft.capture.sfm import results as reasons
-from world2minecraft.capture.sfm.bundle_adjustment import Solved, solved
+from world2minecraft.capture.sfm.bundle_adjustment import SparseModel, triangulate_and_adjust
 from world2minecraft.capture.sfm.camera_groups import (
-    Lens,
-    each_camera,
-    normalised,
-    shared_lenses,
+    CameraGroup,
+    camera_by_photo,
+    group_cameras,
+    normalise_pixels,
     to_colmap,
 )
-from world2minecraft.capture.sfm.features import Features, gather, unit_px
+from world2minecraft.capture.sfm.features import Features, extract_features, pixel_unit
 from world2minecraft.capture.sfm.incremental_mapping import (
     focal_facts,
-    refined,
-    solved_from_nothing,
-    with_cameras,
+    map_from_scratch,
+    refine_poses,
+    replace_cameras,
 )
-from world2minecraft.capture.sfm.matching import Links, link_photos
-from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
+from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import Steps
 from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
 from world2minecraft.capture.sfm.results import middle_depth, scene
@@ -33,12 +33,12 @@ from world2minecraft.core.types.photos import PhotoStream
 
 # Single photos: how far a stated pose is from what its matches say, and a new one from points.
 
-LEAST_SEEN = 30  # Points that a pose found anew must agree with; COLMAP's own least.
+MIN_INLIERS = 30  # Points that a pose found anew must agree with; COLMAP's own least.
 
 
-def epipolar_px(
+def epipolar_errors_px(
     photos: list[Features],
-    links: Links,
+    links: MatchGraph,
     poses: dict[int, np.ndarray],
     cameras: dict[int, Camera],
 ) -> dict[int, float]:
@@ -46,19 +46,21 @@ def epipolar_px(
 
     It is Sampson's, so it needs no points and no gate; photos without links are not in it.
     """
-    rays = {i: normalised(cameras[i], photos[i].pixels) for i in poses}
+    rays = {i: normalise_pixels(cameras[i], photos[i].pixels) for i in poses}
     off: dict[int, list[np.ndarray]] = {}
     for (i, j), both in links.matches.items():
         if i in poses and j in poses:
             first_to_second = np.linalg.inv(poses[j]) @ poses[i]
             focal = (cameras[i].fx_px * cameras[j].fx_px) ** 0.5
-            each = focal * sampson(rays[i][both[:, 0]], rays[j][both[:, 1]], first_to_second)
+            each = focal * sampson_errors(rays[i][both[:, 0]], rays[j][both[:, 1]], first_to_second)
             off.setdefault(i, []).append(each)
             off.setdefault(j, []).append(each)
     return {i: float(np.median(np.concatenate(each))) for i, each in sorted(off.items())}
 
 
-def sampson(first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray) -> np.ndarray:
+def sampson_errors(
+    first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray
+) -> np.ndarray:
     """Return how far matched rays [K, 2] (on z = 1) are from meeting, to first order, [K]."""
     x, y, z = first_to_second[:3, 3]
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -70,7 +72,7 @@ def sampson(first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray) 
     return np.abs((b * lines).sum(axis=1)) / np.sqrt(np.maximum(steep, 1e-24))
 
 
-def outliers(off_px: dict[int, float], unit: float, parameters: PosingParameters) -> set[int]:
+def find_outliers(off_px: dict[int, float], unit: float, parameters: SfmParameters) -> set[int]:
     """Return the photos whose stated poses are wrong, not merely inexact."""
     if len(off_px) < 4:
         return set()  # Of three, nobody can say which one is wrong.
@@ -79,13 +81,13 @@ def outliers(off_px: dict[int, float], unit: float, parameters: PosingParameters
     return {i for i, off in off_px.items() if off > limit}
 
 
-def placed_anew(
+def register_photo(
     photo: int,
     photos: list[Features],
-    links: Links,
-    found: Solved,
+    links: MatchGraph,
+    found: SparseModel,
     camera: Camera,
-    parameters: PosingParameters,
+    parameters: SfmParameters,
 ) -> np.ndarray | None:
     """Return the pose of a photo by the points that its partners see, or None if it has too few."""
     point_of = {
@@ -100,51 +102,51 @@ def placed_anew(
                 point = point_of.get((j if photo == i else i, row[other]))
                 if point is not None:
                     pairs.add((row[mine], point))
-    if len(pairs) < LEAST_SEEN:
+    if len(pairs) < MIN_INLIERS:
         return None
     rows = np.array(sorted(pairs))
     with colmap() as pycolmap:
         options = pycolmap.AbsolutePoseEstimationOptions()
         options.ransac.random_seed = parameters.seed
-        options.ransac.max_error = 4.0 * unit_px(photos)
+        options.ransac.max_error = 4.0 * pixel_unit(photos)
         answer = pycolmap.estimate_and_refine_absolute_pose(
             photos[photo].pixels[rows[:, 0]],
             found.points[rows[:, 1]],
             to_colmap(pycolmap, camera, 1, simple=False),
             options,
         )
-    if answer is None or answer["num_inliers"] < LEAST_SEEN:
+    if answer is None or answer["num_inliers"] < MIN_INLIERS:
         return None
     there = np.eye(4)
     there[:3] = answer["cam_from_world"].matrix()
     return np.linalg.inv(there)
 
 
-LEAST_POINTS = 50  # Fewer say nothing of poses.
-LEAST_MOUNTED = 12  # Poses for the place of another sensor on the device to be sought.
-MOUNT_GAIN = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
-MOUNT_REACH = 0.2  # and be no farther than so many times the depth that is seen.
-RICH_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
-NEARLY_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
-SETTLED_PX = 1.5  # Refined poses that are off by more have run away.
+MIN_POINTS = 50  # Fewer say nothing of poses.
+MIN_MOUNTED_POSES = 12  # Poses for the place of another sensor on the device to be sought.
+MAX_MOUNT_RATIO = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
+MAX_MOUNT_SHARE = 0.2  # and be no farther than so many times the depth that is seen.
+MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
+NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
+MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
 
 
 @dataclass(frozen=True, eq=False)
-class Stated:
+class StatedPoses:
     """What is known before anything is moved."""
 
     photos: list[Features]
-    lenses: list[Lens]
-    links: Links
+    lenses: list[CameraGroup]
+    links: MatchGraph
     poses: dict[int, np.ndarray]
     wrong: set[int]
-    parameters: PosingParameters
+    parameters: SfmParameters
     notes: list[str] = field(default_factory=list)
 
 
 def check_poses(
     photos: PhotoStream,
-    parameters: PosingParameters | None = None,
+    parameters: SfmParameters | None = None,
     progress: Progress = silent,
 ) -> SparseScene:
     """Return the photos with their stated poses where these are good, with better ones if not.
@@ -157,22 +159,22 @@ def check_poses(
         CaptureError: the photos share too little to be measured.
         MissingExtraError: pycolmap is not installed.
     """
-    chosen = parameters or PosingParameters()
+    chosen = parameters or SfmParameters()
     count = len(photos)
     steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
-    features = gather(photos, chosen, steps)
+    features = extract_features(photos, chosen, steps)
     reasons.check_enough(features, 2)
-    lenses = shared_lenses(features)
-    links = link_photos(features, lenses, chosen, steps)
+    lenses = group_cameras(features)
+    links = match_photos(features, lenses, chosen, steps)
     poses = {i: p for i, one in enumerate(features) if (p := one.camera_to_scan) is not None}
-    shared = each_camera(lenses)
+    shared = camera_by_photo(lenses)
     cameras = {i: one.camera or shared[i] for i, one in enumerate(features)}
-    unit = unit_px(features)
-    off_px = epipolar_px(features, links, poses, cameras)
-    wrong = outliers(off_px, unit, chosen)
-    stated = Stated(features, lenses, links, poses, wrong, chosen)
-    measured = _measured(stated, cameras)
-    if len(measured.points) < LEAST_POINTS and len(links.matches) < 2:
+    unit = pixel_unit(features)
+    off_px = epipolar_errors_px(features, links, poses, cameras)
+    wrong = find_outliers(off_px, unit, chosen)
+    stated = StatedPoses(features, lenses, links, poses, wrong, chosen)
+    measured = _triangulate_stated(stated, cameras)
+    if len(measured.points) < MIN_POINTS and len(links.matches) < 2:
         raise CaptureError(
             PLACE,
             f"share too few details to check their poses ({len(measured.points)} points); "
@@ -181,29 +183,29 @@ def check_poses(
     before = _error_px(measured, off_px, wrong)
     good = before <= unit * chosen.good_px and all(lens.known == "stated" for lens in lenses)
     made = (
-        _kept(stated, measured, before, cameras)
+        _keep_stated(stated, measured, before, cameras)
         if good
-        else _moved(stated, measured, before, steps)
+        else _refine_stated(stated, measured, before, steps)
     )
     steps.end()
     return made
 
 
-def _measured(stated: Stated, cameras: dict[int, Camera]) -> Solved:
+def _triangulate_stated(stated: StatedPoses, cameras: dict[int, Camera]) -> SparseModel:
     """Return the points that stated poses and lenses give as they are, gates wide."""
     poses = {i: pose for i, pose in stated.poses.items() if i not in stated.wrong}
-    return solved(
+    return triangulate_and_adjust(
         stated.photos,
         stated.links,
         poses,
-        _exact(cameras, poses),
+        _exact_groups(cameras, poses),
         stated.parameters.wide_px,
         stated.parameters,
         free=False,
     )
 
 
-def _error_px(measured: Solved, off_px: dict[int, float], wrong: set[int]) -> float:
+def _error_px(measured: SparseModel, off_px: dict[int, float], wrong: set[int]) -> float:
     """Return how far off the stated poses are, in pixels.
 
     Points exist only where matches meet within a gate, so poses that are far off look better by
@@ -213,35 +215,39 @@ def _error_px(measured: Solved, off_px: dict[int, float], wrong: set[int]) -> fl
     return max(measured.median_px, float(np.median(usual)) if usual else 0.0)
 
 
-def _exact(cameras: dict[int, Camera], poses: dict) -> list[Lens]:
+def _exact_groups(cameras: dict[int, Camera], poses: dict) -> list[CameraGroup]:
     """Return a lens for each camera as it is stated, none taken for another."""
     groups: dict[Camera, list[int]] = {}
     for i in sorted(poses):
         groups.setdefault(cameras[i], []).append(i)
-    return [Lens(camera, tuple(group), "stated") for camera, group in groups.items()]
+    return [CameraGroup(camera, tuple(group), "stated") for camera, group in groups.items()]
 
 
-def _rescued(stated: Stated, found: Solved, cameras: dict[int, Camera]) -> dict[int, np.ndarray]:
+def _register_missing(
+    stated: StatedPoses, found: SparseModel, cameras: dict[int, Camera]
+) -> dict[int, np.ndarray]:
     """Return poses for photos that have none, or a wrong one, by the points of the others."""
     fresh = {}
     for i in range(len(stated.photos)):
         if i in stated.wrong or i not in stated.poses:
-            pose = placed_anew(i, stated.photos, stated.links, found, cameras[i], stated.parameters)
+            pose = register_photo(
+                i, stated.photos, stated.links, found, cameras[i], stated.parameters
+            )
             if pose is not None:
                 fresh[i] = pose
     return fresh
 
 
-def _kept(
-    stated: Stated, measured: Solved, before: float, cameras: dict[int, Camera]
+def _keep_stated(
+    stated: StatedPoses, measured: SparseModel, before: float, cameras: dict[int, Camera]
 ) -> SparseScene:
     """Return the scene with all good poses as they were stated."""
-    fresh = _rescued(stated, measured, cameras)
+    fresh = _register_missing(stated, measured, cameras)
     kept = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
     poses = {**{i: pose for i, (_, pose) in kept.items()}, **fresh}
     gate = stated.parameters.gates_px[-1]
-    found = solved(
-        stated.photos, stated.links, poses, _exact(cameras, poses), gate,
+    found = triangulate_and_adjust(
+        stated.photos, stated.links, poses, _exact_groups(cameras, poses), gate,
         stated.parameters, free=False,
     )  # fmt: skip
     error = round(before, 4)
@@ -251,31 +257,33 @@ def _kept(
         "moved_median_mm": 0.0,
         "turned_median_deg": 0.0,
         "scale_correction": 1.0,
-        **_focals(stated, found),
+        **_focal_facts(stated, found),
     }
-    return _scene(stated, found, None, kept, fresh, facts)
+    return _to_scene(stated, found, None, kept, fresh, facts)
 
 
-def _moved(stated: Stated, measured: Solved, before: float, steps: Steps) -> SparseScene:
+def _refine_stated(
+    stated: StatedPoses, measured: SparseModel, before: float, steps: Steps
+) -> SparseScene:
     """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
     notes = stated.notes
-    found = _refined(stated, _is_poor(stated, measured, before))
+    found = _refine_from_stated(stated, _is_poor(stated, measured, before))
     if found is None:
         notes.append("the stated poses are too far off to start from: places were found anew")
-        found, more, _ = solved_from_nothing(
+        found, more, _ = map_from_scratch(
             stated.photos, stated.lenses, stated.links, stated.parameters, steps
         )
         notes += more
-    change, shared = _back(stated, found)
+    change, shared = _align_to_stated(stated, found)
     moved = change.off_m
     facts = {
         "error_before_px": round(before, 4) if np.isfinite(before) else None,
         "error_after_px": round(found.median_px, 4),
         "moved_median_mm": round(1000 * float(np.median(moved)), 3),
         "turned_median_deg": round(float(np.median(change.off_deg)), 4),
-        "scale_correction": _scale(measured, found, change),
+        "scale_correction": _scale_correction(measured, found, change),
         "mount_mm": [round(1000 * float(part), 1) for part in change.mount_m],
-        **_focals(stated, found),
+        **_focal_facts(stated, found),
     }
     notes.append(
         f"stated poses were off by {before:.1f} px (median); refined to {found.median_px:.2f} px, "
@@ -283,24 +291,26 @@ def _moved(stated: Stated, measured: Solved, before: float, steps: Steps) -> Spa
         f"and {facts['turned_median_deg']:.1f} degrees"
     )
     fresh = {i: pose for i, pose in found.poses.items() if i not in shared}
-    return _scene(stated, found, change, {}, fresh, facts)
+    return _to_scene(stated, found, change, {}, fresh, facts)
 
 
-def _scale(measured: Solved, found: Solved, change: Similarity) -> float | None:
+def _scale_correction(
+    measured: SparseModel, found: SparseModel, change: Similarity
+) -> float | None:
     """Return how much deeper everything is now than by the stated poses."""
-    if len(measured.points) < LEAST_POINTS:
+    if len(measured.points) < MIN_POINTS:
         return None
     return round(change.scale * middle_depth(found) / middle_depth(measured), 4)
 
 
-def _is_poor(stated: Stated, measured: Solved, before: float) -> bool:
+def _is_poor(stated: StatedPoses, measured: SparseModel, before: float) -> bool:
     """Return whether the photos see too little to overrule poses that are nearly right."""
-    unit = unit_px(stated.photos)
+    unit = pixel_unit(stated.photos)
     seen = len(measured.track_photo) / max(1, len(measured.poses))
-    return seen < RICH_PHOTO and before < NEARLY_PX * unit
+    return seen < MIN_POINTS_PER_PHOTO and before < NEARLY_RIGHT_PX * unit
 
 
-def _refined(stated: Stated, poor: bool) -> Solved | None:
+def _refine_from_stated(stated: StatedPoses, poor: bool) -> SparseModel | None:
     """Return better poses from the stated ones, or None where these lead nowhere.
 
     In a ``poor`` capture these hold their photos, and the lens is taken for right.
@@ -313,30 +323,30 @@ def _refined(stated: Stated, poor: bool) -> Solved | None:
     trusted = dict(poses) if poor else None
     lenses = [replace(one, known="assumed") if poor else one for one in stated.lenses]
     first, later = chosen.gates_px[:1], chosen.gates_px[1:]
-    found = refined(stated.photos, links, poses, lenses, first, chosen, trusted)
-    lenses = with_cameras(lenses, found.cameras)
-    fresh = _rescued(stated, found, each_camera(lenses))
+    found = refine_poses(stated.photos, links, poses, lenses, first, chosen, trusted)
+    lenses = replace_cameras(lenses, found.cameras)
+    fresh = _register_missing(stated, found, camera_by_photo(lenses))
     poses = {**found.poses, **fresh}
     if later:
-        found = refined(stated.photos, links, poses, lenses, later, chosen, trusted)
-    settled = found.median_px <= SETTLED_PX * unit_px(stated.photos)
+        found = refine_poses(stated.photos, links, poses, lenses, later, chosen, trusted)
+    settled = found.median_px <= MAX_REFINED_ERROR_PX * pixel_unit(stated.photos)
     if not settled or len(found.poses) < 0.5 * len(linked):
         return None
     return found
 
 
-def _back(stated: Stated, found: Solved) -> tuple[Similarity, set[int]]:
+def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarity, set[int]]:
     """Return the similarity to the stated frame, and the photos that it was found by."""
     shared = sorted(i for i in found.poses if i in stated.poses and i not in stated.wrong)
     given = np.array([found.poses[i] for i in shared]).reshape(-1, 4, 4)
     wanted = np.array([stated.poses[i] for i in shared]).reshape(-1, 4, 4)
     try:
         plain = align_similarity(given, wanted)
-        if len(shared) < LEAST_MOUNTED:
+        if len(shared) < MIN_MOUNTED_POSES:
             return plain, set(shared)
         mounted = align_similarity(given, wanted, mounted=True)
-        better = np.median(mounted.off_m) < MOUNT_GAIN * np.median(plain.off_m)
-        near = np.linalg.norm(mounted.mount_m) < MOUNT_REACH * plain.scale * middle_depth(found)
+        better = np.median(mounted.off_m) < MAX_MOUNT_RATIO * np.median(plain.off_m)
+        near = np.linalg.norm(mounted.mount_m) < MAX_MOUNT_SHARE * plain.scale * middle_depth(found)
         return mounted if better and near else plain, set(shared)
     except ValueError as error:
         raise CaptureError(
@@ -344,12 +354,12 @@ def _back(stated: Stated, found: Solved) -> tuple[Similarity, set[int]]:
         ) from error
 
 
-def _focals(stated: Stated, found: Solved) -> dict:
+def _focal_facts(stated: StatedPoses, found: SparseModel) -> dict:
     facts = focal_facts(stated.photos, found, stated.lenses)
     return {**facts, "focal_stated_px": facts["focal_given_px"]}
 
 
-def _scene(stated, found, change, kept, fresh, facts) -> SparseScene:
+def _to_scene(stated, found, change, kept, fresh, facts) -> SparseScene:
     photos, notes = stated.photos, stated.notes
     placed = {*found.poses, *kept}
     wrong = sorted(stated.wrong)

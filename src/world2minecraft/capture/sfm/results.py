@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.sfm.bundle_adjustment import Solved
+from world2minecraft.capture.sfm.bundle_adjustment import SparseModel
 from world2minecraft.capture.sfm.features import Features
-from world2minecraft.capture.sfm.matching import Links
+from world2minecraft.capture.sfm.matching import MatchGraph
 from world2minecraft.capture.sfm.pycolmap_session import PLACE
 from world2minecraft.capture.sfm.similarity_transform import Similarity
 from world2minecraft.core.errors import CaptureError
@@ -21,7 +21,9 @@ BLURRED = 0.5  # Times the usual sharpness.
 HABIT = "walk sideways around the room, with most of each picture in the next"
 
 
-def left_out(photos: list[Features], placed: Iterable[int], links: Links) -> list[tuple[str, str]]:
+def left_out(
+    photos: list[Features], placed: Iterable[int], links: MatchGraph
+) -> list[tuple[str, str]]:
     """Return name and reason of each photo that is not among those placed."""
     inside = set(placed)
     usual = float(np.median([photo.sharpness for photo in photos]))
@@ -32,7 +34,9 @@ def left_out(photos: list[Features], placed: Iterable[int], links: Links) -> lis
     ]
 
 
-def _reason(i: int, photos: list[Features], inside: set[int], links: Links, usual: float) -> str:
+def _reason(
+    i: int, photos: list[Features], inside: set[int], links: MatchGraph, usual: float
+) -> str:
     photo = photos[i]
     blurred = photo.sharpness < BLURRED * usual
     if len(photo.pixels) < FEW_FEATURES:
@@ -49,7 +53,7 @@ def _reason(i: int, photos: list[Features], inside: set[int], links: Links, usua
     return f"shares too little with the photos that were placed; {advice}"
 
 
-def _nearest(i: int, inside: set[int], links: Links) -> int:
+def _nearest(i: int, inside: set[int], links: MatchGraph) -> int:
     """Return the placed photo that is most like one, by what both show, then by order."""
     if not inside:
         return i
@@ -80,7 +84,7 @@ def too_few(placed: int, given: int) -> CaptureError:
     )
 
 
-def refuse(photos: list[Features], links: Links, cameras: dict[int, Camera]) -> CaptureError:
+def refuse(photos: list[Features], links: MatchGraph, cameras: dict[int, Camera]) -> CaptureError:
     """Return the error for photos that make no model at all."""
     linked = {i for pair in links.matches for i in pair}
     if len(linked) < 3:
@@ -108,7 +112,7 @@ DIGITS = 9  # What is left of rounding in sums; a nanometre.
 
 def scene(
     photos: list[Features],
-    found: Solved,
+    found: SparseModel,
     change: Similarity | None = None,
     kept: dict[int, tuple[Camera, np.ndarray]] | None = None,
     **told: Any,
@@ -158,7 +162,7 @@ def scene(
     )
 
 
-def middle_depth(found: Solved) -> float:
+def middle_depth(found: SparseModel) -> float:
     """Return the median distance along the view from a photo to a point that it sees."""
     depths = []
     for i, pose in sorted(found.poses.items()):
@@ -167,7 +171,7 @@ def middle_depth(found: Solved) -> float:
     return float(np.median(np.concatenate(depths)))
 
 
-def middle_angle_deg(found: Solved) -> float:
+def middle_angle_deg(found: SparseModel) -> float:
     """Return the median over points of the widest angle between the first ray and another."""
     if len(found.points) == 0:
         return 0.0
@@ -182,7 +186,7 @@ def middle_angle_deg(found: Solved) -> float:
     return float(np.degrees(np.median(np.arccos(np.clip(widest, -1, 1)))))
 
 
-def _pixels(photos: list[Features], found: Solved) -> np.ndarray:
+def _pixels(photos: list[Features], found: SparseModel) -> np.ndarray:
     pixels = np.zeros((len(found.track_photo), 2))
     for i in found.poses:
         mine = found.track_photo == i
@@ -190,7 +194,7 @@ def _pixels(photos: list[Features], found: Solved) -> np.ndarray:
     return pixels
 
 
-def _colours(photos: list[Features], found: Solved) -> np.ndarray:
+def _colours(photos: list[Features], found: SparseModel) -> np.ndarray:
     """Return each point's mean colour, uint8 [P, 3]."""
     count = len(found.points)
     total = np.zeros((count, 3), np.int64)

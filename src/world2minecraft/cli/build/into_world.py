@@ -47,15 +47,15 @@ def into_world(
         UsageError, InputError: as ``edit.into_world.build_into``.
     """
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
-    from world2minecraft.editing.relocation import placed
-    from world2minecraft.editing.world_build import build_into
+    from world2minecraft.editing.relocation import place_volume
+    from world2minecraft.editing.world_build import build_into_world
     from world2minecraft.minecraft.commands.player_scale import size_pack
 
     ground_y = ROOM_CORNER_BLOCK[1] if is_room else None
-    put = placed(volume, at, turns, ground_y)
+    put = place_volume(volume, at, turns, ground_y)
     pack = {"datapacks/player_size.zip": size_pack(volume.blocks_per_metre)}
     has_scale = is_room and volume.blocks_per_metre != 1
-    done = build_into(
+    done = build_into_world(
         world,
         put,
         air=air,

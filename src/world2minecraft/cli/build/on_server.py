@@ -41,16 +41,16 @@ def on_server(
     password = password_of_environment()
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
-    from world2minecraft.editing.relocation import placed
-    from world2minecraft.editing.world_build import built_mask
+    from world2minecraft.editing.relocation import place_volume
+    from world2minecraft.editing.world_build import affected_mask
     from world2minecraft.minecraft.file_format import Losses
     from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
     from world2minecraft.minecraft.server.rcon import RconClient
     from world2minecraft.minecraft.versions import game_version
 
     at = at or ROOM_CORNER_BLOCK
-    volume = placed(volume, at, turns, ROOM_CORNER_BLOCK[1] if is_room else None)
-    losses, built = Losses(), built_mask(volume, air)
+    volume = place_volume(volume, at, turns, ROOM_CORNER_BLOCK[1] if is_room else None)
+    losses, built = Losses(), affected_mask(volume, air)
     plan = plan_build(volume, game_version(mc_version), built=built, losses=losses)
     note = note_of(f"{host}:{port}", plan.digest)
     if note.is_file():

@@ -164,11 +164,11 @@ def given_named(
 
         return GivenViews(str(tour)), len(read_tour(tour))
     if screenshots is not None:
-        from world2minecraft.minecraftocc.building.recorded_views import recorded
+        from world2minecraft.minecraftocc.building.recorded_views import load_screenshot_views
 
         words = {} if fov_deg is None else {"vertical_fov_deg": fov_deg}
         given = GivenViews(str(screenshots), True, said_at(at), **words)  # type: ignore[arg-type]
-        return given, len(recorded(given))
+        return given, len(load_screenshot_views(given))
     return None, 0
 
 

@@ -58,7 +58,7 @@ def run(
     """
     from world2minecraft.core.errors import InputError, UsageError
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.minecraftocc.contact_sheet import picture_sheet
+    from world2minecraft.minecraftocc.contact_sheet import make_contact_sheet
     from world2minecraft.rendering.output.images import colour_bytes
 
     if min(most, columns) < 1 or not 16 <= width <= 2000:
@@ -72,15 +72,15 @@ def run(
         raise UsageError(f"{place} is a tour; name what it is a tour of: --world WORLD")
     else:
         pictures = _of_tour(place, world, most, first, width, hour)
-    page = picture_sheet(pictures, columns, width)
+    page = make_contact_sheet(pictures, columns, width)
     write_bytes(out, colour_bytes(page, out.suffix.lower()))
     print(f"{out}: {page.shape[1]}x{page.shape[0]} pixels")
 
 
 def _chosen(count: int, most: int, first: bool) -> list[int]:
-    from world2minecraft.minecraftocc.contact_sheet import spread
+    from world2minecraft.minecraftocc.contact_sheet import spread_indices
 
-    return list(range(min(count, most))) if first else spread(count, most)
+    return list(range(min(count, most))) if first else spread_indices(count, most)
 
 
 def _of_data(
@@ -105,18 +105,18 @@ def _of_data(
 def _of_tour(
     tour: Path, world: Path, most: int, first: bool, width: int, hour: float | None
 ) -> "Iterable[tuple[np.ndarray, str]]":
-    from world2minecraft.minecraftocc.contact_sheet import drawn_views
+    from world2minecraft.minecraftocc.contact_sheet import draw_views
     from world2minecraft.minecraftocc.scene_sources import open_scene_source
     from world2minecraft.minecraftocc.tours import read_views
-    from world2minecraft.rendering.light import LookLight
+    from world2minecraft.rendering.light import LightSettings
     from world2minecraft.rendering.scene import prepare_scene
 
     volume = open_scene_source(world).volume()
     views = read_views(tour, volume.block_to_room)
     chosen = [views[number] for number in _chosen(len(views), most, first)]
-    light = LookLight() if hour is None else LookLight(hour=hour)
+    light = LightSettings() if hour is None else LightSettings(hour=hour)
     shots = [(view.camera, view.camera_to_room) for view in chosen]
-    pictures = drawn_views(prepare_scene(volume), shots, width, light)
+    pictures = draw_views(prepare_scene(volume), shots, width, light)
     for view, colour in zip(chosen, pictures, strict=True):
         yaw, pitch = f"{view.pose.yaw_deg:.0f}", f"{view.pose.pitch_deg:.0f}"
         yield colour, f"{view.tour_id} {view.frame}  {view.kind} {yaw} {pitch}"

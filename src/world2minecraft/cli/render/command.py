@@ -90,10 +90,10 @@ def run(
     given = tuple(option.pose_of(text) for text in pose or ())
     flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
     view = view_of(given, poses, flags, frames, fps, opened)  # type: ignore[arg-type]
-    from world2minecraft.rendering.output import layers_named
+    from world2minecraft.rendering.output import parse_layers
 
     files = option.file_choice(image_format, depth_format, quality, depth_scale)
-    wanted = layers_named(outputs)
+    wanted = parse_layers(outputs)
     count = frames if frames is not None else len(given) or None
     target = target_of(out, source.resolve().stem, view.kind, wanted, files, count)
     look = Look(light, hour, brightness, exposure, sun_shadow, samples, textures, tuple(pack or ()),
@@ -110,7 +110,7 @@ def draw(
 
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.rendering.output import needs_of
+    from world2minecraft.rendering.output import required_outputs
     from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
     compiling_note()
@@ -119,7 +119,7 @@ def draw(
     count = len(plan.shots) or turntable_count(view, target.medium)
     check_many(target, count)
     one_size(plan.shots, target)
-    options = look.options_of(view.kind, target.medium, needs_of(target.layers))
+    options = look.options_of(view.kind, target.medium, required_outputs(target.layers))
     cameras = [shot.camera for shot in plan.shots] or [choice.camera(GAME_FOV_DEG)]
     check_pixels(cameras, options.samples)
     if look.photo and view.kind == "turntable":

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.cli.render.shots import Kind, Medium
-    from world2minecraft.rendering import BlockScene, LookLight, Picture
+    from world2minecraft.rendering import BlockScene, LightSettings, Picture
     from world2minecraft.rendering.block_elements import ModelSource
     from world2minecraft.rendering.presentation.shot_frames import DrawOptions
     from world2minecraft.rendering.resource_packs import ResourcePackModels
@@ -91,18 +91,18 @@ class Look:
             other = "--photo" if self.photo else "--device gpu"
             raise UsageError(f"--jobs is for plain pictures on the CPU, not for {other}")
 
-    def light_of(self, kind: "Kind") -> "LookLight":
+    def light_of(self, kind: "Kind") -> "LightSettings":
         """Return the light of a kind of view: a turntable stands in an even light of its own.
 
         Raises:
             UsageError: a number is out of range, or there is no such light.
         """
-        from world2minecraft.rendering import DAY, LookLight
+        from world2minecraft.rendering import DAY, LightSettings
 
         asked = self.hour is not None or self.sun_shadow or self.exposure is not None
         usual = "neutral" if kind == "turntable" and not asked else DAY.preset
         try:
-            return LookLight(
+            return LightSettings(
                 preset=self.light or usual,
                 hour=DAY.hour if self.hour is None else self.hour % 24.0,
                 exposure=self.exposure,

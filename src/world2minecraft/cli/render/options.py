@@ -10,7 +10,7 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
-    from world2minecraft.rendering.output import FileChoice
+    from world2minecraft.rendering.output import FileFormats
     from world2minecraft.rendering.views import GamePose
 
 MOST_FRAMES = 1_000_000
@@ -188,9 +188,9 @@ def box_of(text: str) -> tuple[int, int, int, int, int, int] | None:
     return x0, y0, z0, x1, y1, z1
 
 
-def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileChoice":
+def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileFormats":
     """Read how layers become files. Raises UsageError."""
-    from world2minecraft.rendering.output import FileChoice
+    from world2minecraft.rendering.output import FileFormats
 
     if image not in ("png", "jpg", "jpeg", "webp"):
         raise UsageError(f"--format is png, jpg or webp, not {image!r}")
@@ -200,7 +200,7 @@ def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileCh
         raise UsageError(f"--quality is 1 to 100, not {quality}")
     if not 1 <= per_metre <= 65535:
         raise UsageError(f"--depth-scale is 1 to 65535, not {per_metre}")
-    return FileChoice(f".{image}", f".{depth}", quality, per_metre)
+    return FileFormats(f".{image}", f".{depth}", quality, per_metre)
 
 
 def check_count(frames: int | None, rate_hz: float) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from world2minecraft.core.types import BlockVolume, Camera
     from world2minecraft.rendering import Picture
-    from world2minecraft.rendering.output import FileChoice
+    from world2minecraft.rendering.output import FileFormats
     from world2minecraft.rendering.views import Shot
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
@@ -28,7 +28,7 @@ class Target:
     path: Path
     medium: Medium
     layers: tuple[str, ...]
-    choice: "FileChoice"
+    choice: "FileFormats"
 
     def beside(self, name: str) -> Path:
         """Return the place of a file about the pictures: in their folder, or beside them."""
@@ -38,7 +38,7 @@ class Target:
 
 
 def target_of(
-    out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: "FileChoice",
+    out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: "FileFormats",
     frames: int | None,
 ) -> Target:  # fmt: skip
     """Return where pictures go.
@@ -49,7 +49,7 @@ def target_of(
     """
     from dataclasses import replace
 
-    from world2minecraft.rendering.output import MOVING_SUFFIXES
+    from world2minecraft.rendering.output import ANIMATION_SUFFIXES
     from world2minecraft.rendering.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
 
     if out is None:
@@ -57,7 +57,7 @@ def target_of(
         out = Path(f"{name}{end}")
     suffix = out.suffix.lower()
     many = kind in ("poses", "tour", "turntable") or (frames or 1) > 1
-    moving = suffix in MOVING_SUFFIXES and (suffix != ".webp" or (many and frames != 1))
+    moving = suffix in ANIMATION_SUFFIXES and (suffix != ".webp" or (many and frames != 1))
     if moving:
         if layers != ("rgb",):
             others = ", ".join(name for name in layers if name != "rgb")
@@ -69,7 +69,7 @@ def target_of(
         wanted = ("depth",) if layers == ("rgb",) else layers
         return Target(_file(out), "picture", wanted, replace(choice, depth_suffix=suffix))
     if suffix and not out.is_dir():
-        known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *MOVING_SUFFIXES)))
+        known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *ANIMATION_SUFFIXES)))
         raise UsageError(f"{out}: --out ends in {known}, or in nothing for a folder")
     if out.exists() and not out.is_dir():
         raise OutputError(out, "is a file; --out needs a folder, or a name such as house.png")
@@ -94,12 +94,12 @@ class Writer:
     @contextmanager
     def open(self, rate_hz: float) -> Iterator[None]:
         """Keep a moving picture open while the block runs; other files need nothing."""
-        from world2minecraft.rendering.output import moving_picture
+        from world2minecraft.rendering.output import animation_writer
 
         if self.target.medium != "moving":
             yield
             return
-        with moving_picture(self.target.path, rate_hz) as self._moving:
+        with animation_writer(self.target.path, rate_hz) as self._moving:
             yield
 
     def later(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> Callable[[], None]:

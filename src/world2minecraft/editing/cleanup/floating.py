@@ -14,16 +14,16 @@ from scipy.sparse.csgraph import connected_components
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import AIR
-from world2minecraft.editing.cleanup.gaps import close_gap, whole_of
-from world2minecraft.editing.sight import (
-    blocks_in,
-    crumb_blocks,
+from world2minecraft.editing.cleanup.draft_blocks import (
     free_cells,
-    move,
-    seen_blocks,
-    structure_of,
-    take_away,
+    max_crumb_blocks,
+    metres_to_blocks,
+    move_blocks,
+    remove_blocks,
+    structure_blocks,
+    visible_blocks,
 )
+from world2minecraft.editing.cleanup.gaps import close_gap, full_block_of
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
 
@@ -105,7 +105,7 @@ def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
     return bool((high - low > -GAP + 1e-6).all(axis=2).any())
 
 
-def mend_floating(draft: Draft) -> None:
+def repair_floating(draft: Draft) -> None:
     """Mend all that floats in a draft, the largest part first; each mend is an edit."""
     for tried in range(ROUNDS):
         parts, carried = _parts(draft)
@@ -118,7 +118,7 @@ def mend_floating(draft: Draft) -> None:
             if tried < GENTLE_ROUNDS:
                 _mend(draft, cells, carried[parts])
             else:
-                take_away(draft, cells, "drop", "it hangs in the air whatever is done")
+                remove_blocks(draft, cells, "drop", "it hangs in the air whatever is done")
             parts, carried = _again(draft, parts, carried, number)
 
 
@@ -130,14 +130,14 @@ def floating_cells(draft: Draft) -> np.ndarray:
 
 def _parts(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
     """The parts that hold together, int32 [X, Y, Z], and which of them are carried, bool [N]."""
-    seen = seen_blocks(draft)
+    seen = visible_blocks(draft)
     parts = touching_parts(draft.states, draft.palette, seen)
     count = int(parts.max(initial=0)) + 1
     carried = np.zeros(count, bool)
     floor = draft.semantic == SemanticClass.FLOOR
     if floor.any():
         carried[np.unique(parts[floor])] = True
-        area = np.bincount(parts[structure_of(draft)], minlength=count)
+        area = np.bincount(parts[structure_blocks(draft)], minlength=count)
         carried |= area >= CARRIER_M2 * draft.start.blocks_per_metre**2
     elif count > 1:  # Blocks of others, without labels: what stands on the lowest layer.
         filled = np.flatnonzero(seen.any(axis=(0, 2)))
@@ -165,9 +165,9 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
     classes = draft.semantic[tuple(cells.T)]
     told = f"{_count(len(cells))} of it"
     if np.isin(classes, (1, 2, 3, 4)).all():
-        take_away(draft, cells, "drop", f"a piece of structure, {told}, holds to nothing")
+        remove_blocks(draft, cells, "drop", f"a piece of structure, {told}, holds to nothing")
     elif _is_crumb(draft, cells, carriers):
-        take_away(draft, cells, "drop", f"a crumb, {told}, hangs in the air")
+        remove_blocks(draft, cells, "drop", f"a crumb, {told}, hangs in the air")
     elif not (
         _join(draft, cells, carriers)
         or close_gap(draft, cells, carriers)
@@ -175,12 +175,12 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
         or (not np.isin(classes, STANDING).any() and _hang(draft, cells, carriers))
         or _lower(draft, cells, carriers)
     ):
-        take_away(draft, cells, "drop", f"{told} hang in the air over nothing")
+        remove_blocks(draft, cells, "drop", f"{told} hang in the air over nothing")
 
 
 def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     """Whether a part is small, and of no object or of one that stands elsewhere."""
-    if len(cells) > crumb_blocks(draft):
+    if len(cells) > max_crumb_blocks(draft):
         return False
     numbers = np.unique(draft.instance[tuple(cells.T)])
     return bool((numbers == 0).all() or np.isin(numbers, draft.instance[carriers]).all())
@@ -193,14 +193,14 @@ def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     if not rest.any():
         return False
     free = free_cells(draft)
-    for gap in range(1, blocks_in(draft, JOIN_M) + 1):
+    for gap in range(1, metres_to_blocks(draft, JOIN_M) + 1):
         for step in (DOWN, *ASIDE, UP):
             for start in cells:
                 way = start + np.arange(1, gap + 2)[:, None] * step
                 if not _inside(draft, way[-1]) or not rest[tuple(way[-1])]:
                     continue
                 at = tuple(start)
-                state = whole_of(draft.palette[draft.states[at]])
+                state = full_block_of(draft.palette[draft.states[at]])
                 ends = draft.palette[draft.states[at]], draft.palette[draft.states[tuple(way[-1])]]
                 if free[tuple(way[:-1].T)].all() and _bridges(state, ends, step):
                     number = int(draft.instance[at])
@@ -229,7 +229,7 @@ def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     """Move a part down or aside, by no more than half a metre, to something carried."""
     ways = []
     for order, step in enumerate((DOWN, *ASIDE)):
-        for length in range(1, blocks_in(draft, STEP_M) + 1):
+        for length in range(1, metres_to_blocks(draft, STEP_M) + 1):
             if not _fits(draft, cells, step * length):
                 break
             if _touches(draft, cells, step * length, carriers):
@@ -238,7 +238,7 @@ def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     if not ways:
         return False
     length, _, step = min(ways, key=lambda way: way[:2])
-    move(draft, cells, step, f"it hung in the air, {_count(length)} off")
+    move_blocks(draft, cells, step, f"it hung in the air, {_count(length)} off")
     return True
 
 
@@ -251,7 +251,7 @@ def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     top = cells[cells[:, 1] == cells[:, 1].max()]
     middle = top[np.abs(top - top.mean(axis=0)).sum(axis=1).argmin()]
     free = free_cells(draft)
-    for length in range(1, blocks_in(draft, CORD_M) + 1):
+    for length in range(1, metres_to_blocks(draft, CORD_M) + 1):
         cell = middle + UP * (length + 1)
         if not _inside(draft, cell) or not free[tuple(cell - UP)]:
             return False
@@ -279,7 +279,9 @@ def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     while _fits(draft, cells, DOWN * (length + 1)):
         length += 1
         if _touches(draft, cells, DOWN * length, carriers):
-            move(draft, cells, DOWN * length, f"it hung in the air, {_count(length)} too high")
+            move_blocks(
+                draft, cells, DOWN * length, f"it hung in the air, {_count(length)} too high"
+            )
             return True
     return False
 

@@ -8,7 +8,7 @@ their cells.
 import numpy as np
 
 from world2minecraft.core.types import Blocks
-from world2minecraft.editing.sight import move
+from world2minecraft.editing.cleanup.draft_blocks import move_blocks
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
@@ -42,11 +42,11 @@ def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     return _sink(draft, cells) or _raise(draft, under)
 
 
-def whole_of(state: str) -> str:
+def full_block_of(state: str) -> str:
     """Return the full block of a slab or a trapdoor, of the same material; others as they are.
 
     Example:
-        >>> whole_of("minecraft:oak_trapdoor[facing=east,half=top,open=false]")
+        >>> full_block_of("minecraft:oak_trapdoor[facing=east,half=top,open=false]")
         'minecraft:oak_planks'
     """
     name, _, rest = state.partition("[")
@@ -71,7 +71,7 @@ def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list
             n.replace("type=top", "type=bottom").replace("half=top", "half=bottom") for n in names
         ]
     else:
-        new = [whole_of(name) for name in names]
+        new = [full_block_of(name) for name in names]
     if new == names:
         return False
     return _restate(draft, bottom, new, "it hung less than a block over what it lies on")
@@ -89,7 +89,7 @@ def _sink(draft: Draft, cells: np.ndarray) -> bool:
         taken = (draft.instance[tuple(new.T)] == number).sum()
         if number and taken > SUNK_SHARE * (draft.instance == number).sum():
             return False
-    move(draft, cells, DOWN, "it hung less than a block over the plate that it stands on")
+    move_blocks(draft, cells, DOWN, "it hung less than a block over the plate that it stands on")
     return True
 
 
@@ -104,7 +104,7 @@ def _raise(draft: Draft, under: np.ndarray) -> bool:
     low = ["type=bottom" in name for name in names]
     if not any(low):
         return False
-    chosen = [whole_of(name) for name, is_low in zip(names, low, strict=True) if is_low]
+    chosen = [full_block_of(name) for name, is_low in zip(names, low, strict=True) if is_low]
     return _restate(draft, under[low], chosen, "what lies on it hangs half a block over it")
 
 

@@ -7,7 +7,11 @@ which one sees out. Doorways and open windows are larger; what hangs in a hole i
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.editing.sight import blocks_in, free_cells, structure_of
+from world2minecraft.editing.cleanup.draft_blocks import (
+    free_cells,
+    metres_to_blocks,
+    structure_blocks,
+)
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.geometry.connected_components import label_components
 
@@ -17,7 +21,7 @@ SHELLS = (SemanticClass.WALL, SemanticClass.FLOOR, SemanticClass.CEILING)
 
 def close_holes(draft: Draft) -> None:
     """Close the holes of a draft; each is an edit."""
-    solid, free = structure_of(draft), free_cells(draft)
+    solid, free = structure_blocks(draft), free_cells(draft)
     for axis in (1, 0, 2):
         for layer in range(draft.states.shape[axis]):
             plane = np.take(solid, layer, axis)
@@ -31,7 +35,7 @@ def _close_in_plane(
     plane = np.take(solid, layer, axis)
     gaps, count = label_components(~plane, corners=False)
     sizes = np.bincount(gaps.ravel(), minlength=count + 1)
-    most = blocks_in(draft, HOLE_M) ** 2
+    most = metres_to_blocks(draft, HOLE_M) ** 2
     border = np.unique(np.concatenate([gaps[0], gaps[-1], gaps[:, 0], gaps[:, -1]]))
     for number in range(1, count + 1):
         if sizes[number] > most or number in border:

@@ -8,7 +8,12 @@ cubes in the plane of a wall, past which one sees out.
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.editing.sight import crumb_blocks, structure_of, take_away, things_of
+from world2minecraft.editing.cleanup.draft_blocks import (
+    max_crumb_blocks,
+    object_blocks,
+    remove_blocks,
+    structure_blocks,
+)
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.collision_shapes import is_full_cube
@@ -19,9 +24,9 @@ CUT_SHARE = 0.25  # A piece of at most this share of its object is what was cut 
 WHOLE = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA)
 
 
-def trim_cut_off(draft: Draft) -> None:
+def trim_severed_pieces(draft: Draft) -> None:
     """Take away the pieces of objects that a wall or another object cuts off; each is an edit."""
-    things, structure = things_of(draft), structure_of(draft)
+    things, structure = object_blocks(draft), structure_blocks(draft)
     for number in np.unique(draft.instance[things]).tolist():
         if not number:
             continue
@@ -49,7 +54,7 @@ def _is_stray(draft: Draft, cells: np.ndarray) -> bool:
     """Whether a piece is a crumb that stands on no floor: not a leg, nor a back of its own."""
     under = np.maximum(cells - [0, 1, 0], 0)
     on_floor = (draft.semantic[tuple(under.T)] == SemanticClass.FLOOR).any()
-    return len(cells) <= crumb_blocks(draft) and not on_floor
+    return len(cells) <= max_crumb_blocks(draft) and not on_floor
 
 
 def _take_out(draft: Draft, cells: np.ndarray, reason: str) -> None:
@@ -60,12 +65,12 @@ def _take_out(draft: Draft, cells: np.ndarray, reason: str) -> None:
         _put_wall(draft, cell, walls, reason)
     rest = cells[~in_wall[tuple(cells.T)]]
     if len(rest):
-        take_away(draft, rest, "trim", reason)
+        remove_blocks(draft, rest, "trim", reason)
 
 
 def close_see_through(draft: Draft) -> None:
     """Put the wall back where an object in its plane lets one see out; each is an edit."""
-    things, structure = things_of(draft), structure_of(draft)
+    things, structure = object_blocks(draft), structure_blocks(draft)
     walls = draft.semantic == SemanticClass.WALL
     partial = things & ~_full(draft)
     for axis in (0, 2):

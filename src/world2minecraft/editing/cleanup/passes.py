@@ -17,10 +17,10 @@ import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import BlockEdit, Blocks, BlockVolume
-from world2minecraft.editing.cleanup.floating import mend_floating
+from world2minecraft.editing.cleanup.draft_blocks import remove_blocks
+from world2minecraft.editing.cleanup.floating import repair_floating
 from world2minecraft.editing.cleanup.holes import close_holes
-from world2minecraft.editing.cleanup.intrusions import close_see_through, trim_cut_off
-from world2minecraft.editing.sight import take_away
+from world2minecraft.editing.cleanup.intrusions import close_see_through, trim_severed_pieces
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
@@ -30,7 +30,7 @@ ROUNDS = 4  # A mend may uncover what another rule is for.
 STEADY_ROUNDS = 8  # What stood on something that is taken away goes next.
 
 
-def steady(draft: Draft) -> None:
+def stabilize(draft: Draft) -> None:
     """Set connections as the game would, and take away what would not stay; each is an edit."""
     for _ in range(STEADY_ROUNDS):
         _connect(draft)
@@ -40,7 +40,7 @@ def steady(draft: Draft) -> None:
         for position, state, reason in found:
             cell = np.array([position]) - draft.corner
             if draft.palette[draft.states[tuple(cell[0])]] == state:
-                take_away(draft, cell, "drop", f"{state.partition('[')[0]} {reason}")
+                remove_blocks(draft, cell, "drop", f"{state.partition('[')[0]} {reason}")
 
 
 def _connect(draft: Draft) -> None:
@@ -55,21 +55,21 @@ def _connect(draft: Draft) -> None:
 
 
 RULES: dict[str, Callable[[Draft], None]] = {
-    "trim": trim_cut_off,
+    "trim": trim_severed_pieces,
     "see_through": close_see_through,
     "holes": close_holes,
-    "floating": mend_floating,
-    "steady": steady,
+    "floating": repair_floating,
+    "steady": stabilize,
 }
 
 
-def mended(
+def repair_volume(
     volume: BlockVolume, rules: Sequence[str] = tuple(RULES)
 ) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
     """Return a volume as a person would leave it, and the edits that made it so.
 
     Args:
-        volume: a built room; without labels only ``floating`` and ``steady`` find anything.
+        volume: a built room; without labels only ``floating`` and ``stabilize`` find anything.
         rules: which rules, in their order.
 
     Returns:

@@ -19,7 +19,7 @@ from world2minecraft.editing.scene.draft import SceneDraft
 MAX_RUNS = 200_000
 
 
-def not_at_hand(*_given: Any) -> Any:
+def unavailable_tool(*_given: Any) -> Any:
     """Stand for a tool that was not given: raise ``UsageError``."""
     raise UsageError("this edit needs a stage that is not at hand; open the scene with Editor")
 
@@ -35,8 +35,8 @@ class Tools(NamedTuple):
 
     match: Callable[[OccupancyGrid, ObjectInstance], tuple[Placement, ...]]
     find: Callable[[OccupancyGrid, dict[str, Any]], tuple[np.ndarray, tuple[ObjectInstance, ...]]]
-    fit: Callable[[OccupancyGrid, ObjectInstance, str, int | None], Placement] = not_at_hand
-    measure: Callable[[OccupancyGrid, int, int, np.ndarray], ObjectInstance] = not_at_hand
+    fit: Callable[[OccupancyGrid, ObjectInstance, str, int | None], Placement] = unavailable_tool
+    measure: Callable[[OccupancyGrid, int, int, np.ndarray], ObjectInstance] = unavailable_tool
 
 
 class Command(BaseModel):

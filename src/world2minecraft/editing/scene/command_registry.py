@@ -47,10 +47,10 @@ def parse_command(value: Any) -> Command:
     try:
         return COMMANDS[value["op"]].model_validate(value)
     except ValidationError as error:
-        raise UsageError(first_fault(value["op"], error)) from error
+        raise UsageError(first_error(value["op"], error)) from error
 
 
-def first_fault(name: str, error: ValidationError) -> str:
+def first_error(name: str, error: ValidationError) -> str:
     """Return the line that tells what is wrong with the fields of a command or a query."""
     first = error.errors(include_url=False, include_context=False)[0]
     where = ".".join(str(part) for part in first["loc"]) or name

@@ -23,7 +23,7 @@ TIE = 0.03  # Nearer than this, noise decides between two.
 UNSURE = 0.5  # The confidence under which a cell is rather wrong than right.
 UNSURE_CELLS = 30  # About 0.2 square metres at 0.08 m; fewer are the edges of things.
 CRUMB_CELLS = 8  # A cube of 16 cm: the smallest thing that the finder calls an object.
-FLOATING, UNCARRIED, CRUMB = 0.97, 0.85, 0.4  # How doubtful these are, beside 1 - IoU.
+FLOATING, UNSUPPORTED, CRUMB = 0.97, 0.85, 0.4  # How doubtful these are, beside 1 - IoU.
 NO_TEMPLATE, COMPLETED_DOUBT = 0.45, 0.3  # Often right, and soon looked at.
 # Of objects that fit as well in another turn a third was wrong, of those that another piece fits
 # as well a tenth, of those without doubt 7 % (ten tuning rooms).
@@ -32,7 +32,7 @@ STANDING = (5, 6, 7, 8)  # Chairs, beds, sofas and tables stand; other things ma
 
 
 @dataclass(frozen=True, eq=False)
-class Doubt:
+class Diagnostic:
     """One place. ``doubt`` is 0 to 1; ``object_id`` is 0 where it is about no object."""
 
     kind: str
@@ -42,22 +42,22 @@ class Doubt:
     object_id: int = 0
 
 
-def find_doubts(draft: SceneDraft, progress: Progress = silent) -> list[Doubt]:
+def find_diagnostics(draft: SceneDraft, progress: Progress = silent) -> list[Diagnostic]:
     """Return the doubts of a scene, one for each object and place, the most doubtful first.
 
     ``progress`` is told of each of the kinds that are looked for.
     """
-    found: list[Doubt] = []
-    for done, kind in enumerate(KINDS):
-        progress("doubts", done, len(KINDS))
+    found: list[Diagnostic] = []
+    for done, kind in enumerate(CHECKS):
+        progress("doubts", done, len(CHECKS))
         found.extend(kind(draft))
-    progress("doubts", len(KINDS), len(KINDS))
-    return ordered(found)
+    progress("doubts", len(CHECKS), len(CHECKS))
+    return rank_diagnostics(found)
 
 
-def ordered(found: Iterable[Doubt]) -> list[Doubt]:
+def rank_diagnostics(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return doubts, the most doubtful first; of an object only the worst."""
-    kept: list[Doubt] = []
+    kept: list[Diagnostic] = []
     seen: set[int] = set()
     for one in sorted(found, key=lambda one: (-one.doubt, one.kind, one.object_id, *one.at_m)):
         if one.object_id not in seen:
@@ -67,28 +67,28 @@ def ordered(found: Iterable[Doubt]) -> list[Doubt]:
     return kept
 
 
-def _of_objects(draft: SceneDraft) -> Iterator[Doubt]:
+def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
     for one in draft.objects.values():
         name = CLASS_NAMES[one.class_id]
         sure = round(100 * one.confidence)
         if sure < 100:
             why = f"the cells of this {name} are right with a chance of {sure} %"
-            yield Doubt("low_confidence", why, 1 - one.confidence, one.center_m, one.id)
+            yield Diagnostic("low_confidence", why, 1 - one.confidence, one.center_m, one.id)
         yield from _uncarried(draft, one)
         for placed in one.placements:
             yield from _of_furniture(one, placed)
 
 
-def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Doubt]:
+def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Diagnostic]:
     name, at_m = CLASS_NAMES[one.class_id], placed.center_m
     if placed.template == "cells":
         why = f"no furniture fits this {name}: it is built from its own cells"
-        yield Doubt("no_template", why, NO_TEMPLATE, at_m, one.id)
+        yield Diagnostic("no_template", why, NO_TEMPLATE, at_m, one.id)
         return
     share = f"{100 * placed.iou:.0f} %"
     if placed.iou < LOW_IOU:
-        why = f"{spelled(placed.template)} fits this {name} by {share} only"
-        yield Doubt("low_iou", why, 1 - placed.iou, at_m, one.id)
+        why = f"{template_words(placed.template)} fits this {name} by {share} only"
+        yield Diagnostic("low_iou", why, 1 - placed.iou, at_m, one.id)
     rivals = [o for o in placed.alternatives if _is_other(placed, o) and placed.iou - o.iou < TIE]
     # Which way a thing looks matters more than which of two like pieces it is.
     rivals.sort(key=lambda other: (other.quarter_turns == placed.quarter_turns, -other.iou))
@@ -96,18 +96,18 @@ def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Doubt]:
         return
     best, faces = rivals[0], rivals[0].quarter_turns != placed.quarter_turns
     turned = f" turned to {90 * best.quarter_turns}°" if faces else ""
-    why = f"{spelled(best.template)}{turned} fits this {name} almost as well: "
+    why = f"{template_words(best.template)}{turned} fits this {name} almost as well: "
     why += f"{100 * best.iou:.0f} % beside {share}"
     apart = max(placed.iou - best.iou, 0) / TIE
     doubt = (TURN_DOUBT if faces else TIE_DOUBT) * (1 - apart / 4)
-    yield Doubt("near_tie", why, doubt, at_m, one.id)
+    yield Diagnostic("near_tie", why, doubt, at_m, one.id)
 
 
 def _is_other(placed: Placement, other) -> bool:
     return (other.template, other.quarter_turns) != (placed.template, placed.quarter_turns)
 
 
-def _uncarried(draft: SceneDraft, one: SceneObject) -> Iterator[Doubt]:
+def _uncarried(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
     """An object that should stand, with nothing but seen air under its lowest cells."""
     if one.class_id not in STANDING:
         return
@@ -118,40 +118,40 @@ def _uncarried(draft: SceneDraft, one: SceneObject) -> Iterator[Doubt]:
     under = draft.labels[lowest[:, 0], lowest[:, 1], lowest[:, 2] - 1]
     if (under == 0).all():
         why = f"nothing is under this {CLASS_NAMES[one.class_id]}: only air was seen there"
-        yield Doubt("unsupported", why, UNCARRIED, one.center_m, one.id)
+        yield Diagnostic("unsupported", why, UNSUPPORTED, one.center_m, one.id)
 
 
-def _of_loose_cells(draft: SceneDraft) -> Iterator[Doubt]:
+def _of_loose_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     loose = np.isin(draft.labels, OBJECT_CLASSES) & (draft.instance == 0)
     for one in find_floaters(draft, draft.labels.size):
         loose[tuple(one.cells.T)] = False
         owner = next((number for number in one.object_ids if number in draft.objects), 0)
         why = f"{_counted(len(one.cells), CLASS_NAMES[one.class_id])} in the air, on nothing"
-        yield Doubt("floater", why, FLOATING, middle_m(draft, one.cells), owner)
+        yield Diagnostic("floater", why, FLOATING, center_of_cells_m(draft, one.cells), owner)
     for cells in _parts(loose, 1, CRUMB_CELLS):
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, part of no object"
-        yield Doubt("crumb", why, CRUMB, middle_m(draft, cells))
+        yield Diagnostic("crumb", why, CRUMB, center_of_cells_m(draft, cells))
 
 
-def _of_unsure_cells(draft: SceneDraft) -> Iterator[Doubt]:
+def _of_unsure_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     unsure = (draft.labels % 255 > 0) & (draft.confidence < UNSURE)
     for cells in _parts(unsure, UNSURE_CELLS):
         mean = float(draft.confidence[tuple(cells.T)].astype(np.float64).mean())
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, right with a chance of {100 * mean:.0f} %"
-        yield Doubt("unsure_cells", why, 1 - mean, middle_m(draft, cells))
+        yield Diagnostic("unsure_cells", why, 1 - mean, center_of_cells_m(draft, cells))
 
 
-def _of_completed_cells(draft: SceneDraft) -> Iterator[Doubt]:
+def _of_completed_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     completed = (draft.source == COMPLETED) & (draft.labels % 255 > 0)
     for cells in _parts(completed, UNSURE_CELLS):
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, completed and never seen"
-        yield Doubt("completed", why, COMPLETED_DOUBT, middle_m(draft, cells))
+        yield Diagnostic("completed", why, COMPLETED_DOUBT, center_of_cells_m(draft, cells))
 
 
-KINDS: tuple[Callable[[SceneDraft], Iterator[Doubt]], ...] = (
+CHECKS: tuple[Callable[[SceneDraft], Iterator[Diagnostic]], ...] = (
     _of_objects,
     _of_loose_cells,
     _of_unsure_cells,
@@ -180,11 +180,11 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {'cell' if count == 1 else 'cells'} of {what}"
 
 
-def spelled(template: str) -> str:
+def template_words(template: str) -> str:
     """Return a template's name as words."""
     return template.replace("_", " ")
 
 
-def middle_m(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
+def center_of_cells_m(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
     """Return the middle of cells int [N, 3] in the room, float64 [3]."""
     return draft.origin_m + (cells.mean(axis=0) + 0.5) * draft.voxel_m

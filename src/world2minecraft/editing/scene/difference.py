@@ -23,7 +23,7 @@ class Difference:
     changed: np.ndarray
 
 
-def difference(labels: np.ndarray, other: np.ndarray) -> Difference:
+def compare_labels(labels: np.ndarray, other: np.ndarray) -> Difference:
     """Return how labels uint8 [X, Y, Z] differ from others of the same shape."""
     here, there = labels % UNKNOWN > 0, other % UNKNOWN > 0
     known = other != UNKNOWN
@@ -31,7 +31,7 @@ def difference(labels: np.ndarray, other: np.ndarray) -> Difference:
     return Difference(here & ~there & known, there & ~here, changed)
 
 
-def labels_in_cells(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
+def resample_labels(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
     """Return the labels of a grid, uint8 [X, Y, Z], in the cells of a scene.
 
     A cell takes the label at its centre, so that a grid with smaller cells, or with the same ones

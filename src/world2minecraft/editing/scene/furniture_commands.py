@@ -13,10 +13,10 @@ from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.object_boxes import (
     OWN_CELLS,
-    boxed,
-    free_number,
-    object_named,
-    objects_named,
+    free_object_id,
+    object_by_id,
+    objects_by_ids,
+    with_placement,
 )
 from world2minecraft.editing.scene.object_placement import standing_box
 from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
@@ -51,7 +51,7 @@ class AddObject(Command):
         if not len(cells):
             sides = " x ".join(f"{side:.2f}" for side in size_m)
             raise UsageError(f"no cell is free there for a {chosen.title} of {sides} m")
-        number = free_number(draft)
+        number = free_object_id(draft)
         sides = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
         middle = draft.origin_m + (corner + sides / 2) * draft.voxel_m
         iou = round(len(cells) / len(solid), 4)
@@ -61,7 +61,7 @@ class AddObject(Command):
         patch = Patch(draft)
         patch.fill(cells, self.class_id, number)
         told = {"counts_as": "add", "class_id": self.class_id}
-        return patch.planned("add_object", objects=[boxed(one, placed)], **told)
+        return patch.planned("add_object", objects=[with_placement(one, placed)], **told)
 
     def _template(self) -> Template:
         if self.template is None:
@@ -83,7 +83,7 @@ class SetTemplate(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the object with its furniture."""
-        one = object_named(draft, self.id)
+        one = object_by_id(draft, self.id)
         if self.template != OWN_CELLS:
             template_for(self.template, one.class_id)
         turns = None if self.quarter_turns is None else self.quarter_turns % 4
@@ -92,7 +92,7 @@ class SetTemplate(Command):
         same = [p.template for p in one.placements] == [placed.template]
         counted = "orient" if same else "other"
         told = {"counts_as": counted, "class_id": one.class_id}
-        return Patch(draft).planned("set_template", objects=[boxed(one, placed)], **told)
+        return Patch(draft).planned("set_template", objects=[with_placement(one, placed)], **told)
 
 
 class Rematch(Command):
@@ -104,7 +104,7 @@ class Rematch(Command):
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the objects with their furniture."""
         grid, objects = draft.grid(), []
-        for one in objects_named(draft, self.ids):
+        for one in objects_by_ids(draft, self.ids):
             cells = draft.cells_of(one.id)
             if not len(cells):
                 raise UsageError(f"object {one.id} has no cells to match; choose its template")

@@ -34,7 +34,7 @@ class Log(Protocol):
         ...
 
 
-class Line(NamedTuple):
+class Timeline(NamedTuple):
     """The operations that undo and redo can reach: numbers and kinds, and how many are done."""
 
     numbers: tuple[int, ...] = ()
@@ -44,11 +44,11 @@ class Line(NamedTuple):
     def with_new(self, number: int, kind: str) -> "Line":
         """Return the line after an edit: what was undone is out of reach."""
         kept = self.done
-        return Line((*self.numbers[:kept], number), (*self.kinds[:kept], kind), kept + 1)
+        return Timeline((*self.numbers[:kept], number), (*self.kinds[:kept], kind), kept + 1)
 
     def within(self, first: int, last: int) -> "Line":
         """Return the line of the operations at places ``first`` to before ``last`` alone."""
-        return Line(self.numbers[first:last], self.kinds[first:last], self.done - first)
+        return Timeline(self.numbers[first:last], self.kinds[first:last], self.done - first)
 
     def moved(self, steps: int) -> "Line":
         """Return the line with one more (1) or fewer (-1) operations done."""
@@ -68,9 +68,9 @@ class Line(NamedTuple):
 class SceneHistory:
     """The one that changes a scene. A step that raises has changed nothing."""
 
-    def __init__(self, draft: SceneDraft, log: Log, line: Line | None = None):
+    def __init__(self, draft: SceneDraft, log: Log, line: Timeline | None = None):
         """Take a scene with the line that leads to it; nothing is done yet where it is None."""
-        self.draft, self.log, self.line = draft, log, line or Line()
+        self.draft, self.log, self.line = draft, log, line or Timeline()
 
     def do(self, operation: Operation) -> Operation:
         """Do an operation. Raises ConflictError, or what the log raises."""

@@ -22,7 +22,7 @@ from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import Alternative, GridCells, Operation, Placement, SceneObject
 from world2minecraft.editing.record_log import Record, RecordFile
 from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
-from world2minecraft.editing.scene.history import Line
+from world2minecraft.editing.scene.history import Timeline
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
 
 OPERATION_LIMITS = NbtLimits(depth=12, values=4_000_000, bytes=1 << 30)
@@ -277,7 +277,7 @@ class SceneJournal:
         except (ValueError, TypeError) as error:
             raise DamagedFileError(self.file.path, f"has a step that is none ({error})") from error
 
-    def line_after(self, line: Line, steps: Sequence[Step]) -> Line:
+    def line_after(self, line: Timeline, steps: Sequence[Step]) -> Timeline:
         """Return where a line comes to by some steps, none of them damaged.
 
         Raises:

@@ -17,7 +17,7 @@ DECIMALS = 9  # Metres and degrees are rounded, so that four quarter turns are n
 SHOWN = 12  # How many ids an error lists.
 
 
-def object_named(draft: SceneDraft, number: int) -> SceneObject:
+def object_by_id(draft: SceneDraft, number: int) -> SceneObject:
     """Return the object of an id.
 
     Raises:
@@ -32,17 +32,17 @@ def object_named(draft: SceneDraft, number: int) -> SceneObject:
     raise UsageError(f"there is no object {number}; the scene has {listed}")
 
 
-def objects_named(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
-    """Return the objects of some ids, each once, in their order. Raises as ``object_named``."""
-    return [object_named(draft, number) for number in dict.fromkeys(ids)]
+def objects_by_ids(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
+    """Return the objects of some ids, each once, in their order. Raises as ``object_by_id``."""
+    return [object_by_id(draft, number) for number in dict.fromkeys(ids)]
 
 
-def said(one: SceneObject) -> str:
+def describe_object(one: SceneObject) -> str:
     """Return what an error calls an object, such as ``object 3 (chair)``."""
     return f"object {one.id} ({CLASS_NAMES[one.class_id]})"
 
 
-def free_number(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
+def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
     """Return an id that neither an object nor a cell has, the next after the highest if it can be.
 
     Args:
@@ -62,7 +62,7 @@ def free_number(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
     raise UsageError(f"a scene holds {MAX_OBJECTS:,} objects at most; delete some first")
 
 
-def shifted(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
+def translate_object(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
     """Return an object, with its placements, moved by metres, float64 [3]."""
     moved = tuple(
         replace(placed, center_m=_rounded(placed.center_m + shift_m)) for placed in one.placements
@@ -70,7 +70,7 @@ def shifted(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
     return replace(one, center_m=_rounded(one.center_m + shift_m), placements=moved)
 
 
-def turned(one: SceneObject, quarter_turns: int) -> SceneObject:
+def rotate_object(one: SceneObject, quarter_turns: int) -> SceneObject:
     """Return an object turned about its centre, counter-clockwise from above."""
     turn = rotation_about_z(90.0 * quarter_turns)[:3, :3]
     placements = tuple(
@@ -85,7 +85,7 @@ def turned(one: SceneObject, quarter_turns: int) -> SceneObject:
     return replace(one, yaw_deg=yaw_deg, placements=placements)
 
 
-def turned_cells(
+def rotate_cells(
     cells: np.ndarray, center_m: np.ndarray, quarter_turns: int, draft: SceneDraft
 ) -> np.ndarray:
     """Return cells int [N, 3] turned about the point that is nearest to a centre and keeps them.
@@ -105,7 +105,7 @@ def is_of_cells(one: SceneObject) -> bool:
     return not one.placements or any(p.template == OWN_CELLS for p in one.placements)
 
 
-def boxed(one: SceneObject, placement: Placement) -> SceneObject:
+def with_placement(one: SceneObject, placement: Placement) -> SceneObject:
     """Return an object that one piece of furniture stands for: its box and turn are its own."""
     return replace(
         one,
@@ -123,7 +123,7 @@ def plan_extent_m(one: SceneObject) -> np.ndarray:
     return turn @ one.size_m
 
 
-def copied(one: SceneObject, number: int) -> SceneObject:
+def copy_object(one: SceneObject, number: int) -> SceneObject:
     """Return an object with its placements under another id."""
     placements = tuple(replace(placed, object_id=number) for placed in one.placements)
     return replace(one, id=number, placements=placements)

@@ -18,10 +18,10 @@ from world2minecraft.editing.scene.furniture_commands import (
     SetTemplate,
 )
 from world2minecraft.editing.scene.object_boxes import (
-    free_number,
-    object_named,
-    objects_named,
-    said,
+    describe_object,
+    free_object_id,
+    object_by_id,
+    objects_by_ids,
 )
 from world2minecraft.editing.scene.object_placement import SnapObject
 from world2minecraft.editing.scene.object_transforms import (
@@ -56,7 +56,7 @@ class RelabelObjects(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells and the objects of the other class."""
-        ones = [o for o in objects_named(draft, self.ids) if o.class_id != self.class_id]
+        ones = [o for o in objects_by_ids(draft, self.ids) if o.class_id != self.class_id]
         if not ones:
             raise UsageError("no object changes: all are of this class already")
         patch, grid, objects = Patch(draft), draft.grid(), []
@@ -90,26 +90,28 @@ class SplitObject(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells by part and the objects."""
-        one = object_named(draft, self.id)
+        one = object_by_id(draft, self.id)
         cells = draft.cells_of(one.id)
         sides = self._sides(draft, cells)
         groups = _largest_first(cells, sides)
         if len(groups) < 2:
-            raise UsageError(f"{said(one)} lies on one side of that; split it where its cells are")
+            raise UsageError(
+                f"{describe_object(one)} lies on one side of that; split it where its cells are"
+            )
         numbers = [one.id]
         while len(numbers) < len(groups):
-            numbers.append(free_number(draft, numbers))
+            numbers.append(free_object_id(draft, numbers))
         patch, grid = Patch(draft), draft.grid()
         for number, group in zip(numbers[1:], groups[1:], strict=True):
             patch.give(group, number)
         pairs = zip(numbers, groups, strict=True)
-        objects = [found_object(grid, tools, n, one.class_id, group) for n, group in pairs]
+        objects = [measure_object(grid, tools, n, one.class_id, group) for n, group in pairs]
         return patch.planned("split_object", objects=objects, class_id=one.class_id)
 
     def _sides(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
         """Return the part, int64 [N], of each cell."""
         if self.plane is None:
-            return clusters_of(cells, self.parts or 2)
+            return cluster_cells(cells, self.parts or 2)
         axis = "xyz".index(self.plane.axis)
         middles_m = draft.origin_m[axis] + (cells[:, axis] + 0.5) * draft.voxel_m
         return (middles_m >= self.plane.at_m).astype(np.int64)
@@ -128,14 +130,14 @@ class SplitObjects(Command):
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells by part and the objects."""
         patch, grid, objects, taken = Patch(draft), draft.grid(), [], []
-        for one in objects_named(draft, self.ids):
+        for one in objects_by_ids(draft, self.ids):
             cells = draft.cells_of(one.id)
             if len(cells) < self.parts:
                 continue
             for number, group in _numbered(draft, one.id, cells, self.parts, taken):
                 if number != one.id:
                     patch.give(group, number)
-                objects.append(found_object(grid, tools, number, one.class_id, group))
+                objects.append(measure_object(grid, tools, number, one.class_id, group))
         if not objects:
             raise UsageError(f"none of these objects has {self.parts} cells to be split into parts")
         classes = {one.class_id for one in objects}
@@ -151,7 +153,7 @@ class MergeObjects(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells and the object that is left."""
-        first, *others = objects_named(draft, self.ids)
+        first, *others = objects_by_ids(draft, self.ids)
         if not others:
             raise UsageError("name two different objects to merge")
         patch, groups = Patch(draft), [draft.cells_of(first.id)]
@@ -163,7 +165,7 @@ class MergeObjects(Command):
         if not len(cells):
             raise UsageError("none of these objects has cells; delete all but one")
         cells = cells[np.lexsort(cells.T[::-1])]
-        merged = found_object(draft.grid(), tools, first.id, first.class_id, cells)
+        merged = measure_object(draft.grid(), tools, first.id, first.class_id, cells)
         gone = [one.id for one in others]
         return patch.planned("merge_objects", objects=[merged], gone=gone, class_id=first.class_id)
 
@@ -202,7 +204,7 @@ class Recluster(Command):
         return patch.planned("recluster", objects=objects, **told)
 
 
-def found_object(
+def measure_object(
     grid: OccupancyGrid, tools: Tools, number: int, class_id: int, cells: np.ndarray
 ) -> SceneObject:
     """Return the object that cells int32 [N, 3] are, measured and matched."""
@@ -210,7 +212,7 @@ def found_object(
     return object_of(found, tools.match(grid, found))
 
 
-def clusters_of(cells: np.ndarray, count: int) -> np.ndarray:
+def cluster_cells(cells: np.ndarray, count: int) -> np.ndarray:
     """Return the cluster, int64 [N], of each of cells int [N, 3]: k-means, the same each time.
 
     The first centres lie evenly along the direction in which the cells spread most.
@@ -248,9 +250,9 @@ def _numbered(
 
     ``taken`` are ids that other new objects have; those that are given here are added.
     """
-    found = [(first, group) for group in _largest_first(cells, clusters_of(cells, parts))]
+    found = [(first, group) for group in _largest_first(cells, cluster_cells(cells, parts))]
     for at in range(1, len(found)):
-        taken.append(free_number(draft, taken))
+        taken.append(free_object_id(draft, taken))
         found[at] = (taken[-1], found[at][1])
     return found
 
@@ -263,7 +265,7 @@ def _numbers(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list
         ids, counts = np.unique(draft.instance[tuple(cells.T)], return_counts=True)
         ranked = ids[np.argsort(-counts, kind="stable")].tolist()
         number = next((n for n in ranked if n in old and n not in taken), 0)
-        taken.add(number or free_number(draft, taken))
+        taken.add(number or free_object_id(draft, taken))
         numbers.append(number or max(taken))
     return numbers
 

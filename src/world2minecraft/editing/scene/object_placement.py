@@ -11,8 +11,8 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, SceneObject
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
-from world2minecraft.editing.scene.object_boxes import object_named, plan_extent_m, said
-from world2minecraft.editing.scene.object_transforms import Id, planned_shift
+from world2minecraft.editing.scene.object_boxes import describe_object, object_by_id, plan_extent_m
+from world2minecraft.editing.scene.object_transforms import Id, plan_shift
 from world2minecraft.furniture import Template, facing, size_in_cells, surroundings
 
 WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
@@ -103,14 +103,14 @@ class SnapObject(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the object and its cells where they go."""
-        one = object_named(draft, self.id)
+        one = object_by_id(draft, self.id)
         low, high = box_in_cells(draft, one)
         way = _to_floor if self.to == "floor" else _to_wall
         shift = way(draft, one, low, high)
         if not shift.any():
             where = "on the floor" if self.to == "floor" else "at the wall"
-            raise UsageError(f"{said(one)} is {where} already")
-        return planned_shift(draft, one, shift, "snap_object")
+            raise UsageError(f"{describe_object(one)} is {where} already")
+        return plan_shift(draft, one, shift, "snap_object")
 
 
 def box_in_cells(draft: SceneDraft, one: SceneObject) -> tuple[np.ndarray, np.ndarray]:
@@ -157,6 +157,6 @@ def _to_wall(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndar
         if len(before):
             ways.append((axis, int(before[-1]) + 1 - int(low[axis])))
     if not ways:
-        raise UsageError(f"no wall stands beside {said(one)}; move it instead")
+        raise UsageError(f"no wall stands beside {describe_object(one)}; move it instead")
     axis, step = min(ways, key=lambda way: abs(way[1]))
     return step * np.eye(3, dtype=np.int64)[axis]

@@ -17,16 +17,16 @@ from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import ARRAYS, SceneDraft
 from world2minecraft.editing.scene.object_boxes import (
     common_class,
-    copied,
-    free_number,
+    copy_object,
+    describe_object,
+    free_object_id,
     is_of_cells,
-    object_named,
-    objects_named,
+    object_by_id,
+    objects_by_ids,
     plan_extent_m,
-    said,
-    shifted,
-    turned,
-    turned_cells,
+    rotate_cells,
+    rotate_object,
+    translate_object,
 )
 
 Id = Annotated[int, Field(ge=1, le=65535)]
@@ -36,7 +36,7 @@ Point = tuple[Metre, Metre, Metre]
 QuarterTurns = Annotated[int, Field(ge=-3, le=3)]
 
 
-def planned_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str) -> Operation:
+def plan_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str) -> Operation:
     """Return the operation that moves an object by whole cells, int [3].
 
     Raises:
@@ -46,7 +46,7 @@ def planned_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: 
     check_within(draft, one, cells, shift)
     patch = Patch(draft)
     put_cells(draft, patch, one, cells, cells + shift)
-    moved = shifted(one, shift * draft.voxel_m)
+    moved = translate_object(one, shift * draft.voxel_m)
     return patch.planned(kind, objects=[moved], counts_as="move", class_id=one.class_id)
 
 
@@ -56,7 +56,7 @@ def put_cells(
     """Carry what an object's cells hold to other cells, [N, 3] each, as far as they are free."""
     patch.empty(cells)
     free = is_free(draft, there) | (draft.instance[tuple(there.T)] == one.id)
-    patch.put(there[free], some(draft.held(cells), free))
+    patch.put(there[free], select_cells(draft.held(cells), free))
 
 
 def cells_to(draft: SceneDraft, one: SceneObject, to_m: Sequence[float]) -> np.ndarray:
@@ -74,7 +74,9 @@ def check_within(draft: SceneDraft, one: SceneObject, cells: np.ndarray, shift: 
     spans = [
         f"{name} {first:.2f} to {last:.2f}" for name, first, last in zip("xyz", *to, strict=True)
     ]
-    raise UsageError(f"{said(one)} would leave the grid; its centre may be {', '.join(spans)} m")
+    raise UsageError(
+        f"{describe_object(one)} would leave the grid; its centre may be {', '.join(spans)} m"
+    )
 
 
 def within_grid(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
@@ -89,12 +91,12 @@ def is_free(draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
     return inside & (draft.labels[tuple(at.T)] % 255 == 0)
 
 
-def some(held: GridCells, mask: np.ndarray) -> GridCells:
+def select_cells(held: GridCells, mask: np.ndarray) -> GridCells:
     """Return what the cells hold that a bool mask [N] names."""
     return GridCells(*(getattr(held, name)[mask] for name in ARRAYS))
 
 
-def owned(held: GridCells, number: int) -> GridCells:
+def with_owner(held: GridCells, number: int) -> GridCells:
     """Return what cells hold, as those of another object."""
     fields = {name: getattr(held, name) for name in ARRAYS}
     return GridCells(**fields | {"instance": np.full(len(held.labels), number, np.uint16)})
@@ -113,7 +115,7 @@ class DeleteObjects(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells that become empty and the objects that go."""
-        gone = objects_named(draft, self.ids)
+        gone = objects_by_ids(draft, self.ids)
         patch = Patch(draft)
         for one in gone:
             patch.empty(draft.cells_of(one.id))
@@ -134,11 +136,13 @@ class MoveObject(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells and the object where they go."""
-        one = object_named(draft, self.id)
+        one = object_by_id(draft, self.id)
         shift = cells_to(draft, one, self.to_m)
         if not shift.any():
-            raise UsageError(f"{said(one)} is there already: to_m is less than a cell away")
-        return planned_shift(draft, one, shift, "move_object")
+            raise UsageError(
+                f"{describe_object(one)} is there already: to_m is less than a cell away"
+            )
+        return plan_shift(draft, one, shift, "move_object")
 
 
 class TurnObjects(Command):
@@ -155,7 +159,7 @@ class TurnObjects(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the objects as they are turned."""
-        ones = objects_named(draft, self.ids)
+        ones = objects_by_ids(draft, self.ids)
         if self.quarter_turns % 4 == 0:
             raise UsageError("quarter_turns must be 1 to 3, or less than 0 for clockwise")
         patch = Patch(draft)
@@ -163,15 +167,15 @@ class TurnObjects(Command):
             if is_of_cells(one):
                 cells = draft.cells_of(one.id)
                 put_cells(draft, patch, one, cells, self._turned(draft, one, cells))
-        objects = [turned(one, self.quarter_turns) for one in ones]
+        objects = [rotate_object(one, self.quarter_turns) for one in ones]
         told = {"counts_as": "orient", "class_id": common_class(ones)}
         return patch.planned("turn_objects", objects=objects, **told)
 
     def _turned(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
-        result = turned_cells(cells, one.center_m, self.quarter_turns, draft)
+        result = rotate_cells(cells, one.center_m, self.quarter_turns, draft)
         if not within_grid(draft, result).all():
             raise UsageError(
-                f"{said(one)} would leave the grid; move it inward before it is turned"
+                f"{describe_object(one)} would leave the grid; move it inward before it is turned"
             )
         return result
 
@@ -188,17 +192,19 @@ class DuplicateObject(Command):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the new object and its cells."""
-        one = object_named(draft, self.id)
+        one = object_by_id(draft, self.id)
         cells = draft.cells_of(one.id)
         shift = self._beside(draft, one, cells)
         check_within(draft, one, cells, shift)
-        copy = copied(shifted(one, shift * draft.voxel_m), free_number(draft))
+        copy = copy_object(translate_object(one, shift * draft.voxel_m), free_object_id(draft))
         patch = Patch(draft)
-        held = owned(draft.held(cells), copy.id)
+        held = with_owner(draft.held(cells), copy.id)
         free = is_free(draft, cells + shift)
         if len(cells) and not free.any():
-            raise UsageError(f"no cell is free for another {said(one)} there; give to_m elsewhere")
-        patch.put((cells + shift)[free], some(held, free))
+            raise UsageError(
+                f"no cell is free for another {describe_object(one)} there; give to_m elsewhere"
+            )
+        patch.put((cells + shift)[free], select_cells(held, free))
         told = {"counts_as": "add", "class_id": one.class_id}
         return patch.planned("duplicate_object", objects=[copy], **told)
 

@@ -49,7 +49,7 @@ from world2minecraft.editing.scene.voxel_commands import (
     CellCommand,
     Runs,
     check_cell,
-    planned_cells,
+    plan_cells,
 )
 from world2minecraft.geometry.connected_components import label_components
 
@@ -219,7 +219,7 @@ def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
     return small[parts]
 
 
-def smoothed(labels: np.ndarray) -> np.ndarray:
+def smooth_labels(labels: np.ndarray) -> np.ndarray:
     """Return labels uint8 [X, Y, Z] after one pass of the filter."""
     furniture = np.isin(labels, OBJECT_CLASSES)
     counts = np.stack([_around(labels == one) for one in OBJECT_CLASSES])
@@ -282,7 +282,7 @@ class RemoveFloaters(CellCommand):
             raise UsageError(
                 f"no floaters of at most {self.max_cells} cells: all hold, or are kept"
             )
-        return planned_cells(draft, "delete", np.concatenate(gone), 0)
+        return plan_cells(draft, "delete", np.concatenate(gone), 0)
 
 
 class FillHoles(CellCommand):
@@ -313,7 +313,7 @@ class FillHoles(CellCommand):
         if not len(cells):
             where = "any plane" if self.plane == "all" else self.plane
             raise UsageError(f"{where} has no hole to fill; name a cell of an opening to close it")
-        return planned_cells(draft, "fill", cells, classes[first], 0, counts_as="add")
+        return plan_cells(draft, "fill", cells, classes[first], 0, counts_as="add")
 
     def _cells(self, draft: SceneDraft, plane: Plane) -> np.ndarray:
         gaps = plane_gaps(draft, plane, hole_m2=self.hole_m2)
@@ -334,7 +334,7 @@ class FillHoles(CellCommand):
         cells = pinholes(draft.labels, draft.instance == one.id)
         if not len(cells):
             raise UsageError(f"object {one.id} has no hole of one cell")
-        return planned_cells(draft, "fill", cells, one.class_id, one.id, counts_as="add")
+        return plan_cells(draft, "fill", cells, one.class_id, one.id, counts_as="add")
 
 
 class Smooth(CellCommand):
@@ -350,7 +350,7 @@ class Smooth(CellCommand):
 
     def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
         """Return the cells that change."""
-        result = smoothed(draft.labels)
+        result = smooth_labels(draft.labels)
         changes = result != draft.labels
         if self.class_id is not None:
             changes &= (draft.labels == self.class_id) | (result == self.class_id)
@@ -363,7 +363,7 @@ class Smooth(CellCommand):
         if not len(cells):
             what = CLASS_NAMES[self.class_id] if self.class_id else "furniture"
             raise UsageError(f"no cell changes: the {what} here is smooth already, or locked")
-        return planned_cells(draft, "smooth", cells, result[tuple(cells.T)], counts_as="other")
+        return plan_cells(draft, "smooth", cells, result[tuple(cells.T)], counts_as="other")
 
 
 def named_plane(planes: list[Plane], name: str) -> Plane:

@@ -21,7 +21,7 @@ def box_of(cells: np.ndarray, shape: tuple[int, ...], margin: int = 0) -> tuple[
     return low, (x, y, z)
 
 
-def parts_of_cells(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarray]:
+def connected_parts(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarray]:
     """Return the connected parts of cells int [N, 3], each as rows int [M] of it, by first cell.
 
     Cells are joined by faces; by edges and corners too where ``corners``.
@@ -38,7 +38,7 @@ def parts_of_cells(cells: np.ndarray, *, corners: bool = False) -> list[np.ndarr
     return np.split(order, breaks)
 
 
-def component_of(labels: np.ndarray, seed: tuple[int, int, int]) -> np.ndarray:
+def connected_component(labels: np.ndarray, seed: tuple[int, int, int]) -> np.ndarray:
     """Return the cells int32 [N, 3], in C order, that hold to a cell by faces and have its label.
 
     ``labels`` is uint8 [X, Y, Z]; the page finds the same in the browser.
@@ -47,7 +47,7 @@ def component_of(labels: np.ndarray, seed: tuple[int, int, int]) -> np.ndarray:
     return np.argwhere(numbers == numbers[seed]).astype(np.int32)
 
 
-def shifted(cells: np.ndarray, axis: int, step: int) -> np.ndarray:
+def shift_cells(cells: np.ndarray, axis: int, step: int) -> np.ndarray:
     """Return cells int [N, 3] moved along one axis; they may lie outside the grid then."""
     moved = cells.copy()
     moved[:, axis] += step
@@ -93,10 +93,10 @@ def placements_of(objects: Iterable[SceneObject]) -> tuple[Placement, ...]:
 
 def same_object(one: SceneObject, other: SceneObject) -> bool:
     """Whether two objects have the same class, box, turn, confidence and placements."""
-    return facts(one) == facts(other)
+    return object_key(one) == object_key(other)
 
 
-def facts(one: SceneObject) -> tuple:
+def object_key(one: SceneObject) -> tuple:
     """Return everything that an object holds, in values that compare and hash."""
     box = (*map(float, one.center_m), *map(float, one.size_m), float(one.yaw_deg))
     placed = tuple(

@@ -25,10 +25,10 @@ from world2minecraft.editing.scene.command import MAX_RUNS, Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.scene_objects import (
     box_of,
-    component_of,
+    connected_component,
+    connected_parts,
     instance_of,
-    parts_of_cells,
-    shifted,
+    shift_cells,
 )
 
 MAX_IDS = 1 << 16
@@ -42,7 +42,7 @@ Cell = tuple[int, int, int]
 OccupiedId = Annotated[int, Field(ge=1, le=11)]
 
 
-def planned_cells(
+def plan_cells(
     draft: SceneDraft,
     verb: str,
     cells: np.ndarray,
@@ -74,16 +74,19 @@ def planned_cells(
     after = GridCells(
         labels,
         np.ones(len(cells), np.float16),
-        colours_of(draft, cells, labels) if colours is None else colours,
+        infer_colours(draft, cells, labels) if colours is None else colours,
         np.full(len(cells), OBSERVED, np.uint8),
         instance,
     )
-    told = {"counts_as": counted_as(draft, cells, labels), "class_id": one_class(labels)} | told
-    gone = {*gone, *emptied(draft, cells, instance)}
+    told = {
+        "counts_as": edit_category(draft, cells, labels),
+        "class_id": single_class(labels),
+    } | told
+    gone = {*gone, *emptied_objects(draft, cells, instance)}
     return draft.planned(verb, cells, after, gone=gone, objects=objects, **told)
 
 
-def counted_as(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
+def edit_category(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
     """Return what the paper's table counts a change as: what most of its cells undergo."""
     was = draft.labels[tuple(cells.T)] % UNKNOWN > 0
     erased, kept = labels == 0, (labels > 0) & was
@@ -92,24 +95,24 @@ def counted_as(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
     return "relabel" if 2 * kept.sum() > len(cells) else "add"
 
 
-def one_class(labels: np.ndarray) -> int | None:
+def single_class(labels: np.ndarray) -> int | None:
     """Return the class of all cells, None where they differ."""
     return int(labels[0]) if len(labels) and (labels == labels[0]).all() else None
 
 
-def emptied(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) -> list[int]:
+def emptied_objects(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) -> list[int]:
     """Return the objects, by id, that have no cell left when cells int [N, 3] change hands."""
     held = draft.instance[tuple(cells.T)]
     lost = np.unique(held[(held > 0) & (held != instance)])
     if not len(lost):
         return []
-    total = cells_held(draft, lost)
+    total = count_object_cells(draft, lost)
     total -= np.bincount(held, minlength=MAX_IDS)
     total += np.bincount(instance, minlength=MAX_IDS)
     return [int(one) for one in lost if total[one] == 0 and int(one) in draft.objects]
 
 
-def cells_held(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
+def count_object_cells(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
     """Return how many cells some objects have, int64 [65536], by id; of others it may be 0."""
     if len(numbers) > FEW:
         return np.bincount(draft.instance.ravel(), minlength=MAX_IDS)
@@ -124,7 +127,7 @@ def adjacent_owners(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) ->
     owners = np.zeros(len(cells), np.uint16)
     for class_id in np.intersect1d(np.unique(labels), OBJECT_CLASSES):
         chosen = np.flatnonzero(labels == class_id)
-        for members in parts_of_cells(cells[chosen]):
+        for members in connected_parts(cells[chosen]):
             owners[chosen[members]] = _touching(draft, cells[chosen[members]], int(class_id))
     return owners
 
@@ -150,11 +153,11 @@ def _beside(draft: SceneDraft, cells: np.ndarray) -> Iterator[np.ndarray]:
     """Yield the neighbours int [M, 3] of cells over each of the six faces, inside the grid."""
     for axis in range(3):
         for step in (-1, 1):
-            beside = shifted(cells, axis, step)
+            beside = shift_cells(cells, axis, step)
             yield beside[(beside[:, axis] >= 0) & (beside[:, axis] < draft.shape[axis])]
 
 
-def colours_of(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
+def infer_colours(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
     """Return the colour, uint8 [N, 3], that painted cells have by the rule above."""
     at = tuple(cells.T)
     was = draft.labels[at] % UNKNOWN > 0
@@ -211,7 +214,7 @@ class SetCells(CellCommand):
         cells = cells[changes & self.free(draft, cells)]
         if not len(cells):
             raise UsageError("no cell changes: all have this class already or are locked")
-        return planned_cells(draft, self.verb, cells, self.class_id, self.instance)
+        return plan_cells(draft, self.verb, cells, self.class_id, self.instance)
 
 
 class FillBox(CellCommand):
@@ -228,7 +231,7 @@ class FillBox(CellCommand):
         cells = cells[(draft.labels[tuple(cells.T)] != self.class_id) & self.free(draft, cells)]
         if not len(cells):
             raise UsageError("no cell changes: all of the box has this class already or is locked")
-        return planned_cells(draft, "fill" if self.class_id else "erase", cells, self.class_id)
+        return plan_cells(draft, "fill" if self.class_id else "erase", cells, self.class_id)
 
 
 class DeleteComponent(CellCommand):
@@ -245,8 +248,8 @@ class DeleteComponent(CellCommand):
             raise UsageError(f"cell {list(self.cell)} is empty: name one that is occupied")
         if held in self.locked:
             raise UsageError(f"{CLASS_NAMES[held]} is locked: unlock it in the legend first")
-        cells = component_of(draft.labels, self.cell)
-        return planned_cells(draft, "delete", cells, 0, class_id=held)
+        cells = connected_component(draft.labels, self.cell)
+        return plan_cells(draft, "delete", cells, 0, class_id=held)
 
 
 class Paste(CellCommand):
@@ -279,7 +282,7 @@ class Paste(CellCommand):
             raise UsageError("no cell changes: the copy lies outside, or on cells like its own")
         labels = draft.labels[tuple(sources.T)]
         colours = draft.colour[tuple(sources.T)]
-        return planned_cells(draft, "paste", targets, labels, colours=colours)
+        return plan_cells(draft, "paste", targets, labels, colours=colours)
 
     def _moved(self, cells: np.ndarray) -> np.ndarray:
         moved = cells.astype(np.int64)
@@ -339,11 +342,11 @@ class RelabelClass(CellCommand):
         cells = np.argwhere(draft.labels == self.from_id)
         owners = draft.instance[tuple(cells.T)]
         if self.to_id not in OBJECT_CLASSES:
-            gone = without_cells(draft, self.from_id)
-            return planned_cells(draft, "relabel", cells, self.to_id, owners, gone=gone)
+            gone = objects_without_cells(draft, self.from_id)
+            return plan_cells(draft, "relabel", cells, self.to_id, owners, gone=gone)
         changed = self._objects(draft, tools)
         fields = {"counts_as": "relabel", "objects": changed}
-        return planned_cells(draft, "relabel", cells, self.to_id, owners, **fields)
+        return plan_cells(draft, "relabel", cells, self.to_id, owners, **fields)
 
     def _objects(self, draft: SceneDraft, tools: Tools) -> list[SceneObject]:
         """The objects of the class as they are afterwards."""
@@ -369,9 +372,9 @@ class DeleteClass(CellCommand):
         """Return all cells of the class."""
         check_class(draft, self.class_id, self.locked)
         cells = np.argwhere(draft.labels == self.class_id)
-        gone = without_cells(draft, self.class_id)
+        gone = objects_without_cells(draft, self.class_id)
         told = {"counts_as": "delete", "class_id": self.class_id}
-        return planned_cells(draft, "delete", cells, 0, gone=gone, **told)
+        return plan_cells(draft, "delete", cells, 0, gone=gone, **told)
 
 
 def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> None:
@@ -383,11 +386,11 @@ def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> No
     name = CLASS_NAMES[class_id]
     if class_id in locked:
         raise UsageError(f"{name} is locked: unlock it in the legend first")
-    if not draft.counts[class_id] and not without_cells(draft, class_id):
+    if not draft.counts[class_id] and not objects_without_cells(draft, class_id):
         raise UsageError(f"the scene has no {name}")
 
 
-def without_cells(draft: SceneDraft, class_id: int) -> list[int]:
+def objects_without_cells(draft: SceneDraft, class_id: int) -> list[int]:
     """Return the objects, by id, of a class that have no cells: centres alone."""
     held = np.bincount(draft.instance.ravel(), minlength=65536)
     ordered = sorted(draft.objects.values(), key=lambda one: one.id)

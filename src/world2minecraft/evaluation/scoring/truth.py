@@ -14,7 +14,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import array_names, read_json, read_npz
 from world2minecraft.core.types import Layout, LayoutObject, checks
-from world2minecraft.formats.layout import layout_of_row
+from world2minecraft.formats.layout import layout_from_json
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
 
@@ -131,7 +131,7 @@ def _object(row: dict[str, Any]) -> LayoutObject:
 def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
     """Return the rooms; an old truth states the sides of its one room alone."""
     if "layouts" in stated:
-        return tuple(layout_of_row(row) for row in stated["layouts"])
+        return tuple(layout_from_json(row) for row in stated["layouts"])
     if "size_m" not in stated:
         return ()
     width, depth, height = stated["size_m"]

@@ -1,19 +1,19 @@
 """Block maps: from the blocks of any world to the 12 classes, by name and by where they are.
 
 ``load_block_map`` gives a shipped map or one of a YAML file, ``classify`` labels a volume by it,
-and ``remapped`` gives what is labelled already other classes.
+and ``remap_labels`` gives what is labelled already other classes.
 """
 
 from world2minecraft.minecraftocc.block_map.classification import (
     block_map_json,
     class_of_fine,
     classify,
-    remapped,
+    remap_labels,
 )
 from world2minecraft.minecraftocc.block_map.parser import (
     MAPS,
-    block_map_of,
     load_block_map,
+    parse_block_map,
     read_block_map,
 )
 from world2minecraft.minecraftocc.block_map.rules import BlockMap
@@ -27,5 +27,5 @@ __all__ = [
     "classify",
     "load_block_map",
     "read_block_map",
-    "remapped",
+    "remap_labels",
 ]

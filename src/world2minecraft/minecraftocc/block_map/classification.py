@@ -15,7 +15,7 @@ from world2minecraft.minecraftocc.block_map.context import Context
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, matches
 from world2minecraft.minecraftocc.types import FineClass
 
-MOST_OBJECTS = 65_535
+MAX_OBJECTS = 65_535
 EMPTY = CLASS_NAMES[0]
 
 
@@ -41,7 +41,7 @@ def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:
     return CLASS_NAMES.index(told[0].class_name)
 
 
-def remapped(
+def remap_labels(
     labels: np.ndarray, fine: np.ndarray, classes: Sequence[FineClass], rules: BlockMap
 ) -> np.ndarray:
     """Return labels by another map.
@@ -78,7 +78,7 @@ def block_map_json(rules: BlockMap) -> dict[str, Any]:
         "about": " ".join(rules.about.split()),
         "classes": list(CLASS_NAMES),
         "blocks": dict(sorted(blocks.items())),
-        "kinds": {kind: [_rule(rule) for rule in rules.rules[kind]] for kind in rules.rules},
+        "kinds": {kind: [_rule_json(rule) for rule in rules.rules[kind]] for kind in rules.rules},
         "words": [
             {"namespaces": list(words.namespaces), "words": dict(words.meanings)}
             for words in rules.words
@@ -88,7 +88,7 @@ def block_map_json(rules: BlockMap) -> dict[str, Any]:
     }
 
 
-def _rule(rule: Rule) -> dict[str, Any]:
+def _rule_json(rule: Rule) -> dict[str, Any]:
     found: dict[str, Any] = {"class": rule.class_name}
     if rule.where:
         found["where"] = list(rule.where)
@@ -108,16 +108,16 @@ def classify(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
         volume: the blocks; their scale says how high a person stands.
         rules: the block map.
     """
-    semantic = classes_of(volume, rules)
+    semantic = classify_blocks(volume, rules)
     return replace(
         volume,
         semantic=semantic,
-        instance=_instances(semantic),
-        entities=tuple(replace(one, class_id=_entity(one, rules)) for one in volume.entities),
+        instance=_number_objects(semantic),
+        entities=tuple(replace(one, class_id=_entity_class(one, rules)) for one in volume.entities),
     )
 
 
-def classes_of(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
+def classify_blocks(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     """Return the class of every block by a map, uint8 [X, Y, Z]."""
     meanings = [EMPTY, *(rules.meaning(state) for state in volume.palette[1:])]
     names = tuple(dict.fromkeys([EMPTY, *meanings]))
@@ -144,19 +144,19 @@ def classes_of(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     return semantic
 
 
-def _instances(semantic: np.ndarray) -> np.ndarray:
+def _number_objects(semantic: np.ndarray) -> np.ndarray:
     instance = np.zeros(semantic.shape, np.uint16)
     following = 0
     for number in OBJECT_CLASSES:
         parts, count = label_components(semantic == number, corners=False)
-        if following + count > MOST_OBJECTS:
+        if following + count > MAX_OBJECTS:
             break
         instance[parts > 0] = (parts[parts > 0] + following).astype(np.uint16)
         following += count
     return instance
 
 
-def _entity(entity: Entity, rules: BlockMap) -> int:
+def _entity_class(entity: Entity, rules: BlockMap) -> int:
     name = entity.id.partition(":")[2] or entity.id
     for pattern, class_name in rules.entities:
         if matches(pattern, entity.id, name, frozenset()):

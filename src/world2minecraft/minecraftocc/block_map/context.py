@@ -13,8 +13,8 @@ from world2minecraft.minecraftocc.block_map.room_detection import (
     INSIDE,
     OUTSIDE,
     WALL,
+    detect_zones,
     next_above,
-    zones_of,
 )
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, Span
 
@@ -59,19 +59,19 @@ TALL_M = 1.4  # What is higher and of one height is one: wardrobes of two woods.
 UNDER_M = 0.5  # How thick a floor is, and what goes on of a wall beside it.
 ROOF_M, SKY_M, WIDE_M = 3.0, 1.8, 1.5
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
-COARSE = 2.0  # Blocks per metre under which a chair is one block.
+COARSE_BLOCKS_PER_METRE = 2.0  # Blocks per metre under which a chair is one block.
 ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "inside": INSIDE}
 
 
 @dataclass(frozen=True, eq=False)
-class Things:
+class Pieces:
     """``parts`` int32 [X, Y, Z], 0 for none; each measure float64 [things + 1]."""
 
     parts: np.ndarray
     measures: dict[str, np.ndarray]
 
 
-def measured(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) -> Things:
+def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) -> Pieces:
     """Return things with their measures.
 
     Args:
@@ -97,10 +97,10 @@ def measured(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) ->
         found["area_m2"][number] = held_columns.sum() / scale**2
         found["filled"][number] = own.mean()
         found["open"][number] = (held_columns & ~at_floor).sum() / held_columns.sum()
-    return Things(parts, found)
+    return Pieces(parts, found)
 
 
-def shares_of(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
+def kind_shares(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
     """Return the share of each thing's blocks that each kind has, float64 [things + 1, count]."""
     things = int(parts.max(initial=0)) + 1
     held = parts > 0
@@ -109,10 +109,7 @@ def shares_of(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
     return counts / np.maximum(counts.sum(1, keepdims=True), 1)
 
 
-
-
-
-def pieces_of(
+def segment_pieces(
     held: np.ndarray,
     blocks: np.ndarray,
     sheets: np.ndarray,
@@ -130,15 +127,15 @@ def pieces_of(
         ground: int16 [X, Y, Z], the layer of the floor under each.
         scale: blocks per metre.
     """
-    height, first = columns(blocks)
+    height, first = block_columns(blocks)
     least = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
     hangs = sheets & (height >= least - 1e-6)
     hangs |= plates & (first - ground - 1 >= PLATE_M * scale - 1e-6)
-    parts, count = joined_parts(held, 2 * blocks.astype(np.int64) + hangs, hangs)
-    return _abreast(parts, count, max(2, round(TALL_M * scale)))
+    parts, count = connected_parts(held, 2 * blocks.astype(np.int64) + hangs, hangs)
+    return _merge_tall_neighbours(parts, count, max(2, round(TALL_M * scale)))
 
 
-def _abreast(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]:
+def _merge_tall_neighbours(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]:
     """Join tall things that touch and are of one height: the doors of a wardrobe of two woods."""
     low, high = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     for number, box in enumerate(ndimage.find_objects(parts), 1):
@@ -163,7 +160,9 @@ def _abreast(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]
     return order[own][parts], found - 1
 
 
-def joined_parts(held: np.ndarray, blocks: np.ndarray, alone: np.ndarray) -> tuple[np.ndarray, int]:
+def connected_parts(
+    held: np.ndarray, blocks: np.ndarray, alone: np.ndarray
+) -> tuple[np.ndarray, int]:
     """Number blocks that belong together: on one another, or beside each other and the same.
 
     Args:
@@ -193,7 +192,7 @@ def joined_parts(held: np.ndarray, blocks: np.ndarray, alone: np.ndarray) -> tup
     return parts, int(found) if count else 0
 
 
-def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def block_columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return how many of the same block stand on one another where each is, and the lowest's layer.
 
     Both int [X, Y, Z].
@@ -207,10 +206,7 @@ def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1, first
 
 
-
-
-
-def shifted(values: np.ndarray, x: int, y: int, z: int) -> np.ndarray:
+def shift(values: np.ndarray, x: int, y: int, z: int) -> np.ndarray:
     """Return the values of the blocks at an offset; beyond the volume there is nothing, 0."""
     result = np.zeros_like(values)
     cuts = [_overlap(*pair) for pair in zip((x, y, z), values.shape, strict=True)]
@@ -224,22 +220,22 @@ def _overlap(step: int, side: int) -> tuple[slice, slice]:
 
 
 def _air_above(context: "Context") -> np.ndarray:
-    return ~shifted(context.filled, 0, 1, 0)
+    return ~shift(context.filled, 0, 1, 0)
 
 
 def _air_below(context: "Context") -> np.ndarray:
-    below = ~shifted(context.filled, 0, -1, 0)
+    below = ~shift(context.filled, 0, -1, 0)
     below[:, 0] = False
     return below
 
 
 def _on_floor(context: "Context") -> np.ndarray:
-    return shifted(context.condition("floor"), 0, -1, 0)
+    return shift(context.condition("floor"), 0, -1, 0)
 
 
 def _at_wall(context: "Context") -> np.ndarray:
     wall = context.condition("wall")
-    return np.any([shifted(wall, x, 0, z) for x, z in SIDES], axis=0)
+    return np.any([shift(wall, x, 0, z) for x, z in SIDES], axis=0)
 
 
 def _under_ceiling(context: "Context") -> np.ndarray:
@@ -252,11 +248,11 @@ def _under_ceiling(context: "Context") -> np.ndarray:
     return hangs
 
 
-def _beside_own(context: "Context", rises: tuple[int, ...]) -> np.ndarray:
+def _same_kind_beside(context: "Context", rises: tuple[int, ...]) -> np.ndarray:
     """Return where a block of the same kind lies beside, so much higher or lower."""
     kinds = context.kinds
     steps = [(x, rise, z) for x, z in SIDES for rise in rises]
-    near = [shifted(kinds, *step) == kinds for step in steps]
+    near = [shift(kinds, *step) == kinds for step in steps]
     return context.filled & np.any(near, axis=0)
 
 
@@ -266,7 +262,7 @@ def _under_floor(context: "Context") -> np.ndarray:
     below = context.condition("outside") & context.building
     here = floor
     for _ in range(reach):
-        here = shifted(here, 0, 1, 0) & below
+        here = shift(here, 0, 1, 0) & below
         result |= here
     return result
 
@@ -279,7 +275,7 @@ def _wall_line(context: "Context") -> np.ndarray:
     for up in (1, -1):
         here = wall
         for _ in range(reach):
-            here = shifted(here, 0, up, 0) & outside
+            here = shift(here, 0, up, 0) & outside
             result |= here
     return result
 
@@ -289,7 +285,7 @@ def _over_ceiling(context: "Context") -> np.ndarray:
     ceiling = context.condition("ceiling")
     near = np.zeros_like(ceiling)
     for up in range(1, reach + 1):
-        near |= shifted(ceiling, 0, -up, 0)
+        near |= shift(ceiling, 0, -up, 0)
     wide = ndimage.binary_dilation(
         near, np.ones((3, 1, 3)), iterations=max(1, round(context.scale))
     )
@@ -305,7 +301,7 @@ def _open_floor(context: "Context") -> np.ndarray:
     return np.asarray(wide) & context.condition("outside")
 
 
-MAKERS: dict[str, Callable[["Context"], np.ndarray]] = {
+CONDITION_MASKS: dict[str, Callable[["Context"], np.ndarray]] = {
     "under_floor": _under_floor,
     "wall_line": _wall_line,
     "over_ceiling": _over_ceiling,
@@ -315,11 +311,9 @@ MAKERS: dict[str, Callable[["Context"], np.ndarray]] = {
     "on_floor": _on_floor,
     "at_wall": _at_wall,
     "under_ceiling": _under_ceiling,
-    "in_row": lambda context: _beside_own(context, (0,)),
-    "climbs": lambda context: _beside_own(context, (1, -1)),
+    "in_row": lambda context: _same_kind_beside(context, (0,)),
+    "climbs": lambda context: _same_kind_beside(context, (1, -1)),
 }
-
-
 
 
 class Context:
@@ -346,16 +340,16 @@ class Context:
         self.kinds, self.names, self.scale = kinds, names, scale
         self.filled = ~self._are(("empty",))[kinds]
         self.building = self._are(rules.structure)[kinds]
-        self.zones = zones_of(self.building, scale)
+        self.zones = detect_zones(self.building, scale)
         ground = self.zones.ground
         held = self.filled & (self.zones.zone == INSIDE) & ~self._are(rules.apart)[kinds]
         sheets, plates = self._are(rules.sheets)[kinds], self._are(rules.plates)[kinds]
-        pieces = pieces_of(held, blocks, sheets, plates, ground, scale)
-        self.things = measured(*pieces, ground, scale)
-        self.shares = shares_of(self.things.parts, kinds, len(names))
+        pieces = segment_pieces(held, blocks, sheets, plates, ground, scale)
+        self.things = measure_pieces(*pieces, ground, scale)
+        self.shares = kind_shares(self.things.parts, kinds, len(names))
         self._found: dict[str, np.ndarray] = {
             "turned": turned,
-            "coarse": np.full(kinds.shape, scale < COARSE),
+            "coarse": np.full(kinds.shape, scale < COARSE_BLOCKS_PER_METRE),
         }
 
     def holds(self, rule: Rule, at: np.ndarray) -> np.ndarray:
@@ -370,15 +364,15 @@ class Context:
             for name, span in rule.spans.items():
                 own = name == "at_m"
                 result &= (
-                    _within(self._at_m(at), span) if own else self._of_things(name, span)[parts]
+                    _in_span(self._at_m(at), span) if own else self._of_things(name, span)[parts]
                 )
             for name, span in rule.shares.items():
                 share = self.shares[:, self._are((name,))].sum(1)
-                result &= _within(share, span)[parts]
+                result &= _in_span(share, span)[parts]
         return result
 
     def _of_things(self, name: str, span: Span) -> np.ndarray:
-        return _within(self.things.measures[name], span)
+        return _in_span(self.things.measures[name], span)
 
     def _at_m(self, at: np.ndarray) -> np.ndarray:
         """Return how high over their floor blocks stand, in metres."""
@@ -393,9 +387,9 @@ class Context:
             side, _, other = name.partition(" ")
             if other:
                 own = self._are((other,))[self.kinds]
-                self._found[name] = shifted(own, *NEIGHBOURS[side])
+                self._found[name] = shift(own, *NEIGHBOURS[side])
             else:
-                self._found[name] = MAKERS[name](self)
+                self._found[name] = CONDITION_MASKS[name](self)
         return self._found[name]
 
     def _are(self, names: frozenset[str] | tuple[str, ...]) -> np.ndarray:
@@ -403,5 +397,5 @@ class Context:
         return np.array([name in names for name in self.names])
 
 
-def _within(values: np.ndarray, span: Span) -> np.ndarray:
+def _in_span(values: np.ndarray, span: Span) -> np.ndarray:
     return (values >= span[0] - 1e-9) & (values <= span[1] + 1e-9)

@@ -19,13 +19,13 @@ from world2minecraft.minecraftocc.block_map.rules import (
     Rule,
     Span,
     Words,
-    pattern_of,
+    parse_pattern,
 )
 
 MAPS = ("nyu", "paper")
 MAX_BYTES = 256 << 10  # The longest that is shipped has 12 kB; PyYAML reads about 100 kB a second.
 MAX_NAMES = 8192
-LONGEST = 120
+MAX_NAME_LENGTH = 120
 KEYS = (
     "name", "about", "extends", "blocks", "words", "kinds", "whole", "other", "structure", "apart",
     "sheets", "plates", "rules", "designs", "unless_known", "entities",
@@ -43,7 +43,7 @@ def load_block_map(name: str | Path) -> BlockMap:
         InputError: the file cannot be read, or is no map. LimitError: it is too large.
     """
     if str(name) in MAPS:
-        return shipped_map(str(name))
+        return load_shipped_map(str(name))
     path = Path(name)
     if path.suffix.lower() not in (".yaml", ".yml", ".json") and not path.exists():
         raise UnknownNameError("block map", str(name), MAPS)
@@ -56,20 +56,20 @@ def read_block_map(path: Path) -> BlockMap:
     Raises:
         InputError: there is none, or it is no map. LimitError: it is too large.
     """
-    raw = _yaml(read_bytes(path, MAX_BYTES), path)
+    raw = _parse_yaml(read_bytes(path, MAX_BYTES), path)
     try:
-        return block_map_of(raw)
+        return parse_block_map(raw)
     except ValueError as error:
         raise InputError(path, str(error)) from error
 
 
 @cache
-def shipped_map(name: str) -> BlockMap:
+def load_shipped_map(name: str) -> BlockMap:
     """Return a map of the program."""
-    return block_map_of(_shipped(name))
+    return parse_block_map(_shipped_tree(name))
 
 
-def block_map_of(raw: Any) -> BlockMap:
+def parse_block_map(raw: Any) -> BlockMap:
     """Return the map that the tree of a file holds.
 
     Raises:
@@ -78,7 +78,7 @@ def block_map_of(raw: Any) -> BlockMap:
     keys = _mapping("a block map", raw, KEYS)
     if not isinstance(keys.get("name"), str) or not keys["name"]:
         raise ValueError("a block map needs a name, such as name: mine")
-    whole = _extended(keys)
+    whole = _resolve_extends(keys)
     kinds = {kind: _patterns(f"kind {kind}", v) for kind, v in _table(whole, "kinds").items()}
     known = (*CLASS_NAMES, *kinds)
     table = _table(whole, "rules")
@@ -88,32 +88,33 @@ def block_map_of(raw: Any) -> BlockMap:
         name=keys["name"],
         about=str(keys.get("about", "")),
         blocks={
-            _full(b): _known(f"block {b}", m, known) for b, m in _table(whole, "blocks").items()
+            _full_id(b): _check_name(f"block {b}", m, known)
+            for b, m in _table(whole, "blocks").items()
         },
         words=tuple(_words(one, known) for one in _list("words", whole.get("words", []))),
         kinds=kinds,
-        whole=_known("whole", whole.get("whole", "wall"), known),
-        other=_known("other", whole.get("other", "objs"), known),
-        structure=frozenset(_known("structure", k, kinds) for k in _names("structure", whole)),
-        apart=frozenset(_known("apart", k, known) for k in _names("apart", whole)),
-        sheets=frozenset(_known("sheets", k, kinds) for k in _names("sheets", whole)),
-        plates=frozenset(_known("plates", k, kinds) for k in _names("plates", whole)),
+        whole=_check_name("whole", whole.get("whole", "wall"), known),
+        other=_check_name("other", whole.get("other", "objs"), known),
+        structure=frozenset(_check_name("structure", k, kinds) for k in _names("structure", whole)),
+        apart=frozenset(_check_name("apart", k, known) for k in _names("apart", whole)),
+        sheets=frozenset(_check_name("sheets", k, kinds) for k in _names("sheets", whole)),
+        plates=frozenset(_check_name("plates", k, kinds) for k in _names("plates", whole)),
         rules=rules,
         designs=_pairs("design", _table(whole, "designs")),
         unless_known=frozenset(
-            _known("unless_known", k, kinds) for k in _names("unless_known", whole)
+            _check_name("unless_known", k, kinds) for k in _names("unless_known", whole)
         ),
         entities=_pairs("entity", _table(whole, "entities")),
     )
 
 
-def _extended(keys: dict[str, Any]) -> dict[str, Any]:
+def _resolve_extends(keys: dict[str, Any]) -> dict[str, Any]:
     """Return the keys of a map before those of the one it begins from."""
     if "extends" not in keys:
         return keys
     if keys["extends"] not in MAPS:
         raise ValueError(f"extends must be one of {', '.join(MAPS)}, not {_short(keys['extends'])}")
-    below = _extended(_shipped(keys["extends"]))
+    below = _resolve_extends(_shipped_tree(keys["extends"]))
     result = below | keys
     for key in _TABLES:
         own, under = keys.get(key, {}), below.get(key, {})
@@ -122,15 +123,17 @@ def _extended(keys: dict[str, Any]) -> dict[str, Any]:
         result[key] = {**own, **rest}
     for key in _LISTS:
         result[key] = [*_list(key, keys.get(key, [])), *below.get(key, [])]
-    result["words"] = _joined(_list("words", keys.get("words", [])), below.get("words", []))
+    result["words"] = _merge_words(_list("words", keys.get("words", [])), below.get("words", []))
     return result
 
 
-def _joined(own: list[Any], under: list[Any]) -> list[Any]:
+def _merge_words(own: list[Any], under: list[Any]) -> list[Any]:
     """Return words before other words; those of the same namespaces become one table."""
     result = list(own)
     for other in under:
-        same = next((n for n, one in enumerate(result) if _spaces(one) == _spaces(other)), None)
+        same = next(
+            (n for n, one in enumerate(result) if _namespaces(one) == _namespaces(other)), None
+        )
         if same is None:
             result.append(other)
         else:
@@ -139,16 +142,16 @@ def _joined(own: list[Any], under: list[Any]) -> list[Any]:
     return result
 
 
-def _spaces(words: Any) -> Any:
+def _namespaces(words: Any) -> Any:
     return _mapping("words", words).get("namespaces")
 
 
-def _shipped(name: str) -> dict[str, Any]:
+def _shipped_tree(name: str) -> dict[str, Any]:
     place = files("world2minecraft.minecraftocc.block_map").joinpath(f"data/{name}.yaml")
-    return _yaml(place.read_bytes(), Path(f"{name}.yaml"))
+    return _parse_yaml(place.read_bytes(), Path(f"{name}.yaml"))
 
 
-def _yaml(text: bytes, path: Path) -> Any:
+def _parse_yaml(text: bytes, path: Path) -> Any:
     try:
         return plain_yaml(text)
     except ValueError as error:
@@ -186,7 +189,7 @@ def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule
 
 def _rule(kind: str, raw: Any, kinds: Iterable[str]) -> Rule:
     if isinstance(raw, str):
-        return Rule(_known(f"a rule of {kind}", raw, CLASS_NAMES))
+        return Rule(_check_name(f"a rule of {kind}", raw, CLASS_NAMES))
     keys = _mapping(f"a rule of {kind}", raw, ("class", "where", "share", *MEASURES))
     where = _names("where", keys)
     for name in where:
@@ -194,11 +197,11 @@ def _rule(kind: str, raw: Any, kinds: Iterable[str]) -> Rule:
     known = (*CLASS_NAMES, *kinds)
     shares = _mapping(f"share of {kind}", keys.get("share", {}))
     return Rule(
-        _known(f"a rule of {kind}", keys.get("class"), CLASS_NAMES),
+        _check_name(f"a rule of {kind}", keys.get("class"), CLASS_NAMES),
         tuple(where),
         {name: _span(f"{name} of {kind}", keys[name]) for name in MEASURES if name in keys},
         {
-            _known(f"share of {kind}", n, known): _span(f"share of {n}", s)
+            _check_name(f"share of {kind}", n, known): _span(f"share of {n}", s)
             for n, s in shares.items()
         },
     )
@@ -207,9 +210,9 @@ def _rule(kind: str, raw: Any, kinds: Iterable[str]) -> Rule:
 def _check_condition(kind: str, name: str, kinds: Iterable[str]) -> None:
     side, _, other = name.partition(" ")
     if other and side in NEIGHBOURS:
-        _known(f"where of {kind}", other, (*CLASS_NAMES, *kinds))
+        _check_name(f"where of {kind}", other, (*CLASS_NAMES, *kinds))
     else:
-        _known(f"where of {kind}", name, CONDITIONS)
+        _check_name(f"where of {kind}", name, CONDITIONS)
 
 
 def _words(raw: Any, known: Iterable[str]) -> Words:
@@ -218,16 +221,18 @@ def _words(raw: Any, known: Iterable[str]) -> Words:
     if not spaces:
         raise ValueError("words need namespaces, such as namespaces: [my_mod]")
     words = _mapping("words", keys.get("words", {}))
-    return Words(tuple(spaces), {w: _known(f"word {w}", m, known) for w, m in words.items()})
+    return Words(tuple(spaces), {w: _check_name(f"word {w}", m, known) for w, m in words.items()})
 
 
 def _pairs(what: str, table: dict[str, Any]) -> tuple[tuple[Pattern, str], ...]:
     pairs = table.items()
-    return tuple((pattern_of(name), _known(f"{what} {name}", m, CLASS_NAMES)) for name, m in pairs)
+    return tuple(
+        (parse_pattern(name), _check_name(f"{what} {name}", m, CLASS_NAMES)) for name, m in pairs
+    )
 
 
 def _patterns(what: str, raw: Any) -> tuple[Pattern, ...]:
-    return tuple(pattern_of(text) for text in _names(what, {what: raw}))
+    return tuple(parse_pattern(text) for text in _names(what, {what: raw}))
 
 
 def _span(what: str, raw: Any) -> Span:
@@ -238,7 +243,7 @@ def _span(what: str, raw: Any) -> Span:
     return float(numbers[0]), float(numbers[1])
 
 
-def _known(what: str, name: Any, known: Iterable[str]) -> str:
+def _check_name(what: str, name: Any, known: Iterable[str]) -> str:
     names = tuple(known)
     if name not in names:
         shown = ", ".join(names[:24])
@@ -246,7 +251,7 @@ def _known(what: str, name: Any, known: Iterable[str]) -> str:
     return str(name)
 
 
-def _full(name: str) -> str:
+def _full_id(name: str) -> str:
     return name if ":" in name else f"minecraft:{name}"
 
 
@@ -261,8 +266,8 @@ def _mapping(what: str, value: Any, known: Iterable[str] = ()) -> dict[str, Any]
     strange = [key for key in value if names and key not in names]
     if strange:
         raise ValueError(f"{what} has no {_short(strange[0])}; it has: {', '.join(names)}")
-    if len(value) > MAX_NAMES or any(len(key) > LONGEST for key in value):
-        raise ValueError(f"{what} must have {MAX_NAMES} keys of {LONGEST} letters at most")
+    if len(value) > MAX_NAMES or any(len(key) > MAX_NAME_LENGTH for key in value):
+        raise ValueError(f"{what} must have {MAX_NAMES} keys of {MAX_NAME_LENGTH} letters at most")
     return value
 
 
@@ -275,7 +280,7 @@ def _list(what: str, value: Any) -> list[Any]:
 def _names(what: str, keys: dict[str, Any]) -> list[str]:
     listed = _list(what, keys.get(what, []))
     for one in listed:
-        if not isinstance(one, str) or not 0 < len(one) <= LONGEST:
+        if not isinstance(one, str) or not 0 < len(one) <= MAX_NAME_LENGTH:
             raise ValueError(f"{what} must be a list of names, not {_short(one)}")
     return listed
 

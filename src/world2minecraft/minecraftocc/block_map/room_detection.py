@@ -13,13 +13,16 @@ from scipy import ndimage
 from world2minecraft.geometry.connected_components import label_components
 
 OUTSIDE, FLOOR, CEILING, WALL, INSIDE = range(5)
-HEAD_M = 1.8  # A person stands under it; doors are 2 m.
+HEADROOM_M = 1.8  # A person stands under it; doors are 2 m.
 ROOF_M = 8.0  # A roof so high makes no room: halls are 6 m.
 FLOOR_M2 = 1.0  # The smallest floor, of a toilet.
 FURNITURE_M, FURNITURE_M2 = 1.3, 6.0  # So high, and as small as that, a flat top is a thing's.
 PLATEAU_M2 = 0.75  # A stretch of ceiling; the lintel of a door has 0.3.
-CLOSED, MOSTLY = 0.95, 0.5  # Shares of a wall's column: without and with a window that is open.
-NONE = np.int16(0x7FFF)
+CLOSED_SHARE, HALF_CLOSED_SHARE = (
+    0.95,
+    0.5,
+)  # Shares of a wall's column: without and with a window that is open.
+NO_BLOCK = np.int16(0x7FFF)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +33,7 @@ class Zones:
     ground: np.ndarray
 
 
-def zones_of(building: np.ndarray, blocks_per_metre: float) -> Zones:
+def detect_zones(building: np.ndarray, blocks_per_metre: float) -> Zones:
     """Return the zone of each block.
 
     Args:
@@ -41,34 +44,34 @@ def zones_of(building: np.ndarray, blocks_per_metre: float) -> Zones:
     zone = np.zeros(building.shape, np.uint8)
     ground = np.full(building.shape, -1, np.int16)
     over = next_above(building)
-    roofed = _has_roofs(building, over, blocks_per_metre)
+    roofed = _is_roofed(building, over, blocks_per_metre)
     for level, patch in _floors(building, over, blocks_per_metre, roofed):
         _add_storey(zone, ground, building, over, level, patch, blocks_per_metre, roofed)
     return Zones(zone, ground)
 
 
 def next_above(filled: np.ndarray) -> np.ndarray:
-    """Return the layer of the next filled block over each, int16; ``NONE`` where there is none."""
+    """Return the layer of the next filled block over each, int16; ``NO_BLOCK`` where there is none."""
     layers = np.arange(filled.shape[1], dtype=np.int16)[None, :, None]
-    at = np.where(filled, layers, NONE)[:, ::-1]
+    at = np.where(filled, layers, NO_BLOCK)[:, ::-1]
     upward = np.minimum.accumulate(at, axis=1)[:, ::-1]
-    result = np.full(filled.shape, NONE)
+    result = np.full(filled.shape, NO_BLOCK)
     result[:, :-1] = upward[:, 1:]
     return result
 
 
-def _stands(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool) -> np.ndarray:
+def _standable(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool) -> np.ndarray:
     """Return the blocks that a person can stand on, under a roof where builds have one."""
-    head = max(2, int(np.ceil(HEAD_M * scale - 1e-6)))
+    head = max(2, int(np.ceil(HEADROOM_M * scale - 1e-6)))
     layers = np.arange(building.shape[1], dtype=np.int32)[None, :, None]
     room = over.astype(np.int32) - layers - 1
     stands = building & (room >= head)
     return stands & (room <= ROOF_M * scale) if roofed else stands & _enclosed(building, scale)
 
 
-def _has_roofs(building: np.ndarray, over: np.ndarray, scale: float) -> bool:
+def _is_roofed(building: np.ndarray, over: np.ndarray, scale: float) -> bool:
     """Whether the build is closed above; one that is open is looked into from there."""
-    return int(_stands(building, over, scale, True).sum()) >= FLOOR_M2 * scale**2
+    return int(_standable(building, over, scale, True).sum()) >= FLOOR_M2 * scale**2
 
 
 def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
@@ -86,7 +89,7 @@ def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
 
 def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
     """Yield the layers that are floors, from below, with the columns one can stand on there."""
-    stands = _stands(building, over, scale, roofed)
+    stands = _standable(building, over, scale, roofed)
     least = max(2, FLOOR_M2 * scale**2)
     below: list[tuple[int, np.ndarray]] = []
     for level in range(building.shape[1]):
@@ -132,7 +135,7 @@ def _add_storey(
     walls &= ndimage.binary_dilation(region, np.ones((3, 3)), iterations=max(2, round(scale)))
     layers = np.arange(building.shape[1])[None, :, None]
     between = (layers > level) & (layers < tops[:, None, :])
-    lintel = between & (hung & region)[:, None, :] & (layers >= _hung_from(building, tops))
+    lintel = between & (hung & region)[:, None, :] & (layers >= _lowest_hanging(building, tops))
     within = between & region[:, None, :] & ~lintel
     fresh = zone == OUTSIDE
     zone[fresh & (lintel | between & walls[:, None, :])] = WALL
@@ -157,7 +160,7 @@ def _ceilings(
     nearest = ndimage.distance_transform_edt(~kept, return_distances=False, return_indices=True)
     x, z = np.asarray(nearest)
     tops = over[x, z].astype(np.int64)
-    return np.where(tops < NONE, tops, min(most, level + 1 + round(2 * scale)))
+    return np.where(tops < NO_BLOCK, tops, min(most, level + 1 + round(2 * scale)))
 
 
 def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -167,7 +170,7 @@ def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarr
     share = (building & between).sum(1) / np.maximum(between.sum(1), 1)
     x, z = np.indices(tops.shape)
     at_top = building[x, np.clip(tops - 1, 0, building.shape[1] - 1), z] & (tops - 1 > level)
-    walls = (share >= CLOSED) | (at_top & (share >= MOSTLY))
+    walls = (share >= CLOSED_SHARE) | (at_top & (share >= HALF_CLOSED_SHARE))
     hung = at_top & ~walls
     return walls, hung & (_between(hung, walls, 0) | _between(hung, walls, 1))
 
@@ -184,7 +187,7 @@ def _between(hung: np.ndarray, walls: np.ndarray, axis: int) -> np.ndarray:
     return result
 
 
-def _hung_from(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
+def _lowest_hanging(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
     """Return the lowest layer of what hangs without a gap under a ceiling, int [X, 1, Z]."""
     layers = np.arange(building.shape[1])[None, :, None]
     gaps = np.where(~building & (layers < tops[:, None, :]), layers, -1)
@@ -195,6 +198,6 @@ def _region(
     patch: np.ndarray, mask: np.ndarray, building: np.ndarray, level: int, scale: float
 ) -> np.ndarray:
     """Return the columns of rooms: those one can stand on, and those under furniture there."""
-    head = level + max(2, int(np.ceil(HEAD_M * scale - 1e-6)))
+    head = level + max(2, int(np.ceil(HEADROOM_M * scale - 1e-6)))
     roof = building[:, head : level + 2 + round(ROOF_M * scale)].any(1)
     return np.asarray(ndimage.binary_propagation(patch & mask & roof, mask=mask & roof)) | patch

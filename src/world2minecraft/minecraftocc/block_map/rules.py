@@ -129,7 +129,7 @@ class BlockMap:
         return tuple(dict.fromkeys(rule.class_name for rule in rules))
 
 
-def pattern_of(text: str) -> Pattern:
+def parse_pattern(text: str) -> Pattern:
     """Return the pattern of a text; without a namespace it speaks of all."""
     name, _, rest = text.partition("[")
     properties = tuple(part for part in rest.removesuffix("]").split(",") if part)

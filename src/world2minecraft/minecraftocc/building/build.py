@@ -17,16 +17,16 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.building.cpu_clock import (
     STAGES,
     StageClock,
-    milliseconds_an_image,
+    milliseconds_per_image,
 )
-from world2minecraft.minecraftocc.building.process_registry import dismiss, wait_for_others
-from world2minecraft.minecraftocc.building.scene_survey import SceneFacts, SceneTask, survey
+from world2minecraft.minecraftocc.building.process_registry import remove_registry, wait_for_others
+from world2minecraft.minecraftocc.building.scene_survey import SceneFacts, SceneTask, survey_scene
 from world2minecraft.minecraftocc.building.shard_rendering import (
     in_order,
     index_shard,
-    make_shard,
-    studio_of,
-    units_of,
+    render_shard,
+    sample_renderer,
+    shard_tasks,
 )
 from world2minecraft.minecraftocc.engine import Engine
 from world2minecraft.minecraftocc.plan import DatasetPlan, SceneSpec
@@ -49,13 +49,13 @@ from world2minecraft.minecraftocc.store.shard import PART
 from world2minecraft.minecraftocc.store.writer import finish_store
 from world2minecraft.minecraftocc.types import FineClass
 
-MOST_ROUNDS = 6
-Look = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
-_LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
+MAX_ROUNDS = 6
+CountViews = Callable[[list[SceneSpec]], Iterable[int]]  # Gives how many views each scene has.
+_LAST_KERNEL = "label_kernels.count_hits"  # A kernel that a sample needs last.
 EMPTY = FineClass("minecraft:air")
 
 
-def shared_views(scenes: Iterable[SceneSpec], look: Look) -> list[SceneSpec]:
+def allocate_views(scenes: Iterable[SceneSpec], look: CountViews) -> list[SceneSpec]:
     """Return scenes with as many images as they have views, in their order.
 
     Args:
@@ -71,17 +71,21 @@ def shared_views(scenes: Iterable[SceneSpec], look: Look) -> list[SceneSpec]:
         wanted[scene.split] += scene.images
     found: dict[str, int] = {}
     todo = list(asked.values())
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         views = look(todo)
         found |= {scene.scene_id: got for scene, got in zip(todo, views, strict=True)}
-        todo = [one for split, count in wanted.items() for one in _more(asked, found, split, count)]
+        todo = [
+            one
+            for split, count in wanted.items()
+            for one in _further_requests(asked, found, split, count)
+        ]
         asked |= {scene.scene_id: scene for scene in todo}
         if not todo:
             break
     return [replace(scene, images=found[scene.scene_id]) for scene in asked.values()]
 
 
-def _more(
+def _further_requests(
     asked: dict[str, SceneSpec], found: dict[str, int], split: str, wanted: int
 ) -> list[SceneSpec]:
     """Return the scenes of a split that may have more, with what to ask them for next."""
@@ -98,16 +102,16 @@ def _more(
     ]
 
 
-def is_cold() -> bool:
+def needs_warm_up() -> bool:
     """Whether the inner loops of a sample are still to be compiled."""
-    return not is_compiled(_LAST)
+    return not is_compiled(_LAST_KERNEL)
 
 
-def warm(task: SceneTask, tick: Callable[[int], None]) -> None:
+def warm_up(task: SceneTask, tick: Callable[[int], None]) -> None:
     """Look at a scene and make one sample of it; the look is kept, the sample is not."""
-    facts, _ = survey(task, tick)
+    facts, _ = survey_scene(task, tick)
     if facts.views:
-        studio_of(task.folder, task.spec, task.recipe).sample(0, StageClock())
+        sample_renderer(task.folder, task.spec, task.recipe).sample(0, StageClock())
 
 
 @dataclass(frozen=True)
@@ -148,18 +152,18 @@ def build_dataset(
     lock.take()
     try:
         wait_for_others(root)
-        begin(root, plan)
-        sweep(root)
-        report = _finished(root) or _Build(root, plan, engine, progress).run()
+        begin_dataset(root, plan)
+        remove_leftovers(root)
+        report = _finished_report(root) or _Build(root, plan, engine, progress).run()
     except BaseException:
         lock.let_go()
         raise
-    dismiss(root)
+    remove_registry(root)
     lock.remove()
     return replace(report, seconds=time.monotonic() - began)
 
 
-def begin(folder: Path, plan: DatasetPlan) -> None:
+def begin_dataset(folder: Path, plan: DatasetPlan) -> None:
     """Write what the data set will be, or check that it is the same that was begun.
 
     Raises:
@@ -181,7 +185,7 @@ def begin(folder: Path, plan: DatasetPlan) -> None:
         )
 
 
-def sweep(folder: Path) -> None:
+def remove_leftovers(folder: Path) -> None:
     """Take away what an interrupted run has left half written, but for the parts of shards."""
     for place in (folder, folder / "scenes", folder / WORLDS, *(folder / SHARDS).glob("*")):
         for path in place.glob(".*") if place.is_dir() else ():
@@ -193,7 +197,7 @@ def sweep(folder: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def _finished(folder: Path) -> BuildReport | None:
+def _finished_report(folder: Path) -> BuildReport | None:
     """Return the report of a data set of which all files are there; what they hold is not read."""
     meta = read_meta(folder, finished=False)
     shards = meta.get("shards") if meta.get("complete") else None
@@ -217,24 +221,24 @@ class _Build:
     def run(self) -> BuildReport:
         """Look at the scenes, make the shards, write the index."""
         facts: dict[str, SceneFacts] = {}
-        if is_cold():
+        if needs_warm_up():
             first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
-            list(self.engine.run(warm, [first], self._ticker("compile", 1)))
-        scenes = self._settled(shared_views(self.plan.scenes, partial(self._look, facts)))
-        _refuse_twins(scenes, facts)
+            list(self.engine.run(warm_up, [first], self._ticker("compile", 1)))
+        scenes = self._settled(allocate_views(self.plan.scenes, partial(self._look, facts)))
+        _refuse_duplicate_worlds(scenes, facts)
         plan = replace(self.plan, scenes=scenes)
         classes = {one for fact in facts.values() for one in fact.fine} - {EMPTY}
         write_classes(self.folder, FineTable((EMPTY, *sorted(classes))))
-        units, total = units_of(self.folder, plan), sum(plan.images.values())
+        units, total = shard_tasks(self.folder, plan), sum(plan.images.values())
         made = 0
         tick = self._ticker("images", total)
-        for _, (count, seconds) in self.engine.run(make_shard, units, tick):
+        for _, (count, seconds) in self.engine.run(render_shard, units, tick):
             made += count
             for stage, value in seconds.items():
                 self.cpu[stage] += value
         meta = {
             "images": plan.images,
-            "scenes": [_told(scene, facts[scene.scene_id]) for scene in scenes],
+            "scenes": [_scene_json(scene, facts[scene.scene_id]) for scene in scenes],
             "plan": self.plan.facts(),
         }
         rows = in_order(self.engine.run(index_shard, units, self._ticker("index", total)))
@@ -249,7 +253,7 @@ class _Build:
             seconds=0.0,
             cpu_seconds=dict(self.cpu),
             notes=(*self.notes, *self.engine.notes),
-            milliseconds=milliseconds_an_image(self.cpu, made),
+            milliseconds=milliseconds_per_image(self.cpu, made),
         )
 
     def _look(self, facts: dict[str, SceneFacts], scenes: list[SceneSpec]) -> list[int]:
@@ -257,7 +261,7 @@ class _Build:
         tasks = [SceneTask(str(self.folder), scene, self.plan.recipe) for scene in scenes]
         found = [0] * len(tasks)
         for number, (fact, seconds) in self.engine.run(
-            survey, tasks, self._ticker("scenes", len(tasks))
+            survey_scene, tasks, self._ticker("scenes", len(tasks))
         ):
             facts[fact.scene_id] = fact
             found[number] = fact.found(scenes[number].images) or 0
@@ -306,7 +310,7 @@ class _Build:
         return rows
 
 
-def _refuse_twins(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:
+def _refuse_duplicate_worlds(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:
     """Raise UsageError where a world, under two names, is both trained and tested on."""
     first: dict[str, SceneSpec] = {}
     for scene in scenes:
@@ -321,13 +325,13 @@ def _refuse_twins(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) 
 def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
     """Name what two plans differ in."""
     old, new = before.get("recipe", {}), now["recipe"]
-    wrong = [key for key in new if old.get(key) != _plain(new[key])]
-    if before.get("scenes") != _plain(now["scenes"]):
+    wrong = [key for key in new if old.get(key) != _as_json(new[key])]
+    if before.get("scenes") != _as_json(now["scenes"]):
         wrong.append("set of scenes or number of images")
     return wrong
 
 
-def _plain(value: Any) -> Any:
+def _as_json(value: Any) -> Any:
     """Return a value as it comes back from JSON."""
     return json.loads(json.dumps(value))
 
@@ -339,7 +343,7 @@ def _make_folder(folder: Path) -> None:
         raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
 
 
-def _told(scene: SceneSpec, facts: SceneFacts) -> dict[str, Any]:
+def _scene_json(scene: SceneSpec, facts: SceneFacts) -> dict[str, Any]:
     return {
         "scene_id": scene.scene_id,
         "source": scene.path,

@@ -32,7 +32,7 @@ class StageClock:
             self.seconds[stage] += time.process_time() - began
 
 
-def milliseconds_an_image(seconds: Mapping[str, float], images: int) -> dict[str, float]:
+def milliseconds_per_image(seconds: Mapping[str, float], images: int) -> dict[str, float]:
     """Return the CPU milliseconds of each stage for one image, and of all."""
     if not images:
         return {}

@@ -38,27 +38,27 @@ Item = TypeVar("Item", bound=_Item)
 Result = TypeVar("Result")
 
 
-def of_the_crew(
+def registered_task(
     task: Callable[[Item, Callable[[int], None]], Result],
 ) -> Callable[[Item, Callable[[int], None]], Result]:
     """Return a task that is done as one of the crew of its item's ``folder``."""
 
     @wraps(task)
     def joined(item: Item, tick: Callable[[int], None]) -> Result:
-        with at_work(Path(item.folder)):
+        with register_process(Path(item.folder)):
             return task(item, tick)
 
     return joined
 
 
 @contextmanager
-def at_work(folder: Path) -> Iterator[None]:
+def register_process(folder: Path) -> Iterator[None]:
     """Be one of those at work in a folder.
 
     Raises:
         OutputError: the folder cannot be written.
     """
-    handle = _opened(folder)
+    handle = _open_registry(folder)
     try:
         if fcntl is not None:
             fcntl.flock(handle, fcntl.LOCK_SH)
@@ -74,7 +74,7 @@ def wait_for_others(folder: Path, patience_s: float = PATIENCE_S) -> None:
     Raises:
         ConflictError: somebody still is. OutputError: the folder cannot be written.
     """
-    handle, until = _opened(folder), time.monotonic() + patience_s
+    handle, until = _open_registry(folder), time.monotonic() + patience_s
     try:
         while not _is_free(handle):
             if time.monotonic() > until:
@@ -86,12 +86,12 @@ def wait_for_others(folder: Path, patience_s: float = PATIENCE_S) -> None:
         os.close(handle)
 
 
-def dismiss(folder: Path) -> None:
+def remove_registry(folder: Path) -> None:
     """Take the crew's file away when all is done."""
     (folder / CREW).unlink(missing_ok=True)
 
 
-def _opened(folder: Path) -> int:
+def _open_registry(folder: Path) -> int:
     try:
         return os.open(folder / CREW, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:

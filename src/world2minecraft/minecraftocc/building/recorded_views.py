@@ -13,10 +13,12 @@ from world2minecraft.minecraftocc.plan import GivenViews
 from world2minecraft.minecraftocc.screenshots import RecordedView, read_screenshots
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 
-LONGEST_NAME = 30  # Of a tour, in the keys of its samples.
+MAX_TOUR_NAME = 30  # Of a tour, in the keys of its samples.
 
 
-def given_views(given: GivenViews, block_to_room: np.ndarray, camera: Camera) -> list[PlannedView]:
+def load_given_views(
+    given: GivenViews, block_to_room: np.ndarray, camera: Camera
+) -> list[PlannedView]:
     """Return the views that were recorded, in their order, with names that differ.
 
     Args:
@@ -28,19 +30,19 @@ def given_views(given: GivenViews, block_to_room: np.ndarray, camera: Camera) ->
         InputError: they cannot be read. UsageError: it is not said how.
     """
     if not given.is_screenshots:
-        return _named(read_views(given.path, block_to_room, camera))
-    return _named(
+        return _with_unique_names(read_views(given.path, block_to_room, camera))
+    return _with_unique_names(
         [
             PlannedView(
                 one.tour_id, one.frame, one.camera, one.camera_to_room(block_to_room), one.pose,
                 one.t_s,
             )
-            for one in recorded(given)
+            for one in load_screenshot_views(given)
         ]
     )  # fmt: skip
 
 
-def recorded(given: GivenViews) -> list[RecordedView]:
+def load_screenshot_views(given: GivenViews) -> list[RecordedView]:
     """Return the screenshots of a folder. Raises as ``read_screenshots``."""
     return read_screenshots(
         given.path,
@@ -50,7 +52,7 @@ def recorded(given: GivenViews) -> list[RecordedView]:
     )
 
 
-def screenshot(path: Path, camera: Camera) -> np.ndarray:
+def load_screenshot(path: Path, camera: Camera) -> np.ndarray:
     """Return a screenshot, uint8 [H, W, 3], as large as its camera says.
 
     Raises:
@@ -65,10 +67,12 @@ def screenshot(path: Path, camera: Camera) -> np.ndarray:
         raise DamagedFileError(path, f"cannot be read ({error})") from error
 
 
-def _named(views: list[PlannedView]) -> list[PlannedView]:
+def _with_unique_names(views: list[PlannedView]) -> list[PlannedView]:
     """Give tours names that keys may hold, and count frames anew where two are one."""
     plain = [
-        replace(view, tour_id=re.sub(r"[^A-Za-z0-9_]+", "_", view.tour_id)[:LONGEST_NAME] or "t000")
+        replace(
+            view, tour_id=re.sub(r"[^A-Za-z0-9_]+", "_", view.tour_id)[:MAX_TOUR_NAME] or "t000"
+        )
         for view in views
     ]
     names = {(view.tour_id, view.frame) for view in plain}

@@ -17,8 +17,8 @@ import numpy as np
 from world2minecraft.core.errors import ConflictError, DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraftocc.building.process_registry import of_the_crew
-from world2minecraft.minecraftocc.building.recorded_views import given_views
+from world2minecraft.minecraftocc.building.process_registry import registered_task
+from world2minecraft.minecraftocc.building.recorded_views import load_given_views
 from world2minecraft.minecraftocc.labels.fine_classes import fine_names
 from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
@@ -26,9 +26,9 @@ from world2minecraft.minecraftocc.store.folder import SCENES
 from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views, write_views
 from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.procgen.worlds import house_of, write_house
-from world2minecraft.rendering import LookLight, prepare_scene
+from world2minecraft.rendering import LightSettings, prepare_scene
 
-USUAL_HOUR = 12.0
+DEFAULT_HOUR = 12.0
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class SceneFacts:
         return dict(self.plans).get(asked)
 
 
-@of_the_crew
-def survey(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, float]:
+@registered_task
+def survey_scene(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, float]:
     """Look at a scene and plan its views, unless that was done; return what is known, and CPU.
 
     Raises:
@@ -77,7 +77,7 @@ def survey(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, fl
         read_facts(folder, spec.scene_id) if facts_path(folder, spec.scene_id).exists() else None
     )
     if known is None or known.found(spec.images) is None:
-        known = _surveyed(folder, spec, task.recipe, known)
+        known = _make_survey(folder, spec, task.recipe, known)
     tick(1)
     return known, time.process_time() - began
 
@@ -93,7 +93,7 @@ def poses_path(folder: Path, scene_id: str) -> Path:
 
 
 def read_facts(folder: Path, scene_id: str) -> SceneFacts:
-    """Read what ``survey`` wrote. Raises InputError or DamagedFileError."""
+    """Read what ``survey_scene`` wrote. Raises InputError or DamagedFileError."""
     path = facts_path(folder, scene_id)
     told = read_json(path)
     try:
@@ -111,7 +111,7 @@ def read_facts(folder: Path, scene_id: str) -> SceneFacts:
         raise DamagedFileError(path, f"tells of no scene ({error!r})") from error
 
 
-def source_of(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
+def open_source(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
     """Return where the blocks of a scene come from."""
     place = folder / spec.path if spec.house else Path(spec.path)
     return open_scene_source(
@@ -123,7 +123,7 @@ def source_of(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
     )
 
 
-def digest_of(volume: BlockVolume) -> str:
+def volume_digest(volume: BlockVolume) -> str:
     """Return a sum of all that pictures and labels of a volume depend on."""
     total = hashlib.sha256()
     for part in (volume.states, volume.semantic, volume.instance, volume.block_to_room):
@@ -135,28 +135,28 @@ def digest_of(volume: BlockVolume) -> str:
 
 def check_digest(facts: SceneFacts, volume: BlockVolume, spec: SceneSpec) -> None:
     """Raise ConflictError where a scene is no longer what its views were planned in."""
-    if digest_of(volume) != facts.digest:
+    if volume_digest(volume) != facts.digest:
         raise ConflictError(
             spec.path, "has changed since this data set was begun; make another data set of it"
         )
 
 
-def _surveyed(
+def _make_survey(
     folder: Path, spec: SceneSpec, recipe: Recipe, known: SceneFacts | None
 ) -> SceneFacts:
     if spec.house:
-        _make_house(folder / spec.path, recipe.seed, spec.house)
-    source = source_of(folder, spec, recipe)
+        _generate_house(folder / spec.path, recipe.seed, spec.house)
+    source = open_source(folder, spec, recipe)
     volume = source.volume()
     if known is not None:
         check_digest(known, volume, spec)
-    hour = recipe.hour if recipe.hour is not None else _hour_beside(source.path)
+    hour = recipe.hour if recipe.hour is not None else _scene_hour(source.path)
     if spec.given is not None:
-        views = given_views(spec.given, volume.block_to_room, recipe.camera)[: spec.images]
+        views = load_given_views(spec.given, volume.block_to_room, recipe.camera)[: spec.images]
     else:
         rule = TourRule(
             camera=recipe.camera,
-            light=LookLight(hour=hour),
+            light=LightSettings(hour=hour),
             layouts=layouts_beside(source.path),
         )
         views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
@@ -164,7 +164,7 @@ def _surveyed(
     east, up, south = volume.states.shape
     facts = SceneFacts(
         scene_id=spec.scene_id,
-        digest=digest_of(volume),
+        digest=volume_digest(volume),
         fine=fine_names(volume, source.designs()).classes,
         plans=(*(known.plans if known else ()), (spec.images, len(views))),
         hour=hour,
@@ -176,7 +176,7 @@ def _surveyed(
     return facts
 
 
-def _make_house(target: Path, seed: int, number: int) -> None:
+def _generate_house(target: Path, seed: int, number: int) -> None:
     """Write a generated house, whole or not at all."""
     if target.exists():
         return
@@ -186,15 +186,15 @@ def _make_house(target: Path, seed: int, number: int) -> None:
     os.replace(part, target)
 
 
-def _hour_beside(path: Path) -> float:
+def _scene_hour(path: Path) -> float:
     """Return the hour that a scene says it is lit at; noon where it says none."""
     for place in (path, path / "build", path.parent):
         if (place / "scene.json").is_file():
             told = read_json(place / "scene.json")
             light = told.get("light") if isinstance(told, dict) else None
             hour = light.get("hour") if isinstance(light, dict) else None
-            return float(hour) % 24 if isinstance(hour, (int, float)) else USUAL_HOUR
-    return USUAL_HOUR
+            return float(hour) % 24 if isinstance(hour, (int, float)) else DEFAULT_HOUR
+    return DEFAULT_HOUR
 
 
 def _write_facts(folder: Path, facts: SceneFacts) -> None:

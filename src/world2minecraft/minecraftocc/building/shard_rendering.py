@@ -13,13 +13,16 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.minecraftocc.building.cpu_clock import StageClock
-from world2minecraft.minecraftocc.building.process_registry import of_the_crew
-from world2minecraft.minecraftocc.building.recorded_views import recorded, screenshot
+from world2minecraft.minecraftocc.building.process_registry import registered_task
+from world2minecraft.minecraftocc.building.recorded_views import (
+    load_screenshot,
+    load_screenshot_views,
+)
 from world2minecraft.minecraftocc.building.scene_survey import (
     check_digest,
+    open_source,
     poses_path,
     read_facts,
-    source_of,
 )
 from world2minecraft.minecraftocc.camera_records import camera_record
 from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
@@ -33,15 +36,15 @@ from world2minecraft.minecraftocc.store.shard import ShardWriter
 from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 from world2minecraft.minecraftocc.types import OccSample, SceneVoxels
-from world2minecraft.rendering import BlockScene, LookLight, prepare_scene, render_volume
+from world2minecraft.rendering import BlockScene, LightSettings, prepare_scene, render_volume
 from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
 from world2minecraft.rendering.views import Shot
 
-COLOUR = ("colour", "depth")
+OUTPUTS = ("colour", "depth")
 
 
 @dataclass(frozen=True, eq=False)
-class Studio:
+class SampleRenderer:
     """A scene with all that its samples are made of."""
 
     spec: SceneSpec
@@ -49,7 +52,7 @@ class Studio:
     scene: BlockScene  # with one exposure for all views
     voxels: SceneVoxels
     views: list[PlannedView]
-    light: LookLight
+    light: LightSettings
     rule: RegionRule
     block_to_room: np.ndarray
     screenshots: tuple[Path, ...] = ()
@@ -66,10 +69,10 @@ class Studio:
         with clock.of("render"):
             if self.recipe.pictures and self.screenshots:
                 picture = render_volume(self.scene, camera, pose, outputs=("depth",))
-                colour = screenshot(self.screenshots[number], camera)
+                colour = load_screenshot(self.screenshots[number], camera)
                 depth_m, seen_by = picture.depth_m, camera
             elif self.recipe.pictures:
-                picture = render_volume(self.scene, camera, pose, outputs=COLOUR, light=self.light)
+                picture = render_volume(self.scene, camera, pose, outputs=OUTPUTS, light=self.light)
                 colour, depth_m, seen_by = picture.colour, picture.depth_m, camera
             else:
                 seen_by, depth_m = cast_depth(self.scene, camera, pose)
@@ -117,7 +120,7 @@ class Studio:
 
 
 @lru_cache(maxsize=1)
-def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
+def sample_renderer(folder: str, spec: SceneSpec, recipe: Recipe) -> SampleRenderer:
     """Make a scene ready; the last one is kept, for its next shard.
 
     Raises:
@@ -125,11 +128,11 @@ def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
     """
     root = Path(folder)
     facts = read_facts(root, spec.scene_id)
-    source = source_of(root, spec, recipe)
+    source = open_source(root, spec, recipe)
     volume = source.volume()
     check_digest(facts, volume, spec)
     views = read_views(poses_path(root, spec.scene_id), volume.block_to_room)[: spec.images]
-    light = LookLight(hour=facts.hour)
+    light = LightSettings(hour=facts.hour)
     plain = prepare_scene(volume)
     shots = [Shot(view.camera, view.camera_to_room) for view in views]
     scene = with_common_exposure(plain, light, shots) if recipe.pictures else plain
@@ -144,12 +147,14 @@ def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
     )
     shot_files: tuple[Path, ...] = ()
     if spec.given is not None and spec.given.is_screenshots:
-        shot_files = tuple(one.image for one in recorded(spec.given))
-    return Studio(spec, recipe, scene, voxels, views, light, rule, volume.block_to_room, shot_files)
+        shot_files = tuple(one.image for one in load_screenshot_views(spec.given))
+    return SampleRenderer(
+        spec, recipe, scene, voxels, views, light, rule, volume.block_to_room, shot_files
+    )
 
 
 @dataclass(frozen=True)
-class Unit:
+class ShardTask:
     """A shard to make: the views ``first`` to ``last``, the last not included, of a scene."""
 
     folder: str
@@ -160,11 +165,11 @@ class Unit:
     last: int
 
 
-def units_of(folder: Path, plan: DatasetPlan) -> list[Unit]:
+def shard_tasks(folder: Path, plan: DatasetPlan) -> list[ShardTask]:
     """Return the units of a plan, in the order of the data set: split, scene, view."""
     scenes = sorted(plan.scenes, key=lambda scene: list(plan.images).index(scene.split))
     return [
-        Unit(
+        ShardTask(
             str(folder),
             shard_name(scene.split, scene.scene_id, number),
             scene,
@@ -177,8 +182,8 @@ def units_of(folder: Path, plan: DatasetPlan) -> list[Unit]:
     ]
 
 
-@of_the_crew
-def make_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[int, dict[str, float]]:
+@registered_task
+def render_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[int, dict[str, float]]:
     """Make a shard, or what is missing of it; return how many samples were made, and CPU seconds.
 
     Raises:
@@ -190,7 +195,7 @@ def make_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[int, dict[str, 
         tick(count)
         return 0, {}
     with clock.of("scenes"):
-        studio = studio_of(unit.folder, unit.spec, unit.recipe)
+        studio = sample_renderer(unit.folder, unit.spec, unit.recipe)
         table = read_classes(Path(unit.folder))
     numbers = range(unit.first, unit.last)
     with ShardWriter(path, [studio.key(number) for number in numbers]) as shard:
@@ -208,7 +213,7 @@ def make_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[int, dict[str, 
     return count - found, dict(clock.seconds)
 
 
-def index_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[list[dict[str, Any]], float]:
+def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[list[dict[str, Any]], float]:
     """Return the index rows of a finished shard, and CPU seconds."""
     clock = StageClock()
     with clock.of("write"):

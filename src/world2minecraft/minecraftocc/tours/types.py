@@ -8,7 +8,7 @@ from world2minecraft.core.coordinates import focal_px_of_fov
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Layout
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose
 
@@ -49,7 +49,7 @@ class TourRule:
     spacing_m: float = 0.25
     apart_m: float = 0.15
     apart_deg: float = 12.0
-    light: LookLight = DAY
+    light: LightSettings = DAY
     start: tuple[float, float, float] | None = None
     reachable_only: bool = False
     layouts: tuple[Layout, ...] = ()

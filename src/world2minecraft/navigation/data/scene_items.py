@@ -256,7 +256,7 @@ def _trajectory(
     )
     return Trajectory(
         candidate.trajectory_id, scene.scene_id, keyframes, candidate.instructions,
-        round(candidate.path_m, 4), split, scene.metres_per_block,
+        round(candidate.path_length_m, 4), split, scene.metres_per_block,
     )  # fmt: skip
 
 

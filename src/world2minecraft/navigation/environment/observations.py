@@ -12,7 +12,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Stance
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY
 
 SENSORS = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
@@ -30,7 +30,7 @@ class Eyes:
     width_px: int = 224
     height_px: int = 224
     hfov_deg: float = 90.0
-    light: LookLight = DAY
+    light: LightSettings = DAY
     threads: int = 1
 
     def __post_init__(self):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.files import write_json
-from world2minecraft.navigation.agents import AGENTS, BESIDE, Agent
+from world2minecraft.navigation.agents import AGENTS, REFERENCE_AGENTS, Agent
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk, Observer, walk_episode
 from world2minecraft.navigation.running.item_evaluation import RESULT_FILE
 from world2minecraft.navigation.running.simulator import Simulator
@@ -35,7 +35,7 @@ def evaluate_agent(
         What ``walk_episode`` raises.
     """
     walks: list[EpisodeWalk] = []
-    beside: dict[str, list[EpisodeWalk]] = {name: [] for name in BESIDE}
+    beside: dict[str, list[EpisodeWalk]] = {name: [] for name in REFERENCE_AGENTS}
     asked = list(episodes)
     for episode in asked:
         check_reachable(episode, ground_of(episode).distance_m(episode.start, episode.goals))

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.navigation.agents.values import Agent, Decision, Observation, Task
 from world2minecraft.navigation.running.simulator import Simulator, SimulatorGuide
-from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
+from world2minecraft.navigation.scores import EpisodeScore, WalkedPath, score_episode
 from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
 
 MAX_SILENT_DECISIONS = 3  # Decisions without moves in a row that end a walk.
@@ -166,7 +166,7 @@ class _State:
         goals = self.episode.goals
         positions = self.ground.to_room_m(np.array([one.feet for one in self.stances]))
         distance = np.array([self.ground.distance_m(one, goals) for one in self.stances])
-        walked = Walked(
+        walked = WalkedPath(
             positions, distance, self.end == "stopped", self.steps,
             sum(collided for _, collided in self.made),
         )  # fmt: skip

@@ -53,7 +53,7 @@ class Simulator(Protocol):
         ...
 
     @property
-    def imagined(self) -> "Ground":
+    def imagined(self) -> "Simulator":
         """The same ground for moves that are only thought of; itself, where none is for real."""
         ...
 

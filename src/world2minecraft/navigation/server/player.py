@@ -200,7 +200,7 @@ class ServerPlayer:
         self._take(told)
         self.body = _body(told.get("pose"), Keys())
 
-    def __enter__(self) -> "ServerBody":
+    def __enter__(self) -> "ServerPlayer":
         return self
 
     def __exit__(

@@ -8,7 +8,7 @@ from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Layout, LayoutObject, Placement
-from world2minecraft.formats.layout import layout_of_row, layout_row
+from world2minecraft.formats.layout import layout_from_json, layout_to_json
 
 SCENE_FILE = "compared.json"
 MOST_BYTES = 16 << 20
@@ -49,7 +49,7 @@ def write_scene(path: str | Path, scene: ComparedScene) -> None:
         {
             "name": scene.name,
             "method": scene.method,
-            "rooms": [layout_row(room) for room in scene.rooms],
+            "rooms": [layout_to_json(room) for room in scene.rooms],
             "objects": [_row(item) for item in scene.objects],
             "unplaced": list(scene.unplaced),
             "skipped": list(scene.skipped),
@@ -70,7 +70,7 @@ def read_scene(path: str | Path) -> ComparedScene:
         return ComparedScene(
             name=str(told["name"]),
             method=str(told["method"]),
-            rooms=tuple(layout_of_row(row) for row in told["rooms"]),
+            rooms=tuple(layout_from_json(row) for row in told["rooms"]),
             objects=tuple(_object(row) for row in told["objects"]),
             unplaced=tuple(str(name) for name in told["unplaced"]),
             skipped=tuple(str(name) for name in told["skipped"]),

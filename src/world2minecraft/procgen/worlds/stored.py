@@ -10,7 +10,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.layout import write_layouts
-from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.procgen.worlds.furnishing import Thing
@@ -91,7 +91,7 @@ def write_house(
         version=version,
         hour=float(made.light["hour"]),
     )
-    scene = scene_of(
+    scene = scene_from_volume(
         made.volume,
         mc_version=version.name,
         data_version=version.data_version,

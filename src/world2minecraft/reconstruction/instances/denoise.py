@@ -17,8 +17,8 @@ def relabel_specks(labels: np.ndarray) -> np.ndarray:
 
     A speck is a connected part of an object class of at most ``MAX_SPECK_CELLS``. It lies in
     another object class where nearly all that touches it is of that class, and this lies on both
-    sides of each of its cells along the same two axes. What stands on a table or before a cupboard sticks
-    out of it.
+    sides of each of its cells along the same two axes. What stands on a table or before a cupboard
+    sticks out of it.
     """
     result = labels.copy()
     for class_id in OBJECT_CLASSES:

@@ -46,7 +46,7 @@ class ObjectVoxels(NamedTuple):
     floor: int
     voxel_m: float
 
-    def only(self, own: np.ndarray) -> "Heap":
+    def only(self, own: np.ndarray) -> "ObjectVoxels":
         """Return the voxels with only some of its cells, bool [X, Y, Z], in the same box."""
         return self._replace(own=own)
 

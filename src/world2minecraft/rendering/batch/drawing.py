@@ -19,7 +19,7 @@ from world2minecraft.rendering.batch.arrays import (
     kernel_arrays,
 )
 from world2minecraft.rendering.free_space import observed_free_space
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
@@ -55,7 +55,7 @@ def render_batch(
     poses: np.ndarray | Sequence[np.ndarray],
     *,
     outputs: Collection[str] = DEFAULT_OUTPUTS,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
     samples: int = 1,
     threads: int = 1,
     background: Backdrop | None = None,

@@ -46,7 +46,7 @@ from world2minecraft.rendering.batch.workers import (
     start_worker,
     stop_workers,
 )
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture
 from world2minecraft.rendering.scene import BlockScene
@@ -123,7 +123,7 @@ def split_into_tasks(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
 
 MAX_WORKERS = 256
 QUEUED_TASKS = 2  # Tasks that each worker has, so that it never waits for the next.
-UNIT_EXPOSURE = LookLight(exposure=1.0)
+UNIT_EXPOSURE = LightSettings(exposure=1.0)
 
 
 class RenderPool:
@@ -196,7 +196,7 @@ class RenderPool:
         poses: np.ndarray | Sequence[np.ndarray],
         *,
         outputs: Collection[str] = DEFAULT_OUTPUTS,
-        light: LookLight = DAY,
+        light: LightSettings = DAY,
         samples: int = 1,
         background: Backdrop | None = None,
         ordered: bool = True,

@@ -15,7 +15,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.rendering.batch.pool import MAX_WORKERS, RenderPool
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
@@ -124,7 +124,7 @@ def render_stream(
     shots: Sequence[Shot],
     *,
     outputs: Collection[str] = DEFAULT_OUTPUTS,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
     samples: int = 1,
     threads: int = 1,
     background: Backdrop | None = None,

@@ -15,7 +15,7 @@ from world2minecraft.core.errors import MissingExtraError, UnknownNameError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.gpu.device import GpuError, find_adapter, info_of
 from world2minecraft.rendering.gpu.renderer import GpuRenderer
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop
 from world2minecraft.rendering.picture import (
     DEFAULT_OUTPUTS,
@@ -40,7 +40,7 @@ class Renderer(Protocol):
 
     def render(
         self, camera: Camera, camera_to_room: np.ndarray, *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture."""
@@ -48,7 +48,7 @@ class Renderer(Protocol):
 
     def render_many(
         self, camera: Camera, poses: Iterable[np.ndarray], *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
         """Take a picture from each pose, in their order."""
@@ -56,7 +56,7 @@ class Renderer(Protocol):
 
     def render_parallel(
         self, px_per_metre: float, size: tuple[int, int], camera_to_room: np.ndarray, *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture by parallel rays."""
@@ -82,7 +82,7 @@ class CpuRenderer:
 
     def render(
         self, camera: Camera, camera_to_room: np.ndarray, *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture; see ``render_volume``."""
@@ -93,7 +93,7 @@ class CpuRenderer:
 
     def render_many(
         self, camera: Camera, poses: Iterable[np.ndarray], *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:  # fmt: skip
         """Take a picture from each pose, in their order."""
@@ -104,7 +104,7 @@ class CpuRenderer:
 
     def render_parallel(
         self, px_per_metre: float, size: tuple[int, int], camera_to_room: np.ndarray, *,
-        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LookLight = DAY, samples: int = 1,
+        outputs: Collection[str] = DEFAULT_OUTPUTS, light: LightSettings = DAY, samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:  # fmt: skip
         """Take a picture by parallel rays; see the function of that name."""

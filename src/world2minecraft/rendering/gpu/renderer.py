@@ -33,7 +33,7 @@ from world2minecraft.rendering.gpu.uniforms import (
     plane_layout,
     view_of,
 )
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
@@ -124,7 +124,7 @@ class GpuRenderer:
         camera_to_room: np.ndarray,
         *,
         outputs: Collection[str] = DEFAULT_OUTPUTS,
-        light: LookLight = DAY,
+        light: LightSettings = DAY,
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:
@@ -141,7 +141,7 @@ class GpuRenderer:
         poses: Iterable[np.ndarray],
         *,
         outputs: Collection[str] = DEFAULT_OUTPUTS,
-        light: LookLight = DAY,
+        light: LightSettings = DAY,
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:
@@ -170,7 +170,7 @@ class GpuRenderer:
         camera_to_room: np.ndarray,
         *,
         outputs: Collection[str] = DEFAULT_OUTPUTS,
-        light: LookLight = DAY,
+        light: LightSettings = DAY,
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Picture:

@@ -15,9 +15,9 @@ table, ``shade.corner_lights``, in place of the first and third):
 - ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
 - ``shade = direction_shade(nx, ny, nz, cosine, params)``
 - ``r, g, b = lit_colour(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
-  texel; ``glow_light(emission, params)`` is the least of them for what shines by itself
+  texel; ``emission_light(emission, params)`` is the least of them for what shines by itself
 - ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
-- ``finish(r, g, b, tone)``, three uint8
+- ``tone_map_pixel(r, g, b, tone)``, three uint8
 """
 
 from world2minecraft.rendering.light.exposure import scene_exposure
@@ -37,16 +37,16 @@ from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
 __all__ = [
     "Background",
     "LightField",
-    "LitParameters",
-    "LookLight",
+    "LightCoefficients",
+    "LightSettings",
     "Tone",
     "background_light",
     "direction_shade",
     "edit_light",
-    "finish",
-    "glow_light",
+    "tone_map_pixel",
+    "emission_light",
     "lattice_light",
     "light_field",
-    "lit_colour",
+    "light_multipliers",
     "scene_exposure",
 ]

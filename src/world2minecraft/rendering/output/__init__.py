@@ -19,16 +19,16 @@ from world2minecraft.rendering.output.layers import (
 
 __all__ = [
     "LAYERS",
-    "MOVING_SUFFIXES",
-    "FileChoice",
+    "ANIMATION_SUFFIXES",
+    "FileFormats",
     "colour_bytes",
     "depth_bytes",
     "exr_bytes",
     "file_name",
     "index_bytes",
-    "layers_named",
-    "moving_picture",
-    "needs_of",
+    "parse_layers",
+    "animation_writer",
+    "required_outputs",
     "number_bytes",
     "id_names",
 ]

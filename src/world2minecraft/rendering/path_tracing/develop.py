@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.jit import lean
-from world2minecraft.rendering.light import Tone, finish
+from world2minecraft.rendering.light import Tone, tone_map_pixel
 from world2minecraft.rendering.light.exposure import LUMINANCE
 from world2minecraft.rendering.path_tracing.denoise import (
     GLOSS_SWEEPS,
@@ -107,7 +107,7 @@ def to_screen(radiance, exposure, tone, colour):
     """Fill uint8 [H, W, 3] from linear light."""
     for v in range(radiance.shape[0]):
         for u in range(radiance.shape[1]):
-            colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = finish(
+            colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(
                 radiance[v, u, 0] * exposure,
                 radiance[v, u, 1] * exposure,
                 radiance[v, u, 2] * exposure,

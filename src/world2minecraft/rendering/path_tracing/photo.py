@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light.exposure import LUMINANCE
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.path_tracing.develop import (
@@ -52,7 +52,7 @@ def render_photo(
     camera: Camera,
     camera_to_room: np.ndarray,
     *,
-    light: LookLight = DAY,
+    light: LightSettings = DAY,
     samples: int = 16,
     seed: int = 0,
     depth: int = 8,
@@ -158,7 +158,7 @@ def _trace_passes(
 
 
 def _develop(
-    picture: Picture, light: LookLight, film: Film, surfaces: np.ndarray, done: int
+    picture: Picture, light: LightSettings, film: Film, surfaces: np.ndarray, done: int
 ) -> Photo:
     exposure = light.exposure
     if exposure is None:

@@ -18,7 +18,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.pool import RenderPool
-from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
@@ -37,7 +37,7 @@ class DrawOptions:
     """
 
     outputs: tuple[str, ...] = ("colour",)
-    light: LookLight = DAY
+    light: LightSettings = DAY
     samples: int = 1
     threads: int = 1
     background: Backdrop | None = None
@@ -135,7 +135,9 @@ def draw_shots(
     return draw_frames(scene, cameras, poses, options)
 
 
-def with_common_exposure(scene: BlockScene, light: LookLight, shots: Sequence[Shot]) -> BlockScene:
+def with_common_exposure(
+    scene: BlockScene, light: LightSettings, shots: Sequence[Shot]
+) -> BlockScene:
     """Return the scene, opened up as far as the light around the cameras wants it.
 
     One exposure for all shots: pictures of one tour belong together.

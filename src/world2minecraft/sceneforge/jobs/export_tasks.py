@@ -15,9 +15,9 @@ from world2minecraft.construction import WORLD_NAME, write_build
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.editing.relocation import placed
-from world2minecraft.editing.world_build import build_into, built_mask
-from world2minecraft.formats.volume_formats import (format_by_name, read_run_templates, write_volume)
+from world2minecraft.editing.relocation import place_volume
+from world2minecraft.editing.world_build import affected_mask, build_into_world
+from world2minecraft.formats.volume_formats import format_by_name, read_run_templates, write_volume
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
@@ -125,9 +125,9 @@ def into_world(
     chosen = parameters_of(choice)
     volume = _blocks(Path(folder), chosen, progress)
     progress("write", 0, 1)
-    put = placed(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
+    put = place_volume(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
     pack = {"datapacks/player_size.zip": size_pack(volume.blocks_per_metre)}
-    done = build_into(
+    done = build_into_world(
         Path(world),
         put,
         air=air,
@@ -152,10 +152,10 @@ def on_server(
     chosen = parameters_of(choice)
     host, port = parse_address(address)
     volume = _blocks(Path(folder), chosen, progress)
-    put = placed(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
+    put = place_volume(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
     losses = Losses()
     version = game_version(chosen.mc_version)
-    plan = plan_build(put, version, built=built_mask(put, air), losses=losses)
+    plan = plan_build(put, version, built=affected_mask(put, air), losses=losses)
     client = RconClient(host, port, password)
     result = LiveBuilder(client, plan, note_of(f"{host}:{port}", plan.digest), progress).run()
     lost = [[what, count] for what, count in losses]

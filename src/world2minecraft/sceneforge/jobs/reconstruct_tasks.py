@@ -9,7 +9,7 @@ from typing import Any
 
 from world2minecraft.capture import describe_capture
 from world2minecraft.capture.poster import poster_png
-from world2minecraft.capture.readers.roomplan_only import plan_in
+from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
 from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
@@ -37,7 +37,7 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
     """
     source, target = Path(capture), Path(folder)
     progress("look", 0, 3)
-    plan = plan_in(source)
+    plan = find_lone_roomplan(source)
     if plan is not None:
         told = _plan_told(source, plan_lines(source, read_roomplan(plan)))
     else:
@@ -114,7 +114,7 @@ def reconstruct(
 ) -> dict[str, Any]:
     """Turn a capture into a run's folder; return ``out`` and what came of it."""
     source, target, chosen = Path(capture), Path(out), parameters_of(choice)
-    plan = plan_in(source)
+    plan = find_lone_roomplan(source)
     if plan is not None:
         built = make_from_plan(plan, target, chosen, progress, scene_name(source))
         return {"out": out, "objects": built.objects}

@@ -20,11 +20,10 @@ from app_writers import (
 )
 from PIL import Image
 
-from world2minecraft.capture import (describe_capture)
-from world2minecraft.capture import open_scan
+from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.capture.images import read_colour, read_header
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.apps.video_frames import Movie
+from world2minecraft.capture.readers.apps.video_frames import VideoDecoder
 from world2minecraft.capture.sources import SOURCES, find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.capture.view_stream import read_view
@@ -294,7 +293,7 @@ def test_a_video_whose_pictures_lean_on_later_ones(tmp_path):
             picture = np.ascontiguousarray(wide[:, index : index + 64])
             container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
         container.mux(stream.encode())
-    movie = Movie(tmp_path / "rgb.mp4")
+    movie = VideoDecoder(tmp_path / "rgb.mp4")
     assert len(movie.times) == 40
     forward = [movie.picture(index) for index in range(40)]
     for index, picture in enumerate(forward):

@@ -9,7 +9,7 @@ from writing import quaternion, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.datasets.realsense import opened_bag
+from world2minecraft.capture.readers.datasets.realsense import open_bag
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.capture.view_stream import read_view
@@ -140,7 +140,7 @@ def test_a_large_bag_within_a_zip_is_not_held_in_memory(tmp_path, views, refused
     (tmp_path / "x").mkdir()
     write_bag(tmp_path / "x" / "room.bag", views[:2])
     monkeypatch.setattr(
-        "world2minecraft.capture.readers.datasets.embedded_images.MAX_ZIPPED_BYTES", 10_000
+        "world2minecraft.capture.readers.datasets.embedded_images.MAX_MEMBER_BYTES", 10_000
     )
     refused(zipped(tmp_path / "x", tmp_path / "a.zip"), "within a zip; unpack the zip first")
 
@@ -241,7 +241,7 @@ def test_a_chunk_that_swells_is_not_unpacked_whole(tmp_path, views, monkeypatch)
     monkeypatch.setattr(
         "world2minecraft.capture.readers.datasets.realsense.MAX_CHUNK_BYTES", 60_000
     )
-    bag = opened_bag.__globals__["Bag"](path)
+    bag = open_bag.__globals__["Bag"](path)
     positions = list(bag._reader.chunks)
     stored = path.read_bytes()
     for position in positions:

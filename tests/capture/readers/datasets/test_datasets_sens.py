@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from writing import encoded, millimetres, save, save_text, zipped
 
-from world2minecraft.capture import (describe_capture)
-from world2minecraft.capture import open_scan
+from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import DamagedFileError
 
@@ -95,7 +94,7 @@ def test_a_large_file_within_a_zip_is_not_held_in_memory(tmp_path, views, refuse
     (tmp_path / "scene").mkdir()
     write_sens(tmp_path / "scene" / "a.sens", views)
     monkeypatch.setattr(
-        "world2minecraft.capture.readers.datasets.embedded_images.MAX_ZIPPED_BYTES", 10_000
+        "world2minecraft.capture.readers.datasets.embedded_images.MAX_MEMBER_BYTES", 10_000
     )
     refused(zipped(tmp_path / "scene", tmp_path / "a.zip"), "within a zip; unpack the zip first")
 

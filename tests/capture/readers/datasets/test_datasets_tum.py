@@ -7,7 +7,7 @@ from writing import quaternion, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.datasets.time_sync import pair_times, pose_between
+from world2minecraft.capture.readers.datasets.time_sync import interpolate_pose, pair_times
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import judge_capture
 from world2minecraft.core.types import Camera
@@ -104,7 +104,7 @@ def test_slerp_is_that_of_scipy(views):
     for share in (0.0, 0.3, 1.0):
         for sign in (1, -1):
             end = ends[1] * np.array([1, 1, 1, *[sign] * 4])
-            pose = pose_between(ends[0], end, share)
+            pose = interpolate_pose(ends[0], end, share)
             np.testing.assert_allclose(pose[:3, :3], turns(share).as_matrix(), atol=1e-12)
     np.testing.assert_allclose(
         rotation_from_quaternion(ends[1][3:] * 7), second[:3, :3], atol=1e-12

@@ -10,7 +10,7 @@ import trimesh
 from solid_rooms import SIZE_M, room_quads
 
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.readers.meshes.mesh_source import find_solid, load_solid
+from world2minecraft.capture.readers.meshes.mesh_source import find_mesh_file, load_geometry
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import InputError
 
@@ -64,7 +64,7 @@ def test_a_mesh_of_any_format_is_the_same_room(exports, name):
 
 @pytest.mark.parametrize("name", CLOUDS)
 def test_a_cloud_of_any_format_is_the_same_room(exports, name):
-    loaded = load_solid(exports / name)
+    loaded = load_geometry(exports / name)
     own = loaded.solid.places + loaded.offset
     shift = (500_000, 4_000_000, 0) if name.startswith("room.la") else (0, 0, 0)
     np.testing.assert_allclose(own.min(axis=0) - shift, 0, atol=0.002)
@@ -103,7 +103,7 @@ def test_a_folder_with_one_solid_in_several_formats_gives_the_best(tmp_path):
     folder = tmp_path / "export"
     writers.write_obj(folder, room_quads())
     writers.write_glb(folder / "room.glb", room_quads())
-    assert find_solid(folder) == folder / "room.glb"
+    assert find_mesh_file(folder) == folder / "room.glb"
     writers.write_stl(folder / "chair.stl", room_quads())
     with pytest.raises(InputError, match=r"holds 2 meshes or clouds \(chair, room\); name one"):
         find_capture(folder)
@@ -225,7 +225,7 @@ def test_a_texture_beside_its_mesh_is_found_however_it_is_named(tmp_path, named)
     path = writers.write_obj(tmp_path / "export", room_quads())
     materials = tmp_path / "export" / "room.mtl"
     materials.write_text(materials.read_text().replace("map_Kd paint.png", f"map_Kd {named}"))
-    assert load_solid(path).solid.coloured
+    assert load_geometry(path).solid.coloured
 
 
 def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
@@ -236,10 +236,10 @@ def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
         (tmp_path / f"my room {number}.bin").write_bytes(files[name])
         tree = tree.replace(name.encode(), f"my%20room%20{number}.bin".encode())
     (tmp_path / "room.gltf").write_bytes(tree)
-    assert len(load_solid(tmp_path / "room.gltf").solid.faces)
+    assert len(load_geometry(tmp_path / "room.gltf").solid.faces)
     (tmp_path / "my room 0.bin").unlink()
     with pytest.raises(InputError, match=r"names 'my%20room%200.bin', which is not there: put it"):
-        load_solid(tmp_path / "room.gltf")
+        load_geometry(tmp_path / "room.gltf")
 
 
 def test_objects_shells_and_landscapes_are_refused_with_advice(tmp_path):

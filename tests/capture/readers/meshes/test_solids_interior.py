@@ -5,8 +5,12 @@ import pytest
 from scipy import ndimage
 from solid_rooms import SIZE_M, box_quads, room_quads
 
-from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, votes
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh
+from world2minecraft.capture.readers.meshes.interior import (
+    enclosure_votes,
+    find_interior,
+    voxelise_surface,
+)
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh, PointCloud
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 
 
@@ -17,7 +21,7 @@ def mesh_of(quads):
 
 def interior_of(solid, inside=None):
     low, high = solid.places.min(axis=0), solid.places.max(axis=0)
-    grid = grid_of(solid, low.astype(float) - 0.3, high.astype(float) + 0.3)
+    grid = voxelise_surface(solid, low.astype(float) - 0.3, high.astype(float) + 0.3)
     return grid, find_interior(grid, inside)
 
 
@@ -39,7 +43,7 @@ def walked(held, cell, way):
 
 def test_votes_are_those_of_walks_cell_by_cell():
     held = np.random.default_rng(2).random((7, 6, 5)) < 0.12
-    down, side, up, drop = votes(held)
+    down, side, up, drop = enclosure_votes(held)
     ways = [np.array(w) - 1 for w in np.ndindex(3, 3, 3) if w != (1, 1, 1)]
     for cell in np.ndindex(*held.shape):
         met = [(way[2], walked(held, cell, way)) for way in ways]
@@ -52,7 +56,7 @@ def test_votes_are_those_of_walks_cell_by_cell():
 
 def test_triangles_mark_the_cells_that_they_pass():
     mesh = Mesh(np.float32([[0, 0, 0], [3, 0.4, 1], [0.2, 2, 2]]), np.int32([[0, 1, 2]]))
-    grid = grid_of(mesh, np.zeros(3), np.full(3, 3.0))
+    grid = voxelise_surface(mesh, np.zeros(3), np.full(3, 3.0))
     s, t = np.meshgrid(np.linspace(0, 1, 400), np.linspace(0, 1, 400))
     inner = (s + t <= 1).ravel()
     s, t = s.ravel()[inner, None], t.ravel()[inner, None]
@@ -79,7 +83,7 @@ def test_a_room_is_entered_though_ceiling_or_wall_are_missing(without):
 
 def test_a_cloud_is_entered_as_its_mesh_is(quads):
     points, _, _ = quads.points(apart_m=0.05)
-    _, interior = interior_of(Cloud(points.astype(np.float32)))
+    _, interior = interior_of(PointCloud(points.astype(np.float32)))
     assert interior is not None and interior.spaces == 1
 
 

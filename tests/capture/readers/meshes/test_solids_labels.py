@@ -8,7 +8,7 @@ import solid_writers as writers
 from solid_rooms import room_quads
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
-from world2minecraft.capture.readers.meshes.mesh_source import load_solid
+from world2minecraft.capture.readers.meshes.mesh_source import load_geometry
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import CaptureError
 
@@ -30,7 +30,7 @@ def test_scannets_labels_lie_beside_its_colours(tmp_path, quads):
     plain.write_bytes(writers.quad_ply(quads))
     labelled.write_bytes(writers.quad_ply(painted, more=more))
     for path in (plain, labelled, tmp_path):
-        loaded = load_solid(path) if path.is_file() else None
+        loaded = load_geometry(path) if path.is_file() else None
         if loaded is not None:
             assert set(np.unique(loaded.solid.labels)) == {1, 2, 3, 8, 10}
             assert set(map(tuple, loaded.solid.colour.tolist())) == {
@@ -48,17 +48,17 @@ def test_a_map_beside_the_file_says_what_its_numbers_mean(tmp_path, quads):
     more = [("segment", "i4", numbers_of(quads, table))]
     path = tmp_path / "room.ply"
     path.write_bytes(writers.quad_ply(quads, "a", more))
-    assert load_solid(path).solid.labels is None
-    assert "map them in room.classes.json" in load_solid(path).notes[0]
+    assert load_geometry(path).solid.labels is None
+    assert "map them in room.classes.json" in load_geometry(path).notes[0]
     beside = tmp_path / "room.classes.json"
     beside.write_text(json.dumps({"900": "ceiling", "7": "floor", "31": "wall", "77": "desk"}))
-    assert set(np.unique(load_solid(path).solid.labels)) == {1, 2, 3, 8, 255}
+    assert set(np.unique(load_geometry(path).solid.labels)) == {1, 2, 3, 8, 255}
     beside.write_text(json.dumps({"900": "spaceship"}))
     with pytest.raises(CaptureError, match=r"names 'spaceship'; known are ceiling, floor"):
-        load_solid(path)
+        load_geometry(path)
     beside.write_text(json.dumps({"nine": "wall"}))
     with pytest.raises(CaptureError, match="maps 'nine', which is no number"):
-        load_solid(path)
+        load_geometry(path)
 
 
 def test_labels_of_faces_and_own_ids_are_read(tmp_path, quads):
@@ -66,7 +66,7 @@ def test_labels_of_faces_and_own_ids_are_read(tmp_path, quads):
     path.write_bytes(
         writers.quad_ply(quads, ">", face_columns=[("class", "u1", quads.labels.tolist())])
     )
-    loaded = load_solid(path)
+    loaded = load_geometry(path)
     assert set(np.unique(loaded.solid.labels)) == {1, 2, 3, 8, 10}
     assert loaded.notes == ("column class is read as our class ids",)
 
@@ -99,7 +99,7 @@ def test_rooms_of_s3dis_have_the_classes_of_their_files(tmp_path, quads):
     assert {1, 2, 3, 8, 10} <= seen_labels(capture) <= {1, 2, 3, 8, 10, 255}
     (tmp_path / "office_1" / "Annotations" / "wall_1.txt").write_text("1 2 3 4\n1 2\n")
     with pytest.raises(Exception, match=r"wall_1.txt: has lines of other lengths"):
-        load_solid(tmp_path / "office_1")
+        load_geometry(tmp_path / "office_1")
 
 
 def test_names_of_things_say_their_class():
@@ -134,4 +134,4 @@ def test_things_of_a_scene_are_classed_by_their_names(tmp_path):
     )
     scene.add_geometry(box, node_name="Table0", geom_name="Table0")
     (tmp_path / "room.glb").write_bytes(scene.export(file_type="glb"))
-    assert set(np.unique(load_solid(tmp_path / "room.glb").solid.labels)) == {8, 255}
+    assert set(np.unique(load_geometry(tmp_path / "room.glb").solid.labels)) == {8, 255}

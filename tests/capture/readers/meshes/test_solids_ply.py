@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import solid_writers as writers
 
-from world2minecraft.capture.readers.meshes.attributes import as_colour
-from world2minecraft.capture.readers.meshes.ply import fans, load_ply, read_ply
-from world2minecraft.capture.readers.meshes.voxel_downsampling import MOST_HELD, Thinner
+from world2minecraft.capture.readers.meshes.attributes import to_uint8_colours
+from world2minecraft.capture.readers.meshes.ply import load_ply, read_ply, triangulate_fans
+from world2minecraft.capture.readers.meshes.voxel_downsampling import MAX_POINTS, VoxelDownsampler
 from world2minecraft.core.errors import DamagedFileError
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 2]], float)
@@ -30,8 +30,8 @@ def test_polygons_of_any_length_are_cut_into_triangles(tmp_path, order):
 
 def test_fans_of_equal_and_of_mixed_polygons_agree():
     counts, values = np.array([3, 3]), np.array([4, 5, 6, 7, 8, 9])
-    assert fans(counts, values)[0].tolist() == [[4, 5, 6], [7, 8, 9]]
-    mixed = fans(np.array([3, 2, 3]), np.array([4, 5, 6, 0, 1, 7, 8, 9]))
+    assert triangulate_fans(counts, values)[0].tolist() == [[4, 5, 6], [7, 8, 9]]
+    mixed = triangulate_fans(np.array([3, 2, 3]), np.array([4, 5, 6, 0, 1, 7, 8, 9]))
     assert mixed[0].tolist() == [[4, 5, 6], [7, 8, 9]] and mixed[1].tolist() == [0, 2]
 
 
@@ -48,9 +48,9 @@ def test_colours_of_faces_and_shares_are_read(tmp_path):
     )
     mesh = load_ply(path).solid
     assert mesh.colour.tolist() == [[20, 20, 20]] * 3 + [[30, 30, 30]] * 3
-    assert as_colour(np.array([[0.0, 0.5, 1.0]])).tolist() == [[0, 128, 255]]
-    assert as_colour(np.array([[0, 32896, 65535]], np.uint16)).tolist() == [[0, 128, 255]]
-    assert as_colour(np.zeros((1, 3), np.uint16)) is None
+    assert to_uint8_colours(np.array([[0.0, 0.5, 1.0]])).tolist() == [[0, 128, 255]]
+    assert to_uint8_colours(np.array([[0, 32896, 65535]], np.uint16)).tolist() == [[0, 128, 255]]
+    assert to_uint8_colours(np.zeros((1, 3), np.uint16)) is None
 
 
 def test_gaussian_splats_are_the_cloud_of_their_firm_middles(tmp_path):
@@ -72,12 +72,12 @@ def test_places_far_from_the_origin_keep_their_millimetres(tmp_path):
 
 def test_many_points_are_thinned_to_the_means_of_cells():
     rng = np.random.default_rng(0)
-    thinner = Thinner()
+    thinner = VoxelDownsampler()
     for _ in range(5):
         points = np.column_stack([rng.uniform(0, 1, (1_000_000, 2)), np.full(1_000_000, 0.5)])
         thinner.add(points, np.full(points.shape, 7, np.uint8))
     cloud = thinner.cloud()
-    assert thinner.read == 5_000_000 > MOST_HELD
+    assert thinner.read == 5_000_000 > MAX_POINTS
     assert len(cloud.points) < 10_000 and (cloud.colour == 7).all()
     spread = np.histogram2d(*cloud.points[:, :2].T, bins=10)[0]
     assert spread.min() > 0.7 * spread.max()
@@ -88,7 +88,7 @@ def test_many_points_are_thinned_to_the_means_of_cells():
     [(1.0, 90.0, 0.015), (None, 90.0, 0.015), (None, 600.0, 1.5), (None, 9000.0, 15.0)],
 )
 def test_how_fine_a_cloud_stays(unit_m, longest, cell):
-    thinner = Thinner(unit_m)
+    thinner = VoxelDownsampler(unit_m)
     points = np.random.default_rng(0).uniform(0, 1, (600_000, 3)) * [1.02 * longest, 1, 1]
     thinner.add(points)
     thinner.cloud()

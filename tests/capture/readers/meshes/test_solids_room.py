@@ -10,7 +10,7 @@ from solid_rooms import Quads
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.meshes.mesh_source import load_solid, world_of
+from world2minecraft.capture.readers.meshes.mesh_source import estimate_world_frame, load_geometry
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.fusion import fuse_views
@@ -59,8 +59,8 @@ def worlds(tmp_path_factory):
     made = {"frames": (*built(folder / "frames"), room_to_scan)}
     for name in ("mesh", "cloud"):
         scan, evidence = built(folder / f"{name}.ply", every=2)
-        loaded = load_solid(folder / f"{name}.ply")
-        file_to_scan, _ = world_of(folder, loaded, ScanOptions())
+        loaded = load_geometry(folder / f"{name}.ply")
+        file_to_scan, _ = estimate_world_frame(folder, loaded, ScanOptions())
         near_origin = np.eye(4)
         near_origin[:3, 3] = -loaded.offset
         made[name] = (scan, evidence, file_to_scan @ near_origin)

@@ -7,26 +7,28 @@ from world2minecraft.capture.readers.meshes.cloud_splatting import (
     BLEND_M,
     RIM_WEIGHT,
     Surfels,
-    see_points,
+    render_surfels,
 )
-from world2minecraft.capture.readers.meshes.frustum_culling import surfels_in_blocks
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
-from world2minecraft.capture.readers.meshes.surfels import surfels_of
+from world2minecraft.capture.readers.meshes.frustum_culling import sort_surfels_into_blocks
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
+from world2minecraft.capture.readers.meshes.surfels import estimate_surfels
 from world2minecraft.core.coordinates import invert_rigid
 
 
 def cloud_of(quads, **how):
     points, colour, labels = quads.points(**how)
-    return Cloud(points.astype(np.float32), colour, labels)
+    return PointCloud(points.astype(np.float32), colour, labels)
 
 
 def test_a_noisy_cloud_is_seen_as_the_room_that_it_is_of(box_room, quads):
-    surfels, blocks = surfels_in_blocks(surfels_of(cloud_of(quads, apart_m=0.015, noise_m=0.005)))
+    surfels, blocks = sort_surfels_into_blocks(
+        estimate_surfels(cloud_of(quads, apart_m=0.015, noise_m=0.005))
+    )
     camera = CAMERA.resized(320, 240)
     for pose in box_room.poses(3):
         world_to_camera = invert_rigid(pose)
         runs = blocks.runs(camera, world_to_camera)
-        depth, colour, labels = see_points(surfels, camera, world_to_camera, runs)
+        depth, colour, labels = render_surfels(surfels, camera, world_to_camera, runs)
         expected = box_room.render(pose, camera)[0]
         seen = depth > 0
         off = np.abs(depth - expected)[seen]
@@ -35,7 +37,7 @@ def test_a_noisy_cloud_is_seen_as_the_room_that_it_is_of(box_room, quads):
         assert np.mean(off > 0.05) < 0.06  # Rims of things, two points wide.
         assert np.mean((depth - expected)[seen] > 0.05) < 0.001  # Nothing hidden shows.
         assert (labels[seen] != 255).all()
-        whole = see_points(surfels, camera, world_to_camera)
+        whole = render_surfels(surfels, camera, world_to_camera)
         assert all((a == b).all() for a, b in zip(whole, (depth, colour, labels), strict=True))
 
 
@@ -61,17 +63,17 @@ def test_mixing_is_as_defined():
     points = np.stack(
         [rng.uniform(-2, 2, 300), rng.uniform(-1.5, 1.5, 300), rng.uniform(2, 2.04, 300)], axis=1
     )
-    cloud = Cloud(points.astype(np.float32))
+    cloud = PointCloud(points.astype(np.float32))
     surfels = Surfels(cloud, np.zeros((300, 3), np.float32), np.full(300, 0.3, np.float32))
-    depth, expected = see_points(surfels, SMALL, np.eye(4))[0], mixed_slowly(surfels, SMALL)
+    depth, expected = render_surfels(surfels, SMALL, np.eye(4))[0], mixed_slowly(surfels, SMALL)
     seen = depth > 0  # The rims of the outermost discs are left out.
     assert seen.sum() > 0.95 * (expected > 0).sum()
     np.testing.assert_allclose(depth[seen], expected[seen], rtol=1e-4)
 
 
 def test_discs_are_as_large_as_points_lie_apart(quads):
-    fine = surfels_of(cloud_of(quads, apart_m=0.02)).radius_m
-    coarse = surfels_of(cloud_of(quads, apart_m=0.04)).radius_m
+    fine = estimate_surfels(cloud_of(quads, apart_m=0.02)).radius_m
+    coarse = estimate_surfels(cloud_of(quads, apart_m=0.04)).radius_m
     assert 0.02 < np.median(fine) < 0.04
     assert 0.04 < np.median(coarse) < 0.08
 
@@ -79,7 +81,9 @@ def test_discs_are_as_large_as_points_lie_apart(quads):
 def test_a_wall_that_a_cell_cuts_in_two_is_laid_flat():
     rng = np.random.default_rng(0)
     points = np.column_stack([rng.random((40_000, 2)), 0.004 * rng.standard_normal(40_000)])
-    surfels = surfels_of(Cloud(points.astype(np.float32)))  # z = 0 is the side of a cell.
+    surfels = estimate_surfels(
+        PointCloud(points.astype(np.float32))
+    )  # z = 0 is the side of a cell.
     assert np.abs(surfels.cloud.points[:, 2]).std() < 0.002
     assert np.median(np.abs(surfels.normals[:, 2])) > 0.95
 
@@ -89,7 +93,7 @@ def test_rims_end_near_the_last_points():
     board = ((2.0, 3.0, 0.5, 4.0, 3.02, 2.0), (90, 90, 90))
     cloud = cloud_of(room_quads(size_m, (board,)), apart_m=0.02)
     camera_to_world = np.array([[1.0, 0, 0, 3], [0, 0, 1, 1], [0, -1, 0, 1.2], [0, 0, 0, 1]])
-    depth = see_points(surfels_of(cloud), CAMERA, invert_rigid(camera_to_world))[0]
+    depth = render_surfels(estimate_surfels(cloud), CAMERA, invert_rigid(camera_to_world))[0]
     near = (depth > 0) & (depth < 2.3)
     place = rays_of(CAMERA)[near] * depth[near][:, None]
     board_only = near.copy()

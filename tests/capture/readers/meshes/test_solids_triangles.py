@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from solid_rooms import CAMERA, SMALL, rays_of, room_quads
 
-from world2minecraft.capture.readers.meshes.frustum_culling import mesh_in_blocks
+from world2minecraft.capture.readers.meshes.frustum_culling import sort_mesh_into_blocks
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh
-from world2minecraft.capture.readers.meshes.mesh_rasterizer import see_triangles
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import render_mesh
 from world2minecraft.core.coordinates import invert_rigid, look_at
 
 
@@ -43,7 +43,7 @@ def test_a_soup_of_triangles_is_seen_as_by_rays_met_one_by_one(seed):
         labels=np.arange(20, dtype=np.uint8),
     )
     world_to_camera = invert_rigid(look_at(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3)))
-    depth, _, labels = see_triangles(mesh, SMALL, world_to_camera)
+    depth, _, labels = render_mesh(mesh, SMALL, world_to_camera)
     expected, face = met_one_by_one(mesh, SMALL, world_to_camera)
     np.testing.assert_allclose(depth, expected, rtol=1e-5, atol=1e-6)
     assert (labels == np.where(face < 0, 255, face)).all()
@@ -51,27 +51,29 @@ def test_a_soup_of_triangles_is_seen_as_by_rays_met_one_by_one(seed):
 
 def test_a_room_is_seen_exactly_and_without_gaps(box_room):
     vertices, faces, colour, _ = room_quads().triangles()
-    mesh, blocks = mesh_in_blocks(Mesh(vertices.astype(np.float32), faces.astype(np.int32), colour))
+    mesh, blocks = sort_mesh_into_blocks(
+        Mesh(vertices.astype(np.float32), faces.astype(np.int32), colour)
+    )
     for pose in box_room.poses(6):
         world_to_camera = invert_rigid(pose)
-        depth, _, _ = see_triangles(mesh, CAMERA, world_to_camera)
+        depth, _, _ = render_mesh(mesh, CAMERA, world_to_camera)
         np.testing.assert_allclose(depth, box_room.render(pose)[0], atol=2e-5)
         runs = blocks.runs(CAMERA, world_to_camera)
-        assert (see_triangles(mesh, CAMERA, world_to_camera, runs)[0] == depth).all()
+        assert (render_mesh(mesh, CAMERA, world_to_camera, runs)[0] == depth).all()
 
 
 def test_both_sides_are_seen():
     mesh = Mesh(np.float32([[-9, -9, 2], [9, -9, 2], [0, 9, 2]]), np.int32([[0, 1, 2]]))
     turned = Mesh(mesh.vertices, mesh.faces[:, ::-1])
     for own in (mesh, turned):
-        assert see_triangles(own, SMALL, np.eye(4))[0][15, 20] == pytest.approx(2)
+        assert render_mesh(own, SMALL, np.eye(4))[0][15, 20] == pytest.approx(2)
 
 
 def test_colours_of_corners_are_mixed_as_perspective_asks():
     vertices = np.float32([[-4, -4, 2], [4, -4, 2], [4, 4, 6], [-4, 4, 6]])
     colour = np.uint8([[0, 0, 0], [200, 0, 0], [200, 100, 0], [0, 100, 0]])
     mesh = Mesh(vertices, np.int32([[0, 1, 2], [0, 2, 3]]), colour)
-    depth, seen, _ = see_triangles(mesh, SMALL, np.eye(4))
+    depth, seen, _ = render_mesh(mesh, SMALL, np.eye(4))
     place = rays_of(SMALL) * depth[..., None]
     held = depth > 0
     expected = np.stack([(place[..., 0] + 4) * 25, (place[..., 1] + 4) * 12.5], axis=-1)
@@ -90,11 +92,11 @@ def test_a_picture_lies_upright_and_repeats():
         pixels=picture.reshape(-1, 3),
         image_sizes=np.array([[2, 2]]),
     )
-    seen = see_triangles(mesh, SMALL, np.eye(4))[1][..., 0]
+    seen = render_mesh(mesh, SMALL, np.eye(4))[1][..., 0]
     assert seen[8, [2, 12, 22, 32]].tolist() == [10, 20, 10, 20]
     assert seen[22, [2, 12, 22, 32]].tolist() == [30, 40, 30, 40]
 
 
 def test_what_has_no_colour_is_grey():
     mesh = Mesh(np.float32([[-9, -9, 2], [9, -9, 2], [0, 9, 2]]), np.int32([[0, 1, 2]]))
-    assert see_triangles(mesh, SMALL, np.eye(4))[1][15, 20].tolist() == [178, 178, 178]
+    assert render_mesh(mesh, SMALL, np.eye(4))[1][15, 20].tolist() == [178, 178, 178]

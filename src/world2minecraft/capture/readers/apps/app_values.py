@@ -20,23 +20,23 @@ from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import pose_from_quaternion
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
-MOST_M = 1e9
+MAX_COORDINATE_M = 1e9
 MAX_TEXT_BYTES = 64 << 20  # An hour of odometry at 60 Hz takes about 30 MB.
 
 
-def number(path: AnyPath, stated: Mapping[str, Any], key: str) -> float:
+def parse_number(path: AnyPath, stated: Mapping[str, Any], key: str) -> float:
     """Return a stated finite number.
 
     Raises:
         CaptureError: it is missing, or is no such number.
     """
-    value = stated_float(stated.get(key))
+    value = to_float(stated.get(key))
     if not math.isfinite(value):
         raise CaptureError(path, f'"{key}" must be a number, not {str(stated.get(key))[:40]}')
     return value
 
 
-def stated_float(value: object) -> float:
+def to_float(value: object) -> float:
     """Return a number of JSON; NaN for what is none, infinity for a whole number too long."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return math.nan
@@ -46,7 +46,7 @@ def stated_float(value: object) -> float:
         return math.inf
 
 
-def numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
+def parse_numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
     """Return float64 [count] of a list, or of lists in it; NaN and infinity may stand in it.
 
     Raises:
@@ -58,7 +58,7 @@ def numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
     return found
 
 
-def camera(path: AnyPath, size: tuple[float, float], lens: Sequence[float]) -> Camera:
+def parse_camera(path: AnyPath, size: tuple[float, float], lens: Sequence[float]) -> Camera:
     """Return a camera of a size and fx, fy, cx, cy in pixels.
 
     Raises:
@@ -76,7 +76,7 @@ def arkit_pose(matrix: np.ndarray) -> np.ndarray:
     What no pose can hold becomes NaN: tracking was lost.
     """
     stated = np.asarray(matrix, np.float64)
-    return opengl_to_opencv_pose(np.where(np.abs(stated) < MOST_M, stated, np.nan))
+    return opengl_to_opencv_pose(np.where(np.abs(stated) < MAX_COORDINATE_M, stated, np.nan))
 
 
 def arkit_pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:

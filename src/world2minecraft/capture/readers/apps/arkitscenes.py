@@ -13,16 +13,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
-from world2minecraft.capture.readers.apps.app_values import camera, files_by_stem, read_text
+from world2minecraft.capture.readers.apps.app_values import files_by_stem, parse_camera, read_text
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import rotation_from_vector
 
 TRAJECTORY = "lowres_wide.traj"
-SAME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.
+SAME_TIME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.
 MAX_GAP_S = 0.25  # Poses come every 0.1 s; over a longer gap nothing is told between them.
-COLOURS = ("vga_wide", "lowres_wide")  # The first holds the same view at 640x480.
+COLOUR_FOLDERS = ("vga_wide", "lowres_wide")  # The first holds the same view at 640x480.
 ARKITSCENES_UP = np.array([0.0, 0.0, 1.0])
 _STEM = re.compile(r"(?:.*_)?(\d{1,9}\.\d{1,9})", re.ASCII)
 Timed = tuple[list[float], list[AnyPath]]
@@ -35,27 +35,27 @@ class ARKitScenesSource:
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether a trajectory lies there or in the folder of frames."""
-        return folder.is_dir() and _inner(folder) is not None
+        return folder.is_dir() and _trajectory_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
         """List the frames. Raises CaptureError as ``Source.read`` says."""
-        inner = _inner(folder) or folder
+        inner = _trajectory_folder(folder) or folder
         times, poses = _trajectory(inner / TRAJECTORY)
-        kind = next((name for name in COLOURS if (inner / name).is_dir()), None)
+        kind = next((name for name in COLOUR_FOLDERS if (inner / name).is_dir()), None)
         if kind is None:
             raise CaptureError(inner, "has no lowres_wide/ with pictures; fetch the whole video")
         colours, lenses = (
-            _timed(inner / kind, ".png"),
-            _timed(inner / f"{kind}_intrinsics", ".pincam"),
+            _timed_files(inner / kind, ".png"),
+            _timed_files(inner / f"{kind}_intrinsics", ".pincam"),
         )
         depths, trusts = (
-            _timed(inner / "lowres_depth", ".png"),
-            _timed(inner / "confidence", ".png"),
+            _timed_files(inner / "lowres_depth", ".png"),
+            _timed_files(inner / "confidence", ".png"),
         )
         chosen = depths if depths[0] else colours
         frames = tuple(
             _frame(time, times, poses, colours, lenses, depths, trusts)
-            for time in _near_poses(chosen[0], times)
+            for time in _times_near_poses(chosen[0], times)
         )
         if not frames:
             raise CaptureError(
@@ -74,7 +74,7 @@ class ARKitScenesSource:
         )
 
 
-def _inner(folder: AnyPath) -> AnyPath | None:
+def _trajectory_folder(folder: AnyPath) -> AnyPath | None:
     """Return the folder of the trajectory: this one, or the frames of 3DOD."""
     if (folder / TRAJECTORY).is_file():
         return folder
@@ -110,7 +110,7 @@ def _camera_to_world(turn: np.ndarray, place: np.ndarray) -> np.ndarray:
     return pose
 
 
-def _turn(rotation: np.ndarray) -> np.ndarray:
+def _rotation_vector(rotation: np.ndarray) -> np.ndarray:
     """Undo ``rotation_from_vector`` for turns well under half a circle."""
     twice = np.array(
         [
@@ -124,7 +124,7 @@ def _turn(rotation: np.ndarray) -> np.ndarray:
     return twice / 2 * (angle / sine if sine > 1e-12 else 1.0)
 
 
-def _timed(folder: AnyPath, suffix: str) -> Timed:
+def _timed_files(folder: AnyPath, suffix: str) -> Timed:
     """Return the files of a folder by their times, rising."""
     found = []
     for stem, path in files_by_stem(folder, (suffix,)).items():
@@ -135,12 +135,12 @@ def _timed(folder: AnyPath, suffix: str) -> Timed:
     return [time for time, _ in found], [path for _, path in found]
 
 
-def _near_poses(image_times: Sequence[float], pose_times: Sequence[float]) -> list[float]:
+def _times_near_poses(image_times: Sequence[float], pose_times: Sequence[float]) -> list[float]:
     """Return for each pose the image time nearest to it, each once, rising."""
     near = {
         image_times[index] for time in pose_times if (index := _nearest(image_times, time)) >= 0
     }
-    return sorted(time for time in near if _apart(pose_times, time) <= MAX_GAP_S)
+    return sorted(time for time in near if _time_gap(pose_times, time) <= MAX_GAP_S)
 
 
 def _nearest(times: Sequence[float], time: float) -> int:
@@ -150,12 +150,12 @@ def _nearest(times: Sequence[float], time: float) -> int:
     return min(around, key=lambda index: abs(times[index] - time), default=-1)
 
 
-def _apart(times: Sequence[float], time: float) -> float:
+def _time_gap(times: Sequence[float], time: float) -> float:
     index = _nearest(times, time)
     return abs(times[index] - time) if index >= 0 else float("inf")
 
 
-def _at(timed: Timed, time: float, within_s: float = SAME_S) -> AnyPath | None:
+def _file_at(timed: Timed, time: float, within_s: float = SAME_TIME_S) -> AnyPath | None:
     index = _nearest(timed[0], time)
     return timed[1][index] if index >= 0 and abs(timed[0][index] - time) <= within_s else None
 
@@ -170,8 +170,8 @@ def _frame(
     trusts: Timed,
 ) -> FrameFiles:
     name = f"{time:.3f}"
-    picture, depth = _at(colours, time, 2 * SAME_S), _at(depths, time)
-    lens_path = _at(lenses, time, 2 * SAME_S)
+    picture, depth = _file_at(colours, time, 2 * SAME_TIME_S), _file_at(depths, time)
+    lens_path = _file_at(lenses, time, 2 * SAME_TIME_S)
     if picture is None or lens_path is None:
         lacks = "picture" if picture is None else "intrinsics (.pincam)"
         return FrameFiles(name, None, problem=f"has no {lacks} of its time")
@@ -188,7 +188,7 @@ def _frame(
         depth,
         lens if depth else None,
         problem="" if pose is not None else "has no pose near its time",
-        trust_path=_at(trusts, time) if depth else None,
+        trust_path=_file_at(trusts, time) if depth else None,
         time_s=time,
     )
 
@@ -201,7 +201,7 @@ def _lens(path: AnyPath) -> Camera:
         values = []
     if len(values) != 6:
         raise CaptureError(path, f"must hold width, height, fx, fy, cx, cy, not {len(words)} words")
-    return camera(path, (values[0], values[1]), values[2:])
+    return parse_camera(path, (values[0], values[1]), values[2:])
 
 
 def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -> np.ndarray | None:
@@ -209,14 +209,14 @@ def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -
     after = bisect_left(times, time)
     nearest = _nearest(times, time)
     if abs(times[nearest] - time) < 1e-3 or after in (0, len(times)):
-        return poses[nearest] if abs(times[nearest] - time) <= 2 * SAME_S else None
+        return poses[nearest] if abs(times[nearest] - time) <= 2 * SAME_TIME_S else None
     first, second = poses[after - 1], poses[after]
     span = times[after] - times[after - 1]
     if span > MAX_GAP_S:
         return None
     share = (time - times[after - 1]) / span
     pose = np.eye(4)
-    turn = _turn(first[:3, :3].T @ second[:3, :3])
+    turn = _rotation_vector(first[:3, :3].T @ second[:3, :3])
     pose[:3, :3] = first[:3, :3] @ rotation_from_vector(share * turn)
     pose[:3, 3] = (1 - share) * first[:3, 3] + share * second[:3, 3]
     return pose

@@ -55,13 +55,13 @@ class ExrImage(NamedByFile):
     def header(self) -> ImageHeader:
         """Return the size."""
         with self.path.open("rb") as stream:
-            layout = _layout(self.path, stream.read(MAX_HEADER_BYTES))
+            layout = _read_layout(self.path, stream.read(MAX_HEADER_BYTES))
         return ImageHeader(layout.width_px, layout.height_px, "float32")
 
     def check_whole(self) -> None:
         """Check that every chunk of scan lines lies in the file."""
         data = read_bytes(self.path, MAX_FILE_BYTES)
-        list(_chunks(self.path, data, _layout(self.path, data)))
+        list(_read_chunks(self.path, data, _read_layout(self.path, data)))
 
     def colour(self) -> np.ndarray:
         """Raise: depth is no colour."""
@@ -70,18 +70,18 @@ class ExrImage(NamedByFile):
     def raw(self) -> np.ndarray:
         """Return float32 [H, W], the first channel."""
         data = read_bytes(self.path, MAX_FILE_BYTES)
-        layout = _layout(self.path, data)
+        layout = _read_layout(self.path, data)
         depth = np.zeros((layout.height_px, layout.width_px), np.float32)
-        for row, chunk in _chunks(self.path, data, layout):
+        for row, chunk in _read_chunks(self.path, data, layout):
             lines = min(layout.lines, layout.height_px - row)
-            pixels = _unpacked(self.path, chunk, lines * layout.row_bytes, layout.packed)
+            pixels = _unpack(self.path, chunk, lines * layout.row_bytes, layout.packed)
             first = layout.width_px * layout.channels[0].itemsize
             values = pixels.reshape(lines, -1)[:, :first].copy().view(layout.channels[0])
             depth[row : row + lines] = values
         return depth
 
 
-def _layout(path: AnyPath, data: bytes) -> _Layout:
+def _read_layout(path: AnyPath, data: bytes) -> _Layout:
     """Read the header; sizes are checked before anything is made of them."""
     if data[:4] != MAGIC:
         raise DamagedFileError(path, "is no OpenEXR file; copy it again")
@@ -91,10 +91,10 @@ def _layout(path: AnyPath, data: bytes) -> _Layout:
             raise DamagedFileError(
                 path, "is a tiled, deep or many-part OpenEXR: save it as scan lines"
             )
-        held, place = _attributes(data)
+        held, place = _read_attributes(data)
         x0, y0, x1, y1 = struct.unpack("<4i", held[b"dataWindow"])
         compression = held[b"compression"][0]
-        channels = _channels(held[b"channels"])
+        channels = _read_channels(held[b"channels"])
     except (struct.error, KeyError, IndexError, ValueError) as error:
         raise DamagedFileError(path, "has no whole OpenEXR header; copy it again") from error
     if compression not in _LINES or not channels:
@@ -109,7 +109,7 @@ def _layout(path: AnyPath, data: bytes) -> _Layout:
     return _Layout(width, height, y0, _LINES[compression], compression > 0, channels, place)
 
 
-def _attributes(data: bytes) -> tuple[dict[bytes, bytes], int]:
+def _read_attributes(data: bytes) -> tuple[dict[bytes, bytes], int]:
     """Return the values of the header by name, and where the header ends."""
     held: dict[bytes, bytes] = {}
     place = 8
@@ -125,7 +125,7 @@ def _attributes(data: bytes) -> tuple[dict[bytes, bytes], int]:
     return held, place + 1
 
 
-def _channels(listed: bytes) -> tuple[np.dtype, ...]:
+def _read_channels(listed: bytes) -> tuple[np.dtype, ...]:
     """Return the types of the channels, in the order in which they are stored."""
     kinds = []
     place = 0
@@ -139,7 +139,7 @@ def _channels(listed: bytes) -> tuple[np.dtype, ...]:
     return tuple(kinds)
 
 
-def _chunks(path: AnyPath, data: bytes, layout: _Layout) -> list[tuple[int, bytes]]:
+def _read_chunks(path: AnyPath, data: bytes, layout: _Layout) -> list[tuple[int, bytes]]:
     """Return the first row and the bytes of every chunk of scan lines.
 
     Raises:
@@ -160,7 +160,7 @@ def _chunks(path: AnyPath, data: bytes, layout: _Layout) -> list[tuple[int, byte
     return found
 
 
-def _unpacked(path: AnyPath, chunk: bytes, size: int, packed: bool) -> np.ndarray:
+def _unpack(path: AnyPath, chunk: bytes, size: int, packed: bool) -> np.ndarray:
     """Return uint8 [size] of a chunk; one that would not shrink is stored as it is."""
     if not packed or len(chunk) == size:
         if len(chunk) != size:

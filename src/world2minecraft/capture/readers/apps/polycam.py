@@ -14,10 +14,10 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
     arkit_pose,
-    camera,
     files_by_stem,
-    number,
-    stated_float,
+    parse_camera,
+    parse_number,
+    to_float,
 )
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
@@ -68,8 +68,10 @@ def _frame(
         stated = read_json(path, MAX_CAMERA_BYTES)
         if not isinstance(stated, dict):
             raise CaptureError(path, "must be an object with t_00 to t_23, fx, fy, cx, cy")
-        size = (number(path, stated, "width"), number(path, stated, "height"))
-        lens = camera(path, size, [number(path, stated, key) for key in ("fx", "fy", "cx", "cy")])
+        size = (parse_number(path, stated, "width"), parse_number(path, stated, "height"))
+        lens = parse_camera(
+            path, size, [parse_number(path, stated, key) for key in ("fx", "fy", "cx", "cy")]
+        )
         pose = _pose(path, stated)
     except InputError as error:
         return FrameFiles(stem, None, problem=f"{path.name} {error.reason}")
@@ -93,5 +95,5 @@ def _pose(path: AnyPath, stated: dict[str, Any]) -> np.ndarray:
             key = f"t_{row}{column}"
             if key not in stated:
                 raise CaptureError(path, f'lacks "{key}" of the pose; export it again')
-            matrix[row, column] = stated_float(stated[key])
+            matrix[row, column] = to_float(stated[key])
     return arkit_pose(matrix)

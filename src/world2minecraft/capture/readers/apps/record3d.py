@@ -19,10 +19,10 @@ from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, ImagePlace, 
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
     arkit_pose_of_quaternion,
-    camera,
     files_by_stem,
-    number,
-    numbers,
+    parse_camera,
+    parse_number,
+    parse_numbers,
 )
 from world2minecraft.capture.readers.apps.exr import ExrImage
 from world2minecraft.core.archives import AnyPath
@@ -82,7 +82,7 @@ class LzfseImage(NamedByFile):
         """Return [H, W] float32 metres, or uint8 confidence."""
         data = self._checked()
         if data[:3] == b"bvx":
-            data = unpacked(self.path, data)
+            data = decompress_lzfse(self.path, data)
         if len(data) != self.expected_bytes:
             reason = f"unpacks to {len(data):,} bytes, not {self.expected_bytes:,}; copy it again"
             raise DamagedFileError(self.path, reason)
@@ -91,7 +91,7 @@ class LzfseImage(NamedByFile):
 
     def _checked(self) -> bytes:
         data = read_bytes(self.path, MAX_FILE_BYTES)
-        size = unpacked_bytes(self.path, data)
+        size = lzfse_unpacked_size(self.path, data)
         if size != self.expected_bytes:
             kind = LimitError if size > MAX_FILE_BYTES else DamagedFileError
             raise kind(
@@ -102,7 +102,7 @@ class LzfseImage(NamedByFile):
         return data
 
 
-def unpacked_bytes(path: AnyPath, data: bytes) -> int:
+def lzfse_unpacked_size(path: AnyPath, data: bytes) -> int:
     """Return how many bytes a file says it unpacks to; one that is not packed, its length.
 
     Raises:
@@ -143,7 +143,7 @@ def _block(data: bytes, place: int) -> tuple[int, int]:
     return 0, 0
 
 
-def unpacked(path: AnyPath, data: bytes) -> bytes:
+def decompress_lzfse(path: AnyPath, data: bytes) -> bytes:
     """Unpack LZFSE whose size was checked.
 
     Raises:
@@ -160,8 +160,8 @@ def unpacked(path: AnyPath, data: bytes) -> bytes:
 
 
 _PICTURES = (".jpg", ".jpeg", ".png")
-_STILL = 1e-6  # Poses that differ by less were never tracked.
-LEAST_LEAN = 0.5  # Cameras that look steeply up or down say little of their roll.
+_MIN_POSE_CHANGE = 1e-6  # Poses that differ by less were never tracked.
+MIN_UP_IN_IMAGE = 0.5  # Cameras that look steeply up or down say little of their roll.
 MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
 
 
@@ -192,7 +192,7 @@ class Record3DSource:
         lenses, poses = _lenses(path, stated), _poses(path, stated)
         size = _depth_size(folder, path, stated) if packed else None
         notes: tuple[str, ...] = ()
-        if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _STILL:
+        if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _MIN_POSE_CHANGE:
             poses, notes = None, ("the front camera was used, which Record3D does not track",)
         frames = tuple(
             _frame(folder, index, pictures[stem], lenses, poses, size)
@@ -218,19 +218,19 @@ def _lenses(path: AnyPath, stated: dict[str, Any]) -> list[Camera | None]:
 
     A frame of which nothing sensible is stated has none.
     """
-    size = (number(path, stated, "w"), number(path, stated, "h"))
+    size = (parse_number(path, stated, "w"), parse_number(path, stated, "h"))
     each = stated.get("perFrameIntrinsicCoeffs")
     if isinstance(each, list) and each:
-        lenses = [numbers(path, "perFrameIntrinsicCoeffs", one, 4) for one in each]
+        lenses = [parse_numbers(path, "perFrameIntrinsicCoeffs", one, 4) for one in each]
         told = [bool(np.isfinite(lens).all() and lens.min() > 0) for lens in lenses]
         return [
-            camera(path, size, lens.tolist()) if is_told else None
+            parse_camera(path, size, lens.tolist()) if is_told else None
             for lens, is_told in zip(lenses, told, strict=True)
         ]
-    matrix = numbers(path, "K", stated.get("K"), 9).reshape(3, 3)
+    matrix = parse_numbers(path, "K", stated.get("K"), 9).reshape(3, 3)
     if matrix[0, 2] == 0 and matrix[1, 2] == 0:  # Column by column, as the app writes it.
         matrix = matrix.T
-    return [camera(path, size, [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]])]
+    return [parse_camera(path, size, [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]])]
 
 
 def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
@@ -240,7 +240,7 @@ def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
         return None
     if not isinstance(values, list) or not values:
         raise CaptureError(path, '"poses" must be a list of qx, qy, qz, qw, x, y, z')
-    return np.stack([numbers(path, "poses", value, 7) for value in values])
+    return np.stack([parse_numbers(path, "poses", value, 7) for value in values])
 
 
 def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
@@ -254,7 +254,7 @@ def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
     finite = poses[np.isfinite(poses).all(axis=1)]
     cameras = np.stack([pose_from_quaternion(pose[4:], pose[:4]) for pose in finite])
     up = np.swapaxes(cameras[:, :3, :3], 1, 2) @ ARKIT_UP
-    level = up[np.hypot(up[:, 0], up[:, 1]) > LEAST_LEAN]
+    level = up[np.hypot(up[:, 0], up[:, 1]) > MIN_UP_IN_IMAGE]
     roll_deg = np.degrees(np.arctan2(level[:, 0], level[:, 1]))
     off_deg = np.abs((roll_deg + 45) % 90 - 45)
     return ARKIT_UP if len(level) and np.quantile(off_deg, 0.8) < MAX_ROLL_DEG else None
@@ -267,14 +267,14 @@ def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple
     shape of the pictures.
     """
     if "dw" in stated and "dh" in stated:
-        sides = (number(path, stated, "dw"), number(path, stated, "dh"))
+        sides = (parse_number(path, stated, "dw"), parse_number(path, stated, "dh"))
         if not all(side == int(side) and 0 < side <= 8192 for side in sides):
             raise CaptureError(path, f'"dw" and "dh" must be 1 to 8192, not {sides}')
         return int(sides[0]), int(sides[1])
-    shape = number(path, stated, "w") / max(number(path, stated, "h"), 1e-9)
+    shape = parse_number(path, stated, "w") / max(parse_number(path, stated, "h"), 1e-9)
     for depth in files_by_stem(folder / "rgbd", (".depth",)).values():
         try:
-            pixels = unpacked_bytes(depth, read_bytes(depth, MAX_FILE_BYTES)) / 4
+            pixels = lzfse_unpacked_size(depth, read_bytes(depth, MAX_FILE_BYTES)) / 4
         except InputError:
             continue
         high = round(math.sqrt(pixels / max(shape, 1e-9)))

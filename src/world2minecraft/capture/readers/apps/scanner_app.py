@@ -11,7 +11,12 @@ from pathlib import Path
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.readers.apps.app_values import ARKIT_UP, arkit_pose, camera, numbers
+from world2minecraft.capture.readers.apps.app_values import (
+    ARKIT_UP,
+    arkit_pose,
+    parse_camera,
+    parse_numbers,
+)
 from world2minecraft.capture.readers.apps.exr import ExrImage
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
@@ -71,10 +76,10 @@ def _frame(index: int, files: dict[str, AnyPath]) -> FrameFiles:
         stated = read_json(path, MAX_FRAME_BYTES)
         if not isinstance(stated, dict):
             raise CaptureError(path, "must be an object with cameraPoseARFrame and intrinsics")
-        pose = numbers(path, "cameraPoseARFrame", stated.get("cameraPoseARFrame"), 16)
-        matrix = numbers(path, "intrinsics", stated.get("intrinsics"), 9).reshape(3, 3)
+        pose = parse_numbers(path, "cameraPoseARFrame", stated.get("cameraPoseARFrame"), 16)
+        matrix = parse_numbers(path, "intrinsics", stated.get("intrinsics"), 9).reshape(3, 3)
         lens = [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]]
-        stated_camera = camera(path, read_header(picture).size, lens)
+        stated_camera = parse_camera(path, read_header(picture).size, lens)
     except InputError as error:
         return FrameFiles(name, None, problem=f"{Path(error.path).name} {error.reason}")
     depth = files.get("depth.png")

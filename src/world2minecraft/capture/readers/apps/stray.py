@@ -15,11 +15,11 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
-    camera,
     files_by_stem,
+    parse_camera,
     read_text,
 )
-from world2minecraft.capture.readers.apps.video_frames import MoviePicture, open_movie
+from world2minecraft.capture.readers.apps.video_frames import VideoFrame, open_video
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
@@ -125,7 +125,7 @@ def _pictures(folder: AnyPath, rows: Rows) -> dict[int, ImagePlace]:
         return dict(files)
     if not (folder / VIDEO).is_file():
         return {}
-    return {index: MoviePicture(folder / VIDEO, index) for index in rows}
+    return {index: VideoFrame(folder / VIDEO, index) for index in rows}
 
 
 def _size(folder: AnyPath, pictures: dict[int, ImagePlace]) -> tuple[int, int]:
@@ -136,9 +136,7 @@ def _size(folder: AnyPath, pictures: dict[int, ImagePlace]) -> tuple[int, int]:
     if not pictures:
         return 1920, 1440
     first = pictures[min(pictures)]
-    return (
-        open_movie(first.path).size if isinstance(first, MoviePicture) else read_header(first).size
-    )
+    return open_video(first.path).size if isinstance(first, VideoFrame) else read_header(first).size
 
 
 def _matrix(path: AnyPath) -> list[float]:
@@ -158,7 +156,7 @@ def _lens(
 ) -> Camera:
     stated = [row.get(name, 0.0) for name in _LENS]
     if min(stated) > 0:
-        return camera(folder / ODOMETRY, size, stated)
+        return parse_camera(folder / ODOMETRY, size, stated)
     if matrix is None:
         raise CaptureError(folder, f"has no {MATRIX} (3x3: fx, 0, cx, 0, fy, cy, 0, 0, 1)")
-    return camera(folder / MATRIX, size, matrix)
+    return parse_camera(folder / MATRIX, size, matrix)

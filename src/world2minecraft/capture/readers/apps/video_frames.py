@@ -22,10 +22,10 @@ from world2minecraft.core.errors import (
     reason_of,
 )
 
-MAX_PICTURES = 1_000_000  # Four hours and a half at 60 Hz.
+MAX_FRAMES = 1_000_000  # Four hours and a half at 60 Hz.
 
 
-class Movie:
+class VideoDecoder:
     """An opened video: its pictures' times and size, and where decoding stands."""
 
     def __init__(self, path: AnyPath):
@@ -52,7 +52,7 @@ class Movie:
             reason = f"is no whole video ({reason_of(error, 80)}); copy it again"
             raise DamagedFileError(path, reason) from error
         held = len(self.times)
-        if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_PICTURES:
+        if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_FRAMES:
             raise LimitError(
                 path, f"has {held:,} pictures of {self.size}; too many to read: cut it"
             )
@@ -112,25 +112,25 @@ class Movie:
 
 
 @lru_cache(maxsize=2)
-def _opened(path: AnyPath, stamp: tuple[int, int]) -> Movie:
-    return Movie(path)
+def _open_cached(path: AnyPath, stamp: tuple[int, int]) -> VideoDecoder:
+    return VideoDecoder(path)
 
 
-def open_movie(path: AnyPath) -> Movie:
+def open_video(path: AnyPath) -> VideoDecoder:
     """Open a video once for all its pictures, and again where its file has changed.
 
     Raises:
-        InputError: it is missing; else what ``Movie`` raises.
+        InputError: it is missing; else what ``VideoDecoder`` raises.
     """
     try:
         found = (path.path if isinstance(path, ArchivePath) else path).stat()
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _opened(path, (found.st_size, found.st_mtime_ns))
+    return _open_cached(path, (found.st_size, found.st_mtime_ns))
 
 
 @dataclass(frozen=True)
-class MoviePicture:
+class VideoFrame:
     """An ``ImageSource``: one picture of a video."""
 
     path: AnyPath
@@ -152,18 +152,18 @@ class MoviePicture:
 
     def header(self) -> ImageHeader:
         """Return the video's size."""
-        return ImageHeader(*open_movie(self.path).size, "RGB")
+        return ImageHeader(*open_video(self.path).size, "RGB")
 
     def check_whole(self) -> None:
         """Check that the video has so many pictures."""
-        held = len(open_movie(self.path).times)
+        held = len(open_video(self.path).times)
         if self.index >= held:
             raise DamagedFileError(self, f"is not there: the video holds {held}; copy it again")
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3] sRGB."""
         self.check_whole()
-        return open_movie(self.path).picture(self.index)
+        return open_video(self.path).picture(self.index)
 
     def raw(self) -> np.ndarray:
         """Raise: a video holds colours."""

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.text_tables import (
-    checked_inside,
+    check_relative_path,
     read_rows,
     to_floats,
 )
@@ -46,7 +46,7 @@ MODELS = (
     ("RADIAL_FISHEYE", 5),
     ("THIN_PRISM_FISHEYE", 12),
 )
-ADVICE = "run colmap image_undistorter and give its folder"
+UNDISTORT_ADVICE = "run colmap image_undistorter and give its folder"
 _CAMERA = struct.Struct("<IiQQ")
 _IMAGE = struct.Struct("<I7dI")
 
@@ -100,9 +100,13 @@ def _camera(path: AnyPath, model: str, size: tuple[int, int], values: np.ndarray
     elif model in ("PINHOLE", "OPENCV", "FULL_OPENCV"):
         lens, bent = values[:4], values[4:]
     else:
-        raise CaptureError(path, f"has a camera of the model {model}, which is not read; {ADVICE}")
+        raise CaptureError(
+            path, f"has a camera of the model {model}, which is not read; {UNDISTORT_ADVICE}"
+        )
     if len(bent) > 5 and np.any(bent[5:]):
-        raise CaptureError(path, f"has a lens with terms over k3, which are not read; {ADVICE}")
+        raise CaptureError(
+            path, f"has a lens with terms over k3, which are not read; {UNDISTORT_ADVICE}"
+        )
     return stated_camera(path, size, lens, bent[:5], centre=0.0)
 
 
@@ -145,7 +149,9 @@ def _binary_cameras(path: AnyPath) -> dict[int, Camera]:
     for _ in range(count):
         number, model, width, height = reader.take(_CAMERA)
         if not 0 <= model < len(MODELS):
-            raise CaptureError(path, f"has a camera of model {model}, which is not read; {ADVICE}")
+            raise CaptureError(
+                path, f"has a camera of model {model}, which is not read; {UNDISTORT_ADVICE}"
+            )
         name, parameters = MODELS[model]
         values = np.array(reader.take(struct.Struct(f"<{parameters}d")))
         cameras[number] = _camera(path, name, (width, height), values)
@@ -210,24 +216,24 @@ class ColmapSource:
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether there is a model; where there are transforms.json too, those are read."""
-        return bool(_models(folder)) and not (folder / "transforms.json").is_file()
+        return bool(_find_models(folder)) and not (folder / "transforms.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
         """List the photos. Raises CaptureError as ``Source.read`` says."""
-        chosen, *others = _models(folder)
+        chosen, *others = _find_models(folder)
         images = read_model(chosen)
         if not images:
             raise CaptureError(chosen, "holds no photo; run colmap mapper again")
-        files = [checked_inside(chosen, image.name) for image in images]
+        files = [check_relative_path(chosen, image.name) for image in images]
         place = _image_folder(folder, chosen, files)
-        size = _usual_size(images)
+        size = _most_common_size(images)
         frames = tuple(
             FrameFiles(
                 name,
                 image.camera_to_world,
                 place / str(file),
                 image.camera,
-                problem=_other_size(image, size),
+                problem=_size_problem(image, size),
             )
             for name, file, image in zip(_names(files), files, images, strict=True)
         )
@@ -237,7 +243,7 @@ class ColmapSource:
         return Capture(folder, "colmap", frames, notes=notes, scale="unknown")
 
 
-def _models(folder: AnyPath) -> list[AnyPath]:
+def _find_models(folder: AnyPath) -> list[AnyPath]:
     """Return the folders with a model, the one of most photos first."""
     sparse = [folder / "sparse", folder / "colmap" / "sparse"]
     places = [folder, *sparse]
@@ -245,7 +251,7 @@ def _models(folder: AnyPath) -> list[AnyPath]:
         if place.is_dir():
             places += sorted((path for path in place.iterdir() if path.is_dir()), key=str)
     found = [place for place in places if _has_model(place)]
-    return sorted(found, key=lambda place: -_weight(place))
+    return sorted(found, key=lambda place: -_model_size(place))
 
 
 def _has_model(place: AnyPath) -> bool:
@@ -255,7 +261,7 @@ def _has_model(place: AnyPath) -> bool:
     )
 
 
-def _weight(place: AnyPath) -> int:
+def _model_size(place: AnyPath) -> int:
     binary = place / "images.bin"
     return int((binary if binary.is_file() else place / "images.txt").stat().st_size)
 
@@ -290,13 +296,13 @@ def _names(files: list[PurePosixPath]) -> list[str]:
     return names
 
 
-def _usual_size(images: tuple[ModelImage, ...]) -> tuple[int, int]:
+def _most_common_size(images: tuple[ModelImage, ...]) -> tuple[int, int]:
     """Return the size in pixels that most photos have, the first of equals."""
     counts = Counter((image.camera.width_px, image.camera.height_px) for image in images)
     return counts.most_common(1)[0][0]
 
 
-def _other_size(image: ModelImage, size: tuple[int, int]) -> str:
+def _size_problem(image: ModelImage, size: tuple[int, int]) -> str:
     """Return why a photo is left out: all that go into one reconstruction have one size."""
     width, height = image.camera.width_px, image.camera.height_px
     return "" if (width, height) == size else f"is {width}x{height}; most are {size[0]}x{size[1]}"

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 
 HEADER_BYTES = 64 << 10  # A JPEG's size stands before its pixels, after at most a thumbnail.
-MAX_ZIPPED_BYTES = 512 << 20  # As much as is held in memory of a file that lies in a zip.
+MAX_MEMBER_BYTES = 512 << 20  # As much as is held in memory of a file that lies in a zip.
 
 
 @dataclass(frozen=True)
@@ -48,42 +48,42 @@ class FileSlice(NamedByFrame):
 
     def part(self, start: int, end: int) -> bytes:
         """Return bytes of the slice; fewer where the file has become shorter."""
-        with opened_file(self.path) as stream:
+        with open_seekable(self.path) as stream:
             stream.seek(self.offset + start)
             return stream.read(end - start)
 
 
-def opened_file(path: AnyPath) -> IO[bytes]:
-    """Open a file that is sought in; a zip's member of at most ``MAX_ZIPPED_BYTES``.
+def open_seekable(path: AnyPath) -> IO[bytes]:
+    """Open a file that is sought in; a zip's member of at most ``MAX_MEMBER_BYTES``.
 
     Raises:
         InputError: it is missing. LimitError: a member is too large: unpack the zip first.
     """
     if isinstance(path, ArchivePath):
-        check_zipped(path)
+        check_archive_member_size(path)
         stamp = path.path.stat()
-        return io.BytesIO(_held(path, (stamp.st_size, stamp.st_mtime_ns)))
+        return io.BytesIO(_read_member(path, (stamp.st_size, stamp.st_mtime_ns)))
     try:
         return path.open("rb")
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
 
 
-def check_zipped(path: AnyPath) -> None:
+def check_archive_member_size(path: AnyPath) -> None:
     """Refuse a large file within a zip, which cannot be sought in but only held in memory.
 
     Raises:
-        LimitError: it is over ``MAX_ZIPPED_BYTES``.
+        LimitError: it is over ``MAX_MEMBER_BYTES``.
     """
     if isinstance(path, ArchivePath) and path.is_file():
         size = int(path.stat().st_size)
-        if size > MAX_ZIPPED_BYTES:
+        if size > MAX_MEMBER_BYTES:
             raise LimitError(path, f"has {size:,} bytes within a zip; unpack the zip first")
 
 
 @lru_cache(maxsize=1)
-def _held(path: ArchivePath, stamp: tuple[int, int]) -> bytes:
-    return read_bytes(path, MAX_ZIPPED_BYTES)
+def _read_member(path: ArchivePath, stamp: tuple[int, int]) -> bytes:
+    return read_bytes(path, MAX_MEMBER_BYTES)
 
 
 @dataclass(frozen=True)

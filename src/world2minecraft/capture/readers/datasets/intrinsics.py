@@ -52,7 +52,7 @@ def matrix_camera(where: AnyPath, size: tuple[int, int], matrix: np.ndarray) -> 
     return stated_camera(where, size, lens)
 
 
-def first_size(images: Sequence[ImagePlace | None]) -> tuple[int, int] | None:
+def first_image_size(images: Sequence[ImagePlace | None]) -> tuple[int, int] | None:
     """Return the size of the first image that can be read; the others are judged later."""
     for image in images:
         if image is not None:
@@ -63,7 +63,7 @@ def first_size(images: Sequence[ImagePlace | None]) -> tuple[int, int] | None:
     return None
 
 
-def size_meant(
+def intrinsics_size(
     lens: Sequence[float], sizes: Sequence[tuple[int, int] | None]
 ) -> tuple[int, int] | None:
     """Return the size whose middle the principal point (cx, cy) meets best, the first of equals.

@@ -49,18 +49,18 @@ class NerfstudioSource:
             raise CaptureError(path, f'"applied_scale" must be above 0, not {scale}')
         frames = [_frame(path, stated, entry, scale) for entry in entries]
         notes = [] if scale == 1 else [f"the poses are divided by applied_scale, {scale:g}"]
-        lost = sum(_depth_named(entry) is not None for entry in entries)
+        lost = sum(_depth_name(entry) is not None for entry in entries)
         lost -= sum(frame.depth_path is not None for frame in frames)
         if lost:
             notes.append(f"{lost} depth images that the file names are not there")
         return Capture(
             folder,
             "nerfstudio",
-            tuple(sorted(_named_apart(frames), key=lambda frame: frame.name)),
+            tuple(sorted(_with_unique_names(frames), key=lambda frame: frame.name)),
             depth_unit=_depth_unit(path, stated),
             one_matrix=True,
             notes=tuple(notes),
-            scale="unknown" if _is_of_colmap(stated, entries) else "metric",
+            scale="unknown" if _is_from_colmap(stated, entries) else "metric",
         )
 
 
@@ -72,7 +72,7 @@ def _depth_unit(path: AnyPath, stated: dict[str, Any]) -> str | None:
     return None
 
 
-def _is_of_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
+def _is_from_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
     """Return whether the poses were found by COLMAP, which knows no metres.
 
     Each frame then has ``colmap_im_id``; older versions leave ``applied_transform`` alone, which
@@ -80,15 +80,15 @@ def _is_of_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
     """
     if any(isinstance(entry, dict) and "colmap_im_id" in entry for entry in entries):
         return True
-    return "applied_transform" in stated and not any(map(_depth_named, entries))
+    return "applied_transform" in stated and not any(map(_depth_name, entries))
 
 
 def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
     if not isinstance(entry, dict) or not isinstance(entry.get("file_path"), str):
         raise CaptureError(path, 'every frame must be an object with "file_path"')
-    colour = _inside(path, entry["file_path"])
-    depth_path = _existing(path, _depth_named(entry))
-    trust_path = _existing(path, entry.get("mask_path")) if depth_path else None
+    colour = _file_in_folder(path, entry["file_path"])
+    depth_path = _existing_file(path, _depth_name(entry))
+    trust_path = _existing_file(path, entry.get("mask_path")) if depth_path else None
     labels = path.parent / "labels" / f"{colour.stem}.png"
     pose = _pose(path, entry, scale)
     try:
@@ -110,19 +110,19 @@ def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> F
     )
 
 
-def _depth_named(entry: Any) -> str | None:
+def _depth_name(entry: Any) -> str | None:
     """Return the depth image that a frame names, as nerfstudio or as NeRFCapture calls it."""
     named = [entry.get(key) for key in ("depth_file_path", "depth_path")] if entry else []
     return next((name for name in named if isinstance(name, str) and name), None)
 
 
-def _existing(path: AnyPath, named: Any) -> AnyPath | None:
+def _existing_file(path: AnyPath, named: Any) -> AnyPath | None:
     """Return the file that a frame names, None where it is not there: NeRFCapture leaves it out."""
-    found = _inside(path, named) if isinstance(named, str) and named else None
+    found = _file_in_folder(path, named) if isinstance(named, str) and named else None
     return found if found is not None and found.is_file() else None
 
 
-def _inside(path: AnyPath, named: str) -> AnyPath:
+def _file_in_folder(path: AnyPath, named: str) -> AnyPath:
     """Return the file that a frame names, which must lie in the capture's folder."""
     pure = PurePosixPath(named.replace("\\", "/"))
     if pure.is_absolute() or ".." in pure.parts or "\0" in named or not pure.name:
@@ -201,7 +201,7 @@ def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | No
     return pose
 
 
-def _named_apart(frames: list[FrameFiles]) -> list[FrameFiles]:
+def _with_unique_names(frames: list[FrameFiles]) -> list[FrameFiles]:
     """Number the frames whose files share a stem, as ``left/0001`` and ``right/0001`` do."""
     seen: dict[str, int] = {}
     named = []

@@ -22,8 +22,8 @@ from world2minecraft.core.classes import UNKNOWN, class_id
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_bytes, read_json
 
-CLASSES = Path(__file__).parent / "data" / "nyu40.json"
-TABLE = "scannetv2-labels.combined.tsv"
+CLASS_MAP = Path(__file__).parent / "data" / "nyu40.json"
+LABEL_TABLE = "scannetv2-labels.combined.tsv"
 MAX_TABLE_BYTES = 16 << 20  # The published one has 100 kB.
 
 
@@ -31,7 +31,7 @@ MAX_TABLE_BYTES = 16 << 20  # The published one has 100 kB.
 def nyu40_classes() -> np.ndarray:
     """Return uint8 [65536]: the class of each NYU40 number, 255 where it is none."""
     classes = np.full(65536, UNKNOWN, np.uint8)
-    for number, (_, name) in read_json(CLASSES)["classes"].items():
+    for number, (_, name) in read_json(CLASS_MAP)["classes"].items():
         classes[int(number)] = class_id(name)
     return classes
 
@@ -59,9 +59,9 @@ def raw_id_classes(table: AnyPath) -> np.ndarray:
     return classes
 
 
-def find_table(places: Sequence[AnyPath]) -> AnyPath | None:
+def find_label_table(places: Sequence[AnyPath]) -> AnyPath | None:
     """Return the first of ScanNet's tables that lies in one of some folders."""
-    return next((place / TABLE for place in places if (place / TABLE).is_file()), None)
+    return next((place / LABEL_TABLE for place in places if (place / LABEL_TABLE).is_file()), None)
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,12 @@ class MappedLabels(NamedByFile):
         if stored.dtype == np.uint8:
             return nyu40_classes()[stored]
         if self.table is None:
-            raise CaptureError(self.path, f"holds ScanNet's raw ids; put {TABLE} beside the scene")
-        return _by_table(str(self.table), self.table)[np.clip(stored, 0, 65535)]
+            raise CaptureError(
+                self.path, f"holds ScanNet's raw ids; put {LABEL_TABLE} beside the scene"
+            )
+        return _cached_table_classes(str(self.table), self.table)[np.clip(stored, 0, 65535)]
 
 
 @lru_cache(maxsize=2)
-def _by_table(named: str, table: AnyPath) -> np.ndarray:
+def _cached_table_classes(named: str, table: AnyPath) -> np.ndarray:
     return raw_id_classes(table)

@@ -18,7 +18,11 @@ from world2minecraft.capture.readers.datasets.intrinsics import (
     matrix_camera,
     stated_camera,
 )
-from world2minecraft.capture.readers.datasets.text_tables import by_number, read_rows, to_floats
+from world2minecraft.capture.readers.datasets.text_tables import (
+    natural_sort_key,
+    read_rows,
+    to_floats,
+)
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_json
@@ -193,5 +197,5 @@ def _pairs(folder: AnyPath) -> list[tuple[AnyPath, AnyPath]]:
 def _images(folder: AnyPath) -> list[AnyPath]:
     return sorted(
         (path for path in folder.iterdir() if path.suffix.lower() in (*SUFFIXES, ".npy")),
-        key=by_number,
+        key=natural_sort_key,
     )

@@ -18,7 +18,7 @@ import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame
-from world2minecraft.capture.readers.datasets.embedded_images import check_zipped
+from world2minecraft.capture.readers.datasets.embedded_images import check_archive_member_size
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
 from world2minecraft.core.archives import AnyPath, ArchivePath
@@ -56,7 +56,7 @@ ENCODINGS: dict[str, tuple[str, int, tuple[int, ...]]] = {
 
 
 @dataclass(frozen=True)
-class Stream:
+class ImageStream:
     """One topic of pictures: its name and the time of each message in nanoseconds."""
 
     topic: str
@@ -81,8 +81,8 @@ class Bag:
         self.path = path
         self._latest: tuple[str, int, Any] | None = None
         self._types = get_typestore(Stores.ROS1_NOETIC)
-        check_zipped(path)
-        with _refusing(path):
+        check_archive_member_size(path)
+        with _reading_errors(path):
             self._reader: Any = Reader(cast(Any, path))  # A zip's member opens like a file.
             self._reader.open()
             self._bound_chunks()
@@ -94,21 +94,21 @@ class Bag:
                     self.path,
                     f"has a chunk of {chunk.datasize:,} bytes; {MAX_CHUNK_BYTES:,} are the most",
                 )
-            unpack = _bounded(chunk.decompressor)
+            unpack = _bounded_decompressor(chunk.decompressor)
             self._reader.chunks[position] = chunk._replace(decompressor=unpack)
 
     def topics(self) -> tuple[str, ...]:
         """Return the names of all topics."""
         return tuple(sorted({connection.topic for connection in self._reader.connections}))
 
-    def streams(self) -> dict[str, Stream]:
+    def streams(self) -> dict[str, ImageStream]:
         """Return the topics of pictures."""
         found: dict[str, list[int]] = {}
         for connection in self._reader.connections:
             if connection.msgtype == IMAGE:
                 entries = self._reader.indexes[connection.id]
                 found.setdefault(connection.topic, []).extend(entry.time for entry in entries)
-        return {topic: Stream(topic, tuple(sorted(times))) for topic, times in found.items()}
+        return {topic: ImageStream(topic, tuple(sorted(times))) for topic, times in found.items()}
 
     def first(self, topic: str) -> Any:
         """Return the first message of a topic, or None."""
@@ -128,7 +128,7 @@ class Bag:
         return self._latest[2]
 
     def _messages(self, topic: str, time_ns: int | None) -> Iterator[Any]:
-        with _refusing(self.path):
+        with _reading_errors(self.path):
             chosen = [one for one in self._reader.connections if one.topic == topic]
             stop = None if time_ns is None else time_ns + 1
             if chosen:
@@ -137,7 +137,7 @@ class Bag:
 
 
 @contextmanager
-def _refusing(path: AnyPath) -> Iterator[None]:
+def _reading_errors(path: AnyPath) -> Iterator[None]:
     """Turn whatever goes wrong within the reading library into one line."""
     try:
         yield
@@ -148,7 +148,7 @@ def _refusing(path: AnyPath) -> Iterator[None]:
         raise DamagedFileError(path, f"is no whole bag ({reason}); copy it again") from error
 
 
-def _bounded(unpack: Any) -> Any:
+def _bounded_decompressor(unpack: Any) -> Any:
     """Return the same way to unpack a chunk, which stops at ``MAX_CHUNK_BYTES``."""
     name = f"{getattr(unpack, '__module__', '')}.{getattr(unpack, '__name__', '')}"
     if "bz2" in name:
@@ -164,7 +164,7 @@ def _unpack_lz4(data: bytes) -> bytes:
     return LZ4FrameDecompressor().decompress(data, MAX_CHUNK_BYTES)
 
 
-def opened_bag(path: AnyPath) -> Bag:
+def open_bag(path: AnyPath) -> Bag:
     """Return an opened bag; it stays open, each process having its own.
 
     Raises:
@@ -175,11 +175,11 @@ def opened_bag(path: AnyPath) -> Bag:
         found = file.stat()
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
-    return _opened(path, (found.st_size, found.st_mtime_ns), os.getpid())
+    return _open_cached(path, (found.st_size, found.st_mtime_ns), os.getpid())
 
 
 @lru_cache(maxsize=2)
-def _opened(path: AnyPath, stamp: tuple[int, int], process: int) -> Bag:
+def _open_cached(path: AnyPath, stamp: tuple[int, int], process: int) -> Bag:
     return Bag(path)
 
 
@@ -216,7 +216,7 @@ class BagImage(NamedByFrame):
             raise DamagedFileError(self, f"holds {message.encoding}, no colours")
         pixels = rows.reshape(rows.shape[0], -1, channels)
         if not order:
-            return _from_yuyv(pixels)
+            return _yuyv_to_rgb(pixels)
         return np.ascontiguousarray(pixels[..., list(order)])
 
     def raw(self) -> np.ndarray:
@@ -230,7 +230,7 @@ class BagImage(NamedByFrame):
         return values.astype(values.dtype.newbyteorder("="))
 
     def _message(self) -> Any:
-        bag = opened_bag(self.path)
+        bag = open_bag(self.path)
         return bag.message(self.topic, _times(self.path, self.topic, bag)[self.index])
 
     def _encoding(self, message: Any) -> tuple[str, int, tuple[int, ...]]:
@@ -254,7 +254,7 @@ class BagImage(NamedByFrame):
         return np.ascontiguousarray(rows), message
 
 
-def _from_yuyv(pixels: np.ndarray) -> np.ndarray:
+def _yuyv_to_rgb(pixels: np.ndarray) -> np.ndarray:
     """Return RGB of pictures that keep brightness for each pixel and hue for each second one."""
     if pixels.shape[1] % 2:
         raise ValueError("a YUYV picture must be of even width")
@@ -279,11 +279,11 @@ _PINHOLES = ("", "none", "plumb_bob", "brown_conrady", "rational_polynomial")
 
 
 @dataclass(frozen=True)
-class _Pair:
+class _StreamPair:
     """The two streams that are read, and where their intrinsics stand."""
 
-    colour: Stream
-    depth: Stream
+    colour: ImageStream
+    depth: ImageStream
     colour_info: str
     depth_info: str
     recorded: bool
@@ -303,8 +303,8 @@ class RealSenseSource:
         path = _bag_file(folder)
         if path is None:
             raise CaptureError(folder, "holds no .bag")
-        bag = opened_bag(path)
-        pair = _streams(path, bag.streams())
+        bag = open_bag(path)
+        pair = _choose_streams(path, bag.streams())
         matches = pair_times(
             np.array(pair.colour.times_ns) / 1e9, np.array(pair.depth.times_ns) / 1e9, WITHIN_S
         )
@@ -334,10 +334,10 @@ def _bag_file(place: AnyPath) -> AnyPath | None:
     found = [place] if place.suffix.lower() == ".bag" and place.is_file() else []
     if not found and place.is_dir():
         found = [path for path in place.glob("*.bag") if path.is_file()]
-    return found[0] if len(found) == 1 and _begins_as_bag(found[0]) else None
+    return found[0] if len(found) == 1 and _has_bag_magic(found[0]) else None
 
 
-def _begins_as_bag(path: AnyPath) -> bool:
+def _has_bag_magic(path: AnyPath) -> bool:
     try:
         with path.open("rb") as stream:
             return stream.read(len(MAGIC)) == MAGIC
@@ -345,7 +345,7 @@ def _begins_as_bag(path: AnyPath) -> bool:
         return False
 
 
-def _streams(path: AnyPath, streams: dict[str, Stream]) -> _Pair:
+def _choose_streams(path: AnyPath, streams: dict[str, ImageStream]) -> _StreamPair:
     """Return the colour and depth streams of the recorder, or of the driver."""
     recorded = {
         match[2]: topic for topic in sorted(streams) if (match := _RECORDED.fullmatch(topic))
@@ -355,14 +355,14 @@ def _streams(path: AnyPath, streams: dict[str, Stream]) -> _Pair:
         infos = [
             topic.removesuffix("/image/data") + "/info/camera_info" for topic in (colour, depth)
         ]
-        return _Pair(streams[colour], streams[depth], infos[0], infos[1], True)
+        return _StreamPair(streams[colour], streams[depth], infos[0], infos[1], True)
     for colour_end, depth_end in _DRIVER:
         for topic in sorted(streams):
             prefix = topic.removesuffix(colour_end)
             if prefix != topic and prefix + depth_end in streams:
                 depth = prefix + depth_end
                 infos = [name.removesuffix("image_raw") + "camera_info" for name in (topic, depth)]
-                return _Pair(streams[topic], streams[depth], infos[0], infos[1], False)
+                return _StreamPair(streams[topic], streams[depth], infos[0], infos[1], False)
     raise CaptureError(
         path,
         "holds no colour and depth streams; record both (with the ROS driver: "
@@ -388,7 +388,7 @@ def _camera(path: AnyPath, info: Any) -> Camera:
     return stated_camera(path, size, matrix[[0, 4, 2, 5]], lens[:5])
 
 
-def _depth_to_colour(path: AnyPath, bag: Any, pair: _Pair) -> np.ndarray:
+def _depth_to_colour(path: AnyPath, bag: Any, pair: _StreamPair) -> np.ndarray:
     """Return how the depth lens stands to the colour lens.
 
     The recorder writes for each stream the transform from one reference stream to it.

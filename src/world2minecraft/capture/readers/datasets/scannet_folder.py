@@ -12,15 +12,15 @@ from world2minecraft.capture.images import SUFFIXES
 from world2minecraft.capture.poses import read_pose
 from world2minecraft.capture.readers.datasets.intrinsics import (
     VGA,
-    first_size,
+    first_image_size,
+    intrinsics_size,
     matrix_camera,
-    size_meant,
 )
 from world2minecraft.capture.readers.datasets.nyu40_labels import MappedLabels
 from world2minecraft.capture.readers.datasets.scannet_metadata import (
     find_labels,
-    read_facts,
-    upright,
+    read_scene_info,
+    up_vector,
 )
 from world2minecraft.capture.readers.datasets.text_tables import read_matrix
 from world2minecraft.core.archives import AnyPath
@@ -56,7 +56,7 @@ class ScanNetFolderSource:
             _frame(n, colours.get(n), depths.get(n), poses.get(n), labels.get(n), cameras)
             for n in numbers
         )
-        up = upright(facts_path, read_facts(facts_path))
+        up = up_vector(facts_path, read_scene_info(facts_path))
         return Capture(folder, "scannet_folder", frames, depth_unit="mm", notes=notes, world_up=up)
 
 
@@ -99,7 +99,9 @@ def _cameras(folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]) -> 
         if path is None:
             raise CaptureError(folder, f"has no intrinsic/intrinsic_{kind}.txt (4x4)")
         matrix = read_matrix(path, [(4, 4), (3, 3)])
-        size = size_meant((matrix[0, 2], matrix[1, 2]), [first_size(images), recorded, VGA])
+        size = intrinsics_size(
+            (matrix[0, 2], matrix[1, 2]), [first_image_size(images), recorded, VGA]
+        )
         cameras[kind] = matrix_camera(path, size or recorded, matrix)
     return cameras
 

@@ -5,17 +5,23 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.readers.datasets.nyu40_labels import TABLE, MappedLabels, find_table
+from world2minecraft.capture.readers.datasets.nyu40_labels import (
+    LABEL_TABLE,
+    MappedLabels,
+    find_label_table,
+)
 from world2minecraft.capture.readers.datasets.text_tables import to_floats
 from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_bytes
 
 LABEL_KINDS = ("label-filt", "label")  # The filtered ones have fewer slips at edges.
-NO_TABLE = f"the label images are left out: put {TABLE} (from the data set) beside the scene"
+NO_TABLE_NOTE = (
+    f"the label images are left out: put {LABEL_TABLE} (from the data set) beside the scene"
+)
 
 
-def read_facts(path: AnyPath) -> dict[str, np.ndarray]:
+def read_scene_info(path: AnyPath) -> dict[str, np.ndarray]:
     """Return the numbers of a ``SCENE.txt`` by name; lines of words are left out.
 
     Raises:
@@ -55,7 +61,7 @@ def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | 
     return aligned
 
 
-def upright(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+def up_vector(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
     """Return the unit vector of the poses' world that points up, where the scene states it."""
     aligned = axis_alignment(path, facts)
     return None if aligned is None else aligned[2, :3].copy()
@@ -85,7 +91,7 @@ def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tup
             notes.append(f"{broken.name} is left out: it {error.reason}")
             continue
         if images:
-            mapped, more = _mapped(scene, images)
+            mapped, more = _map_labels(scene, images)
             return mapped, (*notes, *more)
     return {}, tuple(dict.fromkeys(notes))
 
@@ -105,15 +111,15 @@ def _numbered(folder: AnyPath) -> dict[int, AnyPath]:
     return {int(path.stem): path for path in found if path.stem.isdecimal() and len(path.stem) <= 9}
 
 
-def _mapped(
+def _map_labels(
     scene: AnyPath, images: dict[int, AnyPath]
 ) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
-    table = find_table([scene, scene.parent, scene.parent.parent])
+    table = find_label_table([scene, scene.parent, scene.parent.parent])
     if table is None:
         try:
             mode = read_header(images[min(images)]).mode
         except InputError:
-            return {}, (NO_TABLE,)
+            return {}, (NO_TABLE_NOTE,)
         if mode not in ("L", "P"):
-            return {}, (NO_TABLE,)
+            return {}, (NO_TABLE_NOTE,)
     return {number: MappedLabels(path, table) for number, path in images.items()}, ()

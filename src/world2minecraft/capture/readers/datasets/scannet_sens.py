@@ -23,14 +23,14 @@ from world2minecraft.capture.images import ImageSource
 from world2minecraft.capture.readers.datasets.embedded_images import (
     EncodedImage,
     RawImage,
-    opened_file,
+    open_seekable,
 )
 from world2minecraft.capture.readers.datasets.intrinsics import matrix_camera, stated_camera
 from world2minecraft.capture.readers.datasets.scannet_metadata import (
     find_labels,
-    read_facts,
+    read_scene_info,
     stated_lens,
-    upright,
+    up_vector,
 )
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import invert_rigid
@@ -78,11 +78,11 @@ class ScanNetSensSource:
         if path is None:
             raise DamagedFileError(folder, "holds no .sens")
         size = int(path.stat().st_size)
-        with opened_file(path) as stream:
+        with open_seekable(path) as stream:
             header = read_sens_header(path, stream)
-            places, notes = _frame_places(path, stream, size, header.frames)
+            places, notes = _read_frame_records(path, stream, size, header.frames)
         facts_path = path.parent / f"{path.stem}.txt"
-        facts = read_facts(facts_path)
+        facts = read_scene_info(facts_path)
         cameras = _cameras(path, header, facts)
         labels, label_notes = find_labels(path.parent, path.stem)
         frames = tuple(
@@ -94,7 +94,7 @@ class ScanNetSensSource:
             frames,
             depth_unit=_unit(header.units_a_metre),
             notes=(*notes, *label_notes),
-            world_up=upright(facts_path, facts),
+            world_up=up_vector(facts_path, facts),
         )
 
 
@@ -149,7 +149,7 @@ def read_sens_header(path: AnyPath, stream: IO[bytes]) -> SensHeader:
 
 
 @dataclass(frozen=True, eq=False)
-class _Place:
+class _FrameRecord:
     """Where one frame's images lie: offsets and sizes in bytes, and what is stated of it."""
 
     number: int
@@ -159,11 +159,11 @@ class _Place:
     depth: tuple[int, int]
 
 
-def _frame_places(
+def _read_frame_records(
     path: AnyPath, stream: IO[bytes], size: int, count: int
-) -> tuple[list[_Place], tuple[str, ...]]:
+) -> tuple[list[_FrameRecord], tuple[str, ...]]:
     """Walk from frame to frame; of a file cut short the whole frames are kept."""
-    places: list[_Place] = []
+    places: list[_FrameRecord] = []
     position = stream.tell()
     for number in range(count):
         data = stream.read(_FRAME.size)
@@ -174,7 +174,7 @@ def _frame_places(
         if colour_bytes + depth_bytes > size - position:
             break
         places.append(
-            _Place(
+            _FrameRecord(
                 number,
                 np.array(pose, np.float64).reshape(4, 4),
                 (colour_us or depth_us) / 1e6,
@@ -214,7 +214,7 @@ def _frame(
     path: AnyPath,
     header: SensHeader,
     cameras: tuple[Camera | None, Camera | None],
-    place: _Place,
+    place: _FrameRecord,
     labels: ImageSource | None,
 ) -> FrameFiles:
     name = f"{place.number:06d}"
@@ -242,7 +242,7 @@ def _frame(
     )
 
 
-def _colour(path: AnyPath, header: SensHeader, place: _Place, name: str) -> ImageSource:
+def _colour(path: AnyPath, header: SensHeader, place: _FrameRecord, name: str) -> ImageSource:
     named = f"{name} colour"
     if header.colour_packing == 0:
         return RawImage(path, *place.colour, named, *header.colour_size, "RGB")

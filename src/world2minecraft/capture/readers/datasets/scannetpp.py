@@ -15,9 +15,9 @@ import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES, ImageHeader, ImagePlace
-from world2minecraft.capture.readers.apps.video_frames import MoviePicture
-from world2minecraft.capture.readers.datasets.embedded_images import FileSlice, opened_file
-from world2minecraft.capture.readers.datasets.intrinsics import first_size, matrix_camera
+from world2minecraft.capture.readers.apps.video_frames import VideoFrame
+from world2minecraft.capture.readers.datasets.embedded_images import FileSlice, open_seekable
+from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import read_json
@@ -28,7 +28,7 @@ DEPTH_SIZE = (256, 192)
 PIXELS = DEPTH_SIZE[0] * DEPTH_SIZE[1]
 MAX_FRAME_BYTES = 5 * PIXELS  # Float metres that cannot be packed, and a little more.
 MAX_FRAMES = 300_000
-UP = np.array([0.0, 0.0, 1.0])
+WORLD_UP = np.array([0.0, 0.0, 1.0])
 _SIZE = struct.Struct("<I")
 
 
@@ -39,14 +39,14 @@ class ScanNetPpSource:
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether the poses lie there, or in ``iphone``."""
-        return _place(folder) is not None
+        return _iphone_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
         """List the frames. Raises CaptureError as ``Source.read`` says."""
-        place = _place(folder) or folder
+        place = _iphone_folder(folder) or folder
         entries = _entries(place / POSES)
         pictures, depths = _pictures(place, entries), _depths(place)
-        size = first_size([pictures[min(pictures)]] if pictures else [])
+        size = first_image_size([pictures[min(pictures)]] if pictures else [])
         if size is None:
             raise CaptureError(place, f"has no picture that can be read ({VIDEOS[0]} or rgb/)")
         frames = tuple(
@@ -54,11 +54,11 @@ class ScanNetPpSource:
             for number, entry in sorted(entries.items())
         )
         aligned = all("aligned_pose" in entry for entry in entries.values())
-        up = UP if aligned else None
+        up = WORLD_UP if aligned else None
         return Capture(folder, "scannetpp", frames, depth_unit="mm", world_up=up)
 
 
-def _place(folder: AnyPath) -> AnyPath | None:
+def _iphone_folder(folder: AnyPath) -> AnyPath | None:
     return next((at for at in (folder, folder / "iphone") if (at / POSES).is_file()), None)
 
 
@@ -91,7 +91,7 @@ def _pictures(place: AnyPath, entries: dict[int, dict[str, Any]]) -> dict[int, I
     video = next((place / name for name in VIDEOS if (place / name).is_file()), None)
     if files or video is None:
         return files
-    return {number: MoviePicture(video, number) for number in entries}
+    return {number: VideoFrame(video, number) for number in entries}
 
 
 def _depths(place: AnyPath) -> dict[int, ImagePlace]:
@@ -99,15 +99,15 @@ def _depths(place: AnyPath) -> dict[int, ImagePlace]:
     path = place / "depth.bin"
     if files or not path.is_file():
         return files
-    return dict(enumerate(_packed_depths(path)))
+    return dict(enumerate(_packed_depth_images(path)))
 
 
-def _packed_depths(path: AnyPath) -> list[ImagePlace]:
+def _packed_depth_images(path: AnyPath) -> list[ImagePlace]:
     """Return where each frame of a ``depth.bin`` lies; the whole ones of a file cut short."""
     found: list[ImagePlace] = []
     size = int(path.stat().st_size)
     position = 0
-    with opened_file(path) as stream:
+    with open_seekable(path) as stream:
         while size - position >= _SIZE.size and len(found) < MAX_FRAMES:
             stream.seek(position)
             (length,) = _SIZE.unpack(stream.read(_SIZE.size))

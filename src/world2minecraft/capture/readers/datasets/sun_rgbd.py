@@ -11,9 +11,9 @@ import numpy as np
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import SUFFIXES
-from world2minecraft.capture.readers.datasets.intrinsics import first_size, matrix_camera
+from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
 from world2minecraft.capture.readers.datasets.text_tables import (
-    by_number,
+    natural_sort_key,
     read_matrix,
     read_rows,
     to_floats,
@@ -22,9 +22,9 @@ from world2minecraft.capture.readers.datasets.time_sync import pair_times
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 
-UNIT = "rotated"
+DEPTH_UNIT = "rotated"
 WITHIN_S = 0.033  # SUN3D's recorder pairs each picture with a depth of the same thirtieth.
-ONE_FRAME = "one frame alone: what it did not see stays unknown"
+ONE_FRAME_NOTE = "one frame alone: what it did not see stays unknown"
 _STAMPED = re.compile(r"(\d{1,9})-(\d{1,15})")
 
 
@@ -36,17 +36,19 @@ class SunSource:
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether the images' folders and the intrinsics are there."""
         depth = _depth_folder(folder)
-        return depth is not None and (folder / "image").is_dir() and _lens(folder).is_file()
+        return (
+            depth is not None and (folder / "image").is_dir() and _intrinsics_file(folder).is_file()
+        )
 
     def read(self, folder: AnyPath) -> Capture:
         """List the frames. Raises CaptureError as ``Source.read`` says."""
         depth_folder = _depth_folder(folder) or folder
         pairs = _pairs(folder, _images(folder / "image"), _images(depth_folder))
-        matrix = read_matrix(_lens(folder), [(3, 3), (4, 4)])
-        size = first_size([colour for colour, _ in pairs])
+        matrix = read_matrix(_intrinsics_file(folder), [(3, 3), (4, 4)])
+        size = first_image_size([colour for colour, _ in pairs])
         if size is None:
             raise CaptureError(folder, "has no image that can be read; copy it again")
-        camera = matrix_camera(_lens(folder), size, matrix)
+        camera = matrix_camera(_intrinsics_file(folder), size, matrix)
         poses = _poses(folder, len(pairs))
         frames = tuple(
             FrameFiles(colour.stem, pose, colour, camera, depth, camera, time_s=_seconds(colour))
@@ -57,13 +59,13 @@ class SunSource:
             folder,
             "sun",
             frames,
-            depth_unit=UNIT,
-            notes=(ONE_FRAME,) if single else (),
+            depth_unit=DEPTH_UNIT,
+            notes=(ONE_FRAME_NOTE,) if single else (),
             world_up=np.array([0.0, -1.0, 0.0]) if single else None,
         )
 
 
-def _lens(folder: AnyPath) -> AnyPath:
+def _intrinsics_file(folder: AnyPath) -> AnyPath:
     return folder / "intrinsics.txt"
 
 
@@ -77,7 +79,7 @@ def _depth_folder(folder: AnyPath) -> AnyPath | None:
 def _images(folder: AnyPath) -> list[AnyPath]:
     return sorted(
         (path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES),
-        key=by_number,
+        key=natural_sort_key,
     )
 
 

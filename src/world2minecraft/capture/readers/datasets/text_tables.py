@@ -54,13 +54,13 @@ def read_matrix(path: AnyPath, shapes: Sequence[tuple[int, int]]) -> np.ndarray:
     raise CaptureError(path, f"must hold {counts} numbers, not {len(words)}")
 
 
-def by_number(path: AnyPath) -> list[tuple[int, str]]:
+def natural_sort_key(path: AnyPath) -> list[tuple[int, str]]:
     """Return a key that sorts file names by the numbers in them: 9.png before 10.png."""
     parts = _DIGITS.split(path.name)
     return [(int(part[:18]), "") if part.isdecimal() else (-1, part) for part in parts]
 
 
-def checked_inside(stated_by: AnyPath, name: str) -> PurePosixPath:
+def check_relative_path(stated_by: AnyPath, name: str) -> PurePosixPath:
     """Return a file's name that a data set states, which must lie inside its folder.
 
     Raises:

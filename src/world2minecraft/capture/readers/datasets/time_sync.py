@@ -36,7 +36,7 @@ def pair_times(first_s: np.ndarray, second_s: np.ndarray, within_s: float) -> li
     return sorted(taken.items())
 
 
-def pose_between(before: np.ndarray, after: np.ndarray, share: float) -> np.ndarray:
+def interpolate_pose(before: np.ndarray, after: np.ndarray, share: float) -> np.ndarray:
     """Return the pose part of the way from one to another, the turn at an even rate (slerp).
 
     Args:

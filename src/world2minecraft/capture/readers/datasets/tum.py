@@ -15,23 +15,23 @@ from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.datasets.intrinsics import (
     PRIMESENSE,
     VGA,
-    first_size,
-    size_meant,
+    first_image_size,
+    intrinsics_size,
     stated_camera,
 )
 from world2minecraft.capture.readers.datasets.text_tables import (
-    checked_inside,
+    check_relative_path,
     read_rows,
     to_floats,
 )
-from world2minecraft.capture.readers.datasets.time_sync import pair_times, pose_between
+from world2minecraft.capture.readers.datasets.time_sync import interpolate_pose, pair_times
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
 
 WITHIN_S = 0.02  # The bound of the benchmark's own script.
 MAX_GAP_S = 0.2  # Between two measured poses; a hand turns by a few degrees in that time.
-UNIT = "5000"
+DEPTH_UNIT = "5000"
 # fx fy cx cy and k1 k2 p1 p2 k3, from the benchmark's page on file formats.
 PUBLISHED = {
     "1": ((517.3, 516.5, 318.6, 255.3), (0.2624, -0.9531, -0.0054, 0.0026, 1.1633)),
@@ -52,15 +52,15 @@ class TumSource:
 
     def read(self, folder: AnyPath) -> Capture:
         """List the pairs of images. Raises CaptureError as ``Source.read`` says."""
-        colour_s, colours = _listed(folder / "rgb.txt")
-        depth_s, depths = _listed(folder / "depth.txt")
+        colour_s, colours = _read_image_list(folder / "rgb.txt")
+        depth_s, depths = _read_image_list(folder / "depth.txt")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)
         if not pairs:
             raise CaptureError(
                 folder, f"no time of rgb.txt lies within {WITHIN_S} s of one of depth.txt"
             )
         camera, notes = _camera(folder, [colours[index] for index, _ in pairs])
-        poses = _Poses(folder / "groundtruth.txt")
+        poses = _Trajectory(folder / "groundtruth.txt")
         frames = []
         for index, other in pairs:
             seconds = float(colour_s[index])
@@ -80,10 +80,10 @@ class TumSource:
         alone = len(colours) - len(pairs)
         if alone:
             notes += (f"{alone} colour images have no depth within {WITHIN_S} s",)
-        return Capture(folder, "tum", tuple(frames), depth_unit=UNIT, notes=notes)
+        return Capture(folder, "tum", tuple(frames), depth_unit=DEPTH_UNIT, notes=notes)
 
 
-def _listed(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
+def _read_image_list(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
     """Return the times and the files that a list names, which must stay inside the folder."""
     rows = read_rows(path)
     if not rows or any(len(row) < 2 for row in rows):
@@ -91,7 +91,7 @@ def _listed(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
     seconds = to_floats(path, [row[0] for row in rows])
     if not np.isfinite(seconds).all():
         raise CaptureError(path, "must begin each line with seconds")
-    files = [path.parent / str(checked_inside(path, row[1])) for row in rows]
+    files = [path.parent / str(check_relative_path(path, row[1])) for row in rows]
     stems = [file.stem for file in files]
     if len(set(stems)) != len(stems):
         twice = next(stem for stem in stems if stems.count(stem) > 1)
@@ -107,7 +107,7 @@ def _camera(folder: AnyPath, images: list[AnyPath]) -> tuple[Camera, tuple[str, 
         if not 4 <= len(words) <= 9:
             raise CaptureError(stated, f"must hold fx fy cx cy and a lens, not {len(words)} words")
         values = to_floats(stated, words)
-        size = size_meant((values[2], values[3]), [first_size(images), VGA]) or VGA
+        size = intrinsics_size((values[2], values[3]), [first_image_size(images), VGA]) or VGA
         return stated_camera(stated, size, values[:4], values[4:]), ()
     match = _SEQUENCE.search(folder.name) or _SEQUENCE.search(folder.parent.name)
     if match:
@@ -118,7 +118,7 @@ def _camera(folder: AnyPath, images: list[AnyPath]) -> tuple[Camera, tuple[str, 
     return stated_camera(folder, VGA, PRIMESENSE), (note,)
 
 
-class _Poses:
+class _Trajectory:
     """Measured poses, asked for at any moment; without their file there are none at all."""
 
     def __init__(self, path: AnyPath):
@@ -151,7 +151,7 @@ class _Poses:
             gap = float(self.seconds[after] - self.seconds[after - 1])
             if 0 < gap <= MAX_GAP_S:
                 share = float(seconds - self.seconds[after - 1]) / gap
-                return pose_between(self.poses[after - 1], self.poses[after], share), ""
+                return interpolate_pose(self.poses[after - 1], self.poses[after], share), ""
         if abs(self.seconds[nearest] - seconds) <= WITHIN_S:
-            return pose_between(self.poses[nearest], self.poses[nearest], 0.0), ""
+            return interpolate_pose(self.poses[nearest], self.poses[nearest], 0.0), ""
         return None, "has no pose near its time in groundtruth.txt"

@@ -41,7 +41,7 @@ def class_of_name(name: str) -> int:
     return UNKNOWN
 
 
-def own_classes() -> np.ndarray:
+def identity_classes() -> np.ndarray:
     """Return uint8 [256]: our own ids as they are, 255 beyond."""
     classes = np.full(256, UNKNOWN, np.uint8)
     classes[: len(CLASS_NAMES)] = np.arange(len(CLASS_NAMES))
@@ -54,11 +54,11 @@ def own_classes() -> np.ndarray:
 # Without one, ``label`` is taken to be of NYU40, as ScanNet's is; other columns to be our own ids
 # where none is over 11, of S3DIS's 13 where none is over 12, else of NYU40.
 
-MOST = 65535
+MAX_LABEL_ID = 65535
 MAX_MAP_BYTES = 1 << 20
 
 
-def classes_of_numbers(
+def classes_of_label_ids(
     place: AnyPath, column: str, values: np.ndarray
 ) -> tuple[np.ndarray | None, str]:
     """Return uint8 classes of a file's label numbers, and the sentence that tells how.
@@ -71,17 +71,23 @@ def classes_of_numbers(
     Raises:
         CaptureError: the map beside the file cannot be used.
     """
-    numbers = np.nan_to_num(np.asarray(values, np.float64), nan=MOST, posinf=MOST, neginf=MOST)
-    numbers = np.where((numbers < 0) | (numbers > MOST), MOST, numbers).astype(np.int64)
+    numbers = np.nan_to_num(
+        np.asarray(values, np.float64), nan=MAX_LABEL_ID, posinf=MAX_LABEL_ID, neginf=MAX_LABEL_ID
+    )
+    numbers = np.where((numbers < 0) | (numbers > MAX_LABEL_ID), MAX_LABEL_ID, numbers).astype(
+        np.int64
+    )
     beside = place.parent / f"{place.stem}.classes.json"
     if beside.is_file():
-        return _from_map(beside)[numbers], f"classes are told by {beside.name}"
-    known = numbers[(numbers != MOST) & (numbers != UNKNOWN)]
+        return _classes_from_map(beside)[numbers], f"classes are told by {beside.name}"
+    known = numbers[(numbers != MAX_LABEL_ID) & (numbers != UNKNOWN)]
     if not len(known):
         return None, ""
     most, has_unknown = int(known.max()), bool((numbers == UNKNOWN).any())
     if most < len(CLASS_NAMES) and (column not in ("label",) or has_unknown):
-        return own_classes()[np.minimum(numbers, 255)], f"column {column} is read as our class ids"
+        return identity_classes()[
+            np.minimum(numbers, 255)
+        ], f"column {column} is read as our class ids"
     if most <= 40:
         said = f"column {column} is read as NYU40 numbers"
         return nyu40_classes()[numbers], said
@@ -89,15 +95,17 @@ def classes_of_numbers(
     return None, f"{said}: map them in {beside.name}"
 
 
-def _from_map(beside: AnyPath) -> np.ndarray:
+def _classes_from_map(beside: AnyPath) -> np.ndarray:
     table = read_json(beside, MAX_MAP_BYTES)
-    classes = np.full(MOST + 1, UNKNOWN, np.uint8)
+    classes = np.full(MAX_LABEL_ID + 1, UNKNOWN, np.uint8)
     if not isinstance(table, dict):
         raise CaptureError(beside, 'must map numbers to names, such as {"5": "chair"}')
     for number, name in table.items():
         found = class_of_name(str(name))
-        if not number.isascii() or not number.isdecimal() or int(number) > MOST:
-            raise CaptureError(beside, f"maps {number[:20]!r}, which is no number up to {MOST}")
+        if not number.isascii() or not number.isdecimal() or int(number) > MAX_LABEL_ID:
+            raise CaptureError(
+                beside, f"maps {number[:20]!r}, which is no number up to {MAX_LABEL_ID}"
+            )
         if found == UNKNOWN and str(name) != "unknown":
             raise CaptureError(
                 beside, f"names {str(name)[:40]!r}; known are {', '.join(CLASS_NAMES[1:])}"
@@ -106,31 +114,31 @@ def _from_map(beside: AnyPath) -> np.ndarray:
     return classes
 
 
-RED_NAMES = (
+COLOUR_COLUMNS = (
     ("red", "green", "blue"),
     ("r", "g", "b"),
     ("diffuse_red", "diffuse_green", "diffuse_blue"),
 )
-SPLAT_COLOURS = ("f_dc_0", "f_dc_1", "f_dc_2")
-SPLAT_BASE = 0.28209479177387814  # Of the constant spherical harmonic, in which splats store it.
+SPLAT_COLUMNS = ("f_dc_0", "f_dc_1", "f_dc_2")
+SH_C0 = 0.28209479177387814  # Of the constant spherical harmonic, in which splats store it.
 
 
-def colour_of(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
+def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
     """Return uint8 [N, 3] of columns that hold colours, or None.
 
     Whole numbers up to 255, or up to 65535 (LAS, PTS of some scanners), and shares up to 1 are
     told apart by their most.
     """
-    for names in RED_NAMES:
+    for names in COLOUR_COLUMNS:
         if all(name in columns for name in names):
-            return as_colour(np.stack([columns[name] for name in names], axis=1))
-    if all(name in columns for name in SPLAT_COLOURS):
-        mixed = np.stack([columns[name] for name in SPLAT_COLOURS], axis=1)
-        return np.clip((0.5 + SPLAT_BASE * mixed) * 255 + 0.5, 0, 255).astype(np.uint8)
+            return to_uint8_colours(np.stack([columns[name] for name in names], axis=1))
+    if all(name in columns for name in SPLAT_COLUMNS):
+        mixed = np.stack([columns[name] for name in SPLAT_COLUMNS], axis=1)
+        return np.clip((0.5 + SH_C0 * mixed) * 255 + 0.5, 0, 255).astype(np.uint8)
     return None
 
 
-def as_colour(values: np.ndarray) -> np.ndarray | None:
+def to_uint8_colours(values: np.ndarray) -> np.ndarray | None:
     """Return uint8 [N, 3] of colours in any of the usual ranges; None where all is black."""
     if values.dtype == np.uint8:
         return np.ascontiguousarray(values)

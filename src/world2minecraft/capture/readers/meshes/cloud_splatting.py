@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
-from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, NEAR_M, lens_of
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, NEAR_M, pinhole_of
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 
 BLEND_M = 0.02  # Twice the noise of good scanners and thrice that of a phone's cleaned cloud.
 RIM_WEIGHT = 0.3  # What a pixel has that no disc's middle is nearer to than 2/3 of the radius.
-LEAST_PX = 0.75  # A disc covers the centre of at least one pixel, however far it is.
+MIN_RADIUS_PX = 0.75  # A disc covers the centre of at least one pixel, however far it is.
 GAP_SHARE, GAP_M = 0.08, 0.06  # A pixel this much farther than most around it looks through a gap.
 
 
@@ -26,46 +26,46 @@ GAP_SHARE, GAP_M = 0.08, 0.06  # A pixel this much farther than most around it l
 class Surfels:
     """The discs of a cloud: unit ``normals`` float32 [N, 3] (0 where unknown), ``radius_m`` [N]."""
 
-    cloud: Cloud
+    cloud: PointCloud
     normals: np.ndarray
     radius_m: np.ndarray
 
 
-def see_points(
+def render_surfels(
     surfels: Surfels, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return z-depth, colour and labels as ``see_triangles`` does, for a cloud."""
     cloud = surfels.cloud
     runs = np.array([[0, len(cloud.points)]], np.int64) if runs is None else runs
     shape = (camera.height_px, camera.width_px)
-    discs, owner = _carried(
+    discs, owner = _transform_surfels(
         cloud.points,
         surfels.normals,
         surfels.radius_m,
         np.ascontiguousarray(world_to_camera, np.float64),
-        lens_of(camera),
+        pinhole_of(camera),
         shape,
         runs,
     )
     nearest = np.full(shape, np.inf, np.float32)
-    _nearest(discs, lens_of(camera), nearest)
+    _depth_pass(discs, pinhole_of(camera), nearest)
     colour = np.full((1, 3), GREY, np.uint8) if cloud.colour is None else cloud.colour
     labels = np.full(1, 255, np.uint8) if cloud.labels is None else cloud.labels
     sums = np.zeros((*shape, 6), np.float32)
     picture_labels = np.full(shape, 255, np.uint8)
-    _blend(discs, owner, lens_of(camera), nearest, colour, labels, sums, picture_labels)
+    _blend_pass(discs, owner, pinhole_of(camera), nearest, colour, labels, sums, picture_labels)
     weight = sums[..., 5]
     held = weight > 0
     mean = sums / np.where(held, weight, 1)[..., None]
     depth = np.where(held, mean[..., 0], np.float32(0))
-    depth = _without_gaps(depth, sums[..., 4] < RIM_WEIGHT)
+    depth = _remove_gaps(depth, sums[..., 4] < RIM_WEIGHT)
     colours = np.where((depth > 0)[..., None], np.clip(mean[..., 1:4] + 0.5, 0, 255), 0)
     picture_labels[depth == 0] = 255
     return depth, colours.astype(np.uint8), picture_labels
 
 
 @njit
-def _carried(points, normals, radii, pose, lens, shape, runs):
+def _transform_surfels(points, normals, radii, pose, lens, shape, runs):
     """Return the discs that a camera may see, in its frame, and which point each is of.
 
     float64 [D, 8]: place, normal, radius (grown where it is smaller than a pixel), and radius.
@@ -86,7 +86,7 @@ def _carried(points, normals, radii, pose, lens, shape, runs):
             z = disc[2]
             if z < NEAR_M:
                 continue
-            disc[6] = max(radii[i], LEAST_PX * z / min(lens[0], lens[1]))
+            disc[6] = max(radii[i], MIN_RADIUS_PX * z / min(lens[0], lens[1]))
             disc[7] = radii[i]
             u, v = disc[0] / z * lens[0] + lens[2], disc[1] / z * lens[1] + lens[3]
             across, down = disc[6] / z * lens[0], disc[6] / z * lens[1]
@@ -114,7 +114,7 @@ def _span(middle, half, size):
 
 
 @njit
-def _meet(disc, x, y):
+def _intersect_disc(disc, x, y):
     """Return how far along the ray (x, y, 1) it meets a disc, and the share of the radius there.
 
     A disc seen so obliquely that its plane runs off is met near its middle's depth.
@@ -130,7 +130,7 @@ def _meet(disc, x, y):
 
 
 @njit
-def _nearest(discs, lens, nearest):
+def _depth_pass(discs, lens, nearest):
     """Find the least depth of the discs at each pixel."""
     for i in range(len(discs)):
         u0, u1, v0, v1 = _window(discs[i], lens, nearest.shape)
@@ -139,13 +139,13 @@ def _nearest(discs, lens, nearest):
             for u in range(u0, u1):
                 if discs[i, 2] - discs[i, 6] > nearest[v, u]:
                     continue
-                z, share = _meet(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
+                z, share = _intersect_disc(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
                 if share <= 1.0 and NEAR_M <= z < nearest[v, u]:
                     nearest[v, u] = z
 
 
 @njit
-def _blend(discs, owner, lens, nearest, colour, labels, sums, picture_labels):
+def _blend_pass(discs, owner, lens, nearest, colour, labels, sums, picture_labels):
     """Add up depth, colour and weight of the discs near each pixel's nearest one.
 
     The label is that of the disc whose middle the ray meets best; its weight is in ``sums[4]``.
@@ -159,7 +159,7 @@ def _blend(discs, owner, lens, nearest, colour, labels, sums, picture_labels):
             for u in range(u0, u1):
                 if discs[i, 2] - discs[i, 6] > nearest[v, u] + band:
                     continue
-                z, share = _meet(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
+                z, share = _intersect_disc(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
                 if share > 1.0 or z < NEAR_M or z > nearest[v, u] + band:
                     continue
                 weight = (1.0 - share) * (1.0 - share) + 1e-3
@@ -174,7 +174,7 @@ def _blend(discs, owner, lens, nearest, colour, labels, sums, picture_labels):
 
 
 @njit
-def _without_gaps(depth, rim):
+def _remove_gaps(depth, rim):
     """Return the depth without pixels in gaps, and without the outermost ones of things.
 
     In a gap are those that most of the 24 around them stand clearly before. Outermost are those

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh
-from world2minecraft.capture.readers.meshes.surfels import Surfels, cells_of
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh, PointCloud
+from world2minecraft.capture.readers.meshes.surfels import Surfels, assign_cells
 from world2minecraft.core.types import Camera
 
 BLOCK_M = 0.5
@@ -40,10 +40,10 @@ def whole(count: int) -> np.ndarray:
     return np.array([[0, count]], np.int64)
 
 
-def mesh_in_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
+def sort_mesh_into_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
     """Return a mesh in metres with its triangles in the order of blocks, and these."""
     middles = mesh.vertices[mesh.faces].mean(axis=1)
-    order, starts = _order(middles)
+    order, starts = _block_order(middles)
     faces = mesh.faces[order]
     sorted_mesh = replace(
         mesh,
@@ -53,15 +53,15 @@ def mesh_in_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
     )
     low = np.minimum.reduceat(mesh.vertices[faces].min(axis=1), starts[:-1])
     high = np.maximum.reduceat(mesh.vertices[faces].max(axis=1), starts[:-1])
-    return sorted_mesh, _around(starts, low, high, np.zeros(len(low)))
+    return sorted_mesh, _bounding_spheres(starts, low, high, np.zeros(len(low)))
 
 
-def surfels_in_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
+def sort_surfels_into_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
     """Return the discs of a cloud in the order of blocks, and these."""
-    order, starts = _order(surfels.cloud.points)
+    order, starts = _block_order(surfels.cloud.points)
     cloud = surfels.cloud
     points = cloud.points[order]
-    sorted_cloud = Cloud(
+    sorted_cloud = PointCloud(
         points,
         None if cloud.colour is None else cloud.colour[order],
         None if cloud.labels is None else cloud.labels[order],
@@ -71,17 +71,19 @@ def surfels_in_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
     high = np.maximum.reduceat(points, starts[:-1])
     most = np.maximum.reduceat(radius, starts[:-1]).astype(np.float64)
     found = Surfels(sorted_cloud, surfels.normals[order], radius)
-    return found, _around(starts, low, high, most)
+    return found, _bounding_spheres(starts, low, high, most)
 
 
-def _order(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _block_order(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the order that puts places of one block together, and where each block starts."""
-    own, count = cells_of(places, BLOCK_M)
+    own, count = assign_cells(places, BLOCK_M)
     order = np.argsort(own, kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(own, minlength=count))])
     return order, starts.astype(np.int64)
 
 
-def _around(starts: np.ndarray, low: np.ndarray, high: np.ndarray, more: np.ndarray) -> Blocks:
+def _bounding_spheres(
+    starts: np.ndarray, low: np.ndarray, high: np.ndarray, more: np.ndarray
+) -> Blocks:
     low, high = low.astype(np.float64), high.astype(np.float64)
     return Blocks(starts, (low + high) / 2, np.linalg.norm(high - low, axis=1) / 2 + more + 0.01)

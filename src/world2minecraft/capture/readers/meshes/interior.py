@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh, Solid
-from world2minecraft.capture.readers.meshes.mesh_rasterizer import NO_FACE, faces_seen
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Geometry, Mesh
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import NO_FACE, render_face_ids
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
@@ -21,14 +21,14 @@ from world2minecraft.geometry.connected_components import label_components
 # A solid on a coarse grid: which cells hold surface.
 
 CELL_M = 0.10
-MOST_CELLS = 6_000_000  # A flat of 25 x 20 x 12 m; larger places have larger cells.
-AIR = 3  # Cells around the box, so that rays end in air.
-STEP = 0.45  # Of a cell: so near to each other are the places that mark a triangle's cells.
-MOST_SAMPLES = 2_000_000_000
+MAX_CELLS = 6_000_000  # A flat of 25 x 20 x 12 m; larger places have larger cells.
+PADDING_CELLS = 3  # Cells around the box, so that rays end in air.
+SAMPLE_STEP = 0.45  # Of a cell: so near to each other are the places that mark a triangle's cells.
+MAX_SAMPLES = 2_000_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class SurfaceGrid:
     """Cells ``held`` bool [X, Y, Z] of side ``cell_m`` from ``origin_m``: which hold surface."""
 
     held: np.ndarray
@@ -40,28 +40,28 @@ class Grid:
         return self.origin_m + (cells + 0.5) * self.cell_m
 
 
-def grid_of(solid: Solid, low_m: np.ndarray, high_m: np.ndarray) -> Grid:
+def voxelise_surface(solid: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> SurfaceGrid:
     """Return which cells of a box hold surface of a solid in metres.
 
     Raises:
         ValueError: its triangles have far more surface than a building.
     """
     size = high_m - low_m
-    cell_m = max(CELL_M, float((np.prod(size + 2 * AIR * CELL_M) / MOST_CELLS) ** (1 / 3)))
-    shape = np.ceil(size / cell_m).astype(int) + 2 * AIR + 1
-    origin = np.asarray(low_m - AIR * cell_m, np.float64)
+    cell_m = max(CELL_M, float((np.prod(size + 2 * PADDING_CELLS * CELL_M) / MAX_CELLS) ** (1 / 3)))
+    shape = np.ceil(size / cell_m).astype(int) + 2 * PADDING_CELLS + 1
+    origin = np.asarray(low_m - PADDING_CELLS * cell_m, np.float64)
     held = np.zeros(tuple(shape), np.bool_)
     if isinstance(solid, Mesh):
-        if _sample_count(solid.vertices, solid.faces, cell_m) > MOST_SAMPLES:
+        if _sample_count(solid.vertices, solid.faces, cell_m) > MAX_SAMPLES:
             raise ValueError("its triangles have far more surface than a building")
         _mark_triangles(solid.vertices, solid.faces, origin, cell_m, held)
     else:
         _mark_points(solid.points, origin, cell_m, held)
-    return Grid(held, origin, cell_m)
+    return SurfaceGrid(held, origin, cell_m)
 
 
 @njit
-def _parts(vertices, face, cell_m):
+def _subdivisions(vertices, face, cell_m):
     """Return into how many parts a triangle's sides are cut, so that no cell is missed."""
     longest = 0.0
     for k in range(3):
@@ -70,20 +70,20 @@ def _parts(vertices, face, cell_m):
         for a in range(3):
             length += (one[a] - other[a]) ** 2
         longest = max(longest, length)
-    return max(1.0, np.ceil(np.sqrt(longest) / (STEP * cell_m)))
+    return max(1.0, np.ceil(np.sqrt(longest) / (SAMPLE_STEP * cell_m)))
 
 
 @njit
 def _sample_count(vertices, faces, cell_m):
     total = 0.0
     for f in range(len(faces)):
-        parts = _parts(vertices, faces[f], cell_m)
+        parts = _subdivisions(vertices, faces[f], cell_m)
         total += (parts + 1) * (parts + 2) / 2
     return total
 
 
 @njit
-def _mark(place, origin, cell_m, held):
+def _mark_cell(place, origin, cell_m, held):
     i = int(np.floor((place[0] - origin[0]) / cell_m))
     j = int(np.floor((place[1] - origin[1]) / cell_m))
     k = int(np.floor((place[2] - origin[2]) / cell_m))
@@ -96,33 +96,33 @@ def _mark_triangles(vertices, faces, origin, cell_m, held):
     place = np.empty(3)
     for f in range(len(faces)):
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
-        parts = int(_parts(vertices, faces[f], cell_m))
+        parts = int(_subdivisions(vertices, faces[f], cell_m))
         for i in range(parts + 1):
             for j in range(parts + 1 - i):
                 s, t = i / parts, j / parts
                 for axis in range(3):
                     place[axis] = (1 - s - t) * a[axis] + s * b[axis] + t * c[axis]
-                _mark(place, origin, cell_m, held)
+                _mark_cell(place, origin, cell_m, held)
 
 
 @njit
 def _mark_points(points, origin, cell_m, held):
     for n in range(len(points)):
-        _mark(points[n], origin, cell_m, held)
+        _mark_cell(points[n], origin, cell_m, held)
 
 
 # Whether the faces that are seen from inside turn their backs.
 
-LOOKS = 12
-SMALL = 8  # Times smaller images tell it as well.
+CHECKED_VIEWS = 12
+DOWNSCALE = 8  # Times smaller images tell it as well.
 
 
-def outward_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> float:
+def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> float:
     """Return the share of pixels of the first views that see the back of a triangle."""
-    small = camera.resized(camera.width_px // SMALL, camera.height_px // SMALL)
+    small = camera.resized(camera.width_px // DOWNSCALE, camera.height_px // DOWNSCALE)
     backs, total = 0, 0
-    for pose in camera_to_world[:LOOKS]:
-        seen = faces_seen(mesh, small, invert_rigid(pose))
+    for pose in camera_to_world[:CHECKED_VIEWS]:
+        seen = render_face_ids(mesh, small, invert_rigid(pose))
         faces = mesh.faces[seen[seen != NO_FACE]]
         corners = apply(invert_rigid(pose), mesh.vertices[faces].astype(np.float64))
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -132,12 +132,12 @@ def outward_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> fl
 
 
 CLEAR_CELLS = 2  # About 0.25 m, a head's breadth: no nearer to surface than that is looked from.
-LEAST_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a wardrobe are 0.6.
-LEAST_ALONE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
-LEAST_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
+MIN_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a wardrobe are 0.6.
+MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
+MIN_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
 DOWN_VOTES, SIDE_VOTES, BOTH_VOTES = 5, 6, 12  # Of 9 down, 8 level, and 17 level or up.
-TOLD_SIDE_VOTES, TOLD_BOTH_VOTES = 3, 6  # Where the user names a place inside.
-NEAR_M = 1.0  # So far may the named place be from the space that it names.
+HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Where the user names a place inside.
+MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that it names.
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,17 +149,17 @@ class Interior:
     spaces: int
 
 
-def find_interior(grid: Grid, inside_m: np.ndarray | None = None) -> Interior | None:
+def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Interior | None:
     """Return the space inside, or None where there is none.
 
     Args:
         grid: z up.
         inside_m: a place inside that the user names; only the space around it is taken.
     """
-    down, side, up, drop = votes(grid.held)
+    down, side, up, drop = enclosure_votes(grid.held)
     side_least, both_least = SIDE_VOTES, BOTH_VOTES
     if inside_m is not None:
-        side_least, both_least = TOLD_SIDE_VOTES, TOLD_BOTH_VOTES
+        side_least, both_least = HINTED_SIDE_VOTES, HINTED_BOTH_VOTES
     enclosed = (side >= side_least) | (side + up >= both_least)
     inside = ~grid.held & (drop > 0) & (down >= DOWN_VOTES) & enclosed
     near = ndimage.binary_dilation(
@@ -168,7 +168,7 @@ def find_interior(grid: Grid, inside_m: np.ndarray | None = None) -> Interior | 
     parts, count = label_components(inside & np.logical_not(near), corners=False)
     chosen = _standing_spaces(parts, count, grid.cell_m)
     if inside_m is not None:
-        chosen = _around(parts, grid, inside_m)
+        chosen = _space_around(parts, grid, inside_m)
     if not chosen:
         return None
     return Interior(np.isin(parts, chosen), drop, len(chosen))
@@ -181,27 +181,27 @@ def _standing_spaces(parts: np.ndarray, count: int, cell_m: float) -> list[int]:
     high = [
         number
         for number, box in enumerate(boxes, 1)
-        if (box[2].stop - box[2].start) * cell_m >= LEAST_HEIGHT_M
+        if (box[2].stop - box[2].start) * cell_m >= MIN_HEIGHT_M
     ]
-    large = [number for number in high if volumes[number] >= LEAST_SPACE_M3]
+    large = [number for number in high if volumes[number] >= MIN_SPACE_M3]
     if large or not high:
         return large
     largest = max(high, key=lambda number: volumes[number])
-    return [largest] if volumes[largest] >= LEAST_ALONE_M3 else []
+    return [largest] if volumes[largest] >= MIN_SINGLE_SPACE_M3 else []
 
 
-def _around(parts: np.ndarray, grid: Grid, inside_m: np.ndarray) -> list[int]:
+def _space_around(parts: np.ndarray, grid: SurfaceGrid, inside_m: np.ndarray) -> list[int]:
     """Return the number of the space that is nearest to a named place, if it is near."""
     cells = np.argwhere(parts > 0)
     if not len(cells):
         return []
     away = np.linalg.norm(grid.centers_m(cells) - inside_m, axis=1)
     nearest = int(np.argmin(away))
-    return [int(parts[tuple(cells[nearest])])] if away[nearest] <= NEAR_M else []
+    return [int(parts[tuple(cells[nearest])])] if away[nearest] <= MAX_HINT_DISTANCE_M else []
 
 
 @njit
-def _sweep(held, dx, dy, dz, hit):
+def _sweep_direction(held, dx, dy, dz, hit):
     """Fill ``hit`` with whether a walk by (dx, dy, dz) from each cell meets a held one.
 
     A step aslant in one plane does not slip between two held cells that meet at their edges.
@@ -229,7 +229,7 @@ def _sweep(held, dx, dy, dz, hit):
 
 
 @njit
-def votes(held):
+def enclosure_votes(held):
     """Return how many of the 9, 8 and 9 directions down, level and up meet surface, and the drop.
 
     Returns:
@@ -243,18 +243,18 @@ def votes(held):
             for dz in range(-1, 2):
                 if dx == 0 and dy == 0 and dz == 0:
                     continue
-                _sweep(held, dx, dy, dz, hit)
+                _sweep_direction(held, dx, dy, dz, hit)
                 if dz < 0:
                     down += hit
                 elif dz == 0:
                     side += hit
                 else:
                     up += hit
-    return down, side, up, _drops(held)
+    return down, side, up, _drops_to_floor(held)
 
 
 @njit
-def _drops(held):
+def _drops_to_floor(held):
     drop = np.zeros(held.shape, np.int16)
     for x in range(held.shape[0]):
         for y in range(held.shape[1]):

@@ -8,25 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.attributes import as_colour
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, Loaded
-from world2minecraft.capture.readers.meshes.optional_libraries import library
-from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
+from world2minecraft.capture.readers.meshes.attributes import to_uint8_colours
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, LoadedGeometry
+from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
+from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
 
 CHUNK = 1_000_000
-MOST_IN_SCAN = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a point.
+MAX_SCAN_POINTS = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a point.
 
 
-def load_las(place: AnyPath) -> Loaded:
+def load_las(place: AnyPath) -> LoadedGeometry:
     """Read a LAS or LAZ file chunk by chunk.
 
     Raises:
         DamagedFileError: it cannot be read. LimitError: it is too large. MissingExtraError.
     """
-    laspy = library("laspy", "reading LAS clouds")
-    thinner = Thinner(unit_m=1.0)
+    laspy = import_optional("laspy", "reading LAS clouds")
+    thinner = VoxelDownsampler(unit_m=1.0)
     try:
         with laspy.open(place.open("rb")) as reader:
             _check_count(place, reader.header.point_count)
@@ -49,7 +49,7 @@ def load_las(place: AnyPath) -> Loaded:
         raise DamagedFileError(
             place, f"cannot be read as LAS ({reason_of(error)}); export it again"
         ) from error
-    return _loaded(thinner, "LAS")
+    return _to_geometry(thinner, "LAS")
 
 
 def _check_chunks(place: AnyPath, header: Any) -> None:
@@ -81,19 +81,19 @@ def _las_colour(chunk: Any) -> np.ndarray | None:
         return None
     values = np.stack([np.asarray(chunk[name]) for name in ("red", "green", "blue")], axis=1)
     # The format asks for 16 bits; some writers leave 8. A chunk of black stays black.
-    found = as_colour(values)
+    found = to_uint8_colours(values)
     return np.zeros(values.shape, np.uint8) if found is None else found
 
 
-def load_e57(place: AnyPath) -> Loaded:
+def load_e57(place: AnyPath) -> LoadedGeometry:
     """Read an E57 file scan by scan, each placed by its own pose. Raises as ``load_las``."""
-    pye57 = library("pye57", "reading E57 clouds")
-    thinner = Thinner(unit_m=1.0)
+    pye57 = import_optional("pye57", "reading E57 clouds")
+    thinner = VoxelDownsampler(unit_m=1.0)
     try:
-        with on_disk(place) as path, pye57.E57(str(path)) as file:
+        with file_on_disk(place) as path, pye57.E57(str(path)) as file:
             counts = [file.get_header(scan).point_count for scan in range(file.scan_count)]
             _check_count(place, sum(counts))
-            if max(counts, default=0) > MOST_IN_SCAN:
+            if max(counts, default=0) > MAX_SCAN_POINTS:
                 raise LimitError(place, f"has a scan of {max(counts):,} points; export it thinned")
             for scan in range(file.scan_count):
                 _add_scan(thinner, file, scan)
@@ -103,10 +103,10 @@ def load_e57(place: AnyPath) -> Loaded:
         raise DamagedFileError(
             place, f"cannot be read as E57 ({reason_of(error)}); export it again"
         ) from error
-    return _loaded(thinner, "E57")
+    return _to_geometry(thinner, "E57")
 
 
-def _add_scan(thinner: Thinner, file: Any, scan: int) -> None:
+def _add_scan(thinner: VoxelDownsampler, file: Any, scan: int) -> None:
     fields = set(file.get_header(scan).point_fields)
     coloured = {"colorRed", "colorGreen", "colorBlue"} <= fields
     read = file.read_scan(scan, colors=coloured, ignore_missing_fields=True)
@@ -114,7 +114,7 @@ def _add_scan(thinner: Thinner, file: Any, scan: int) -> None:
     colour = None
     if coloured:
         values = np.stack([read[f"color{name}"] for name in ("Red", "Green", "Blue")], axis=1)
-        found = as_colour(values)
+        found = to_uint8_colours(values)
         colour = np.zeros(values.shape, np.uint8) if found is None else found
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
@@ -122,7 +122,7 @@ def _add_scan(thinner: Thinner, file: Any, scan: int) -> None:
 
 
 @contextmanager
-def on_disk(place: AnyPath) -> Iterator[Path]:
+def file_on_disk(place: AnyPath) -> Iterator[Path]:
     """Give a file's path, unpacked for a while where it lies in a zip."""
     if isinstance(place, Path):
         yield place
@@ -138,6 +138,8 @@ def _check_count(place: AnyPath, count: int) -> None:
         raise LimitError(place, f"has {count:,} points; at most {MAX_POINTS:,} are read: thin it")
 
 
-def _loaded(thinner: Thinner, kind: str) -> Loaded:
+def _to_geometry(thinner: VoxelDownsampler, kind: str) -> LoadedGeometry:
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
-    return Loaded(thinner.cloud(), kind, offset, 1.0, "z", up_stated=True, read=thinner.read)
+    return LoadedGeometry(
+        thinner.cloud(), kind, offset, 1.0, "z", up_stated=True, read=thinner.read
+    )

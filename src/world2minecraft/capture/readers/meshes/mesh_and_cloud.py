@@ -68,11 +68,11 @@ class Mesh:
 
     def moved(self, transform: np.ndarray) -> "Mesh":
         """Return it carried by a 4x4 transform, which may scale."""
-        return replace(self, vertices=_moved(self.vertices, transform))
+        return replace(self, vertices=_transform_points(self.vertices, transform))
 
 
 @dataclass(frozen=True, eq=False)
-class Cloud:
+class PointCloud:
     """Points that may have colours and classes.
 
     ``points`` float32 [N, 3], ``colour`` uint8 [N, 3] sRGB or none, ``labels`` uint8 [N] class ids
@@ -104,14 +104,14 @@ class Cloud:
 
     def moved(self, transform: np.ndarray) -> "Cloud":
         """Return it carried by a 4x4 transform, which may scale."""
-        return replace(self, points=_moved(self.points, transform))
+        return replace(self, points=_transform_points(self.points, transform))
 
 
-Solid = Mesh | Cloud
+Geometry = Mesh | PointCloud
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class LoadedGeometry:
     """A solid as its file gives it, and what the file or its format states of it.
 
     A place in the file is one of ``solid`` plus ``offset`` (float64 [3]), so that surveyed
@@ -120,7 +120,7 @@ class Loaded:
     it is more than a habit.
     """
 
-    solid: Solid
+    solid: Geometry
     kind: str
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     unit_m: float | None = None
@@ -130,7 +130,7 @@ class Loaded:
     read: int = 0  # Points of the file, before they were thinned.
 
 
-def _moved(places: np.ndarray, transform: np.ndarray) -> np.ndarray:
+def _transform_points(places: np.ndarray, transform: np.ndarray) -> np.ndarray:
     """Return float32 places carried in float64, in blocks that need little memory."""
     result = np.empty_like(places)
     turn, shift = transform[:3, :3].T, transform[:3, 3]

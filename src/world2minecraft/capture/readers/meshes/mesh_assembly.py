@@ -12,11 +12,13 @@ from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 
-MOST_PIXELS = 48_000_000  # Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
+MAX_TEXTURE_PIXELS = (
+    48_000_000  # Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
+)
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MeshPart:
     """One mesh of a scene in its frame.
 
     ``vertices`` float64 [V, 3], ``faces`` int [F, 3], ``colour`` uint8 [V, 3] or none; ``picture``
@@ -45,7 +47,7 @@ def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
             )
 
 
-def joined(place: AnyPath, parts: Sequence[Part]) -> tuple[Mesh, np.ndarray]:
+def join_parts(place: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarray]:
     """Return one mesh near the origin, and the float64 [3] that was taken off its places.
 
     Raises:
@@ -88,7 +90,7 @@ def joined(place: AnyPath, parts: Sequence[Part]) -> tuple[Mesh, np.ndarray]:
     return mesh, offset
 
 
-def _colours(parts: Sequence[Part]) -> np.ndarray | None:
+def _colours(parts: Sequence[MeshPart]) -> np.ndarray | None:
     if all(part.colour is None for part in parts):
         return None
     grey = np.full((1, 3), GREY, np.uint8)
@@ -97,12 +99,14 @@ def _colours(parts: Sequence[Part]) -> np.ndarray | None:
     )
 
 
-def _uv(parts: Sequence[Part]) -> np.ndarray:
+def _uv(parts: Sequence[MeshPart]) -> np.ndarray:
     uv = [np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for p in parts]
     return np.nan_to_num(np.concatenate(uv), posinf=0, neginf=0).astype(np.float32)
 
 
-def _pictures(place: AnyPath, parts: Sequence[Part]) -> tuple[np.ndarray, np.ndarray, list[int]]:
+def _pictures(
+    place: AnyPath, parts: Sequence[MeshPart]
+) -> tuple[np.ndarray, np.ndarray, list[int]]:
     """Return the pixels and the sizes of the distinct pictures, and which one each part has."""
     numbers: list[int] = []
     known: dict[tuple, int] = {}
@@ -119,14 +123,14 @@ def _pictures(place: AnyPath, parts: Sequence[Part]) -> tuple[np.ndarray, np.nda
             chosen.append((part.picture, part.tint))
         numbers.append(known[key])
     total = sum(picture.width * picture.height for picture, _ in chosen)
-    shrink = max(1, int(np.ceil(np.sqrt(total / MOST_PIXELS))))
-    arrays = [_decoded(place, picture, tint, shrink) for picture, tint in chosen]
+    shrink = max(1, int(np.ceil(np.sqrt(total / MAX_TEXTURE_PIXELS))))
+    arrays = [_decode_picture(place, picture, tint, shrink) for picture, tint in chosen]
     sizes = np.array([(a.shape[1], a.shape[0]) for a in arrays], np.int64).reshape(-1, 2)
     flat = [np.zeros((0, 3), np.uint8), *(a.reshape(-1, 3) for a in arrays)]
     return np.concatenate(flat), sizes, numbers
 
 
-def _decoded(
+def _decode_picture(
     place: AnyPath, picture: Image.Image, tint: tuple[int, int, int], shrink: int
 ) -> np.ndarray:
     try:

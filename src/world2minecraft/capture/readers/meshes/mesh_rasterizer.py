@@ -17,7 +17,7 @@ NO_FACE = -1
 GREY = 178  # What has no colour of its own.
 
 
-def see_triangles(
+def render_mesh(
     mesh: Mesh, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return what a camera sees of a mesh.
@@ -32,40 +32,40 @@ def see_triangles(
         z-depth float32 [H, W] in metres, 0 where nothing is; colour uint8 [H, W, 3], black there;
         labels uint8 [H, W], 255 where the mesh says nothing.
     """
-    depth, face = _drawn(mesh, camera, world_to_camera, runs)
+    depth, face = _draw_mesh(mesh, camera, world_to_camera, runs)
     colour = np.zeros((*depth.shape, 3), np.uint8)
     pose = np.ascontiguousarray(world_to_camera, np.float64)
-    looks, pictures = _looks(mesh)
-    _shade(mesh.vertices, mesh.faces, pose, lens_of(camera), face, looks, pictures, colour)
+    looks, pictures = _mesh_colours(mesh)
+    _shade(mesh.vertices, mesh.faces, pose, pinhole_of(camera), face, looks, pictures, colour)
     labels = np.full(depth.shape, 255, np.uint8)
     if mesh.labels is not None:
         labels[face != NO_FACE] = mesh.labels[face[face != NO_FACE]]
     return depth, colour, labels
 
 
-def faces_seen(mesh: Mesh, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
+def render_face_ids(mesh: Mesh, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
     """Return int32 [H, W]: the face that each pixel sees, -1 for none."""
-    return _drawn(mesh, camera, world_to_camera, None)[1]
+    return _draw_mesh(mesh, camera, world_to_camera, None)[1]
 
 
-def lens_of(camera: Camera) -> tuple[float, float, float, float]:
+def pinhole_of(camera: Camera) -> tuple[float, float, float, float]:
     """Return focal lengths and principal point as kernels take them."""
     return camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px
 
 
-def _drawn(
+def _draw_mesh(
     mesh: Mesh, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
     depth = np.full((camera.height_px, camera.width_px), np.inf, np.float32)
     face = np.full(depth.shape, NO_FACE, np.int32)
     pose = np.ascontiguousarray(world_to_camera, np.float64)
     runs = np.array([[0, len(mesh.faces)]], np.int64) if runs is None else runs
-    _draw(mesh.vertices, mesh.faces, pose, lens_of(camera), runs, depth, face)
+    _draw(mesh.vertices, mesh.faces, pose, pinhole_of(camera), runs, depth, face)
     depth[face == NO_FACE] = 0
     return depth, face
 
 
-def _looks(mesh: Mesh) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+def _mesh_colours(mesh: Mesh) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
     """Return colours, uv and pictures of faces, and the pictures' pixels, starts and sizes."""
     colour = np.zeros((0, 3), np.uint8) if mesh.colour is None else mesh.colour
     uv = np.zeros((0, 2), np.float32) if mesh.uv is None else mesh.uv
@@ -75,7 +75,7 @@ def _looks(mesh: Mesh) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
 
 
 @njit
-def _corners(vertices, face, pose, triangle):
+def _transform_corners(vertices, face, pose, triangle):
     """Carry a triangle's corners to the camera's frame; return the largest z."""
     most = -np.inf
     for k in range(3):
@@ -88,7 +88,7 @@ def _corners(vertices, face, pose, triangle):
 
 
 @njit
-def _window(triangle, lens, width, height):
+def _pixel_bounds(triangle, lens, width, height):
     """Return the pixels u0, u1, v0, v1 (ends not included) that a triangle may cover."""
     low_u, high_u, low_v, high_v = np.inf, -np.inf, np.inf, -np.inf
     for k in range(3):
@@ -124,7 +124,7 @@ def _edge(edges, k, one, other):
 
 
 @njit
-def _edges_of(triangle, edges):
+def _edge_functions(triangle, edges):
     """Fill ``edges`` so that edge k over the result, met with a ray, is the share of corner k."""
     _edge(edges, 0, triangle[1], triangle[2])
     _edge(edges, 1, triangle[2], triangle[0])
@@ -141,17 +141,17 @@ def _draw(vertices, faces, pose, lens, runs, depth, seen):
     edges, triangle = np.empty((3, 3)), np.empty((3, 3))
     for r in range(len(runs)):
         for f in range(runs[r, 0], runs[r, 1]):
-            if _corners(vertices, faces[f], pose, triangle) >= NEAR_M:
-                _put(f, triangle, edges, lens, depth, seen)
+            if _transform_corners(vertices, faces[f], pose, triangle) >= NEAR_M:
+                _draw_triangle(f, triangle, edges, lens, depth, seen)
 
 
 @njit
-def _put(f, triangle, edges, lens, depth, seen):
+def _draw_triangle(f, triangle, edges, lens, depth, seen):
     height, width = depth.shape
-    u0, u1, v0, v1 = _window(triangle, lens, width, height)
+    u0, u1, v0, v1 = _pixel_bounds(triangle, lens, width, height)
     if u0 >= u1 or v0 >= v1:
         return
-    volume = _edges_of(triangle, edges)
+    volume = _edge_functions(triangle, edges)
     if volume == 0.0:
         return
     sign = 1.0 if volume > 0 else -1.0
@@ -184,8 +184,8 @@ def _shade(vertices, faces, pose, lens, seen, looks, pictures, picture):
             if f < 0:
                 continue
             face = faces[f]
-            _corners(vertices, face, pose, triangle)
-            _edges_of(triangle, edges)
+            _transform_corners(vertices, face, pose, triangle)
+            _edge_functions(triangle, edges)
             x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
             for k in range(3):
                 share[k] = edges[k, 0] * x + edges[k, 1] * y + edges[k, 2]

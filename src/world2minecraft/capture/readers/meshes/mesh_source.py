@@ -11,19 +11,23 @@ import numpy as np
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImageHeader
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels, see_points
+from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels, render_surfels
 from world2minecraft.capture.readers.meshes.frustum_culling import (
     Blocks,
-    mesh_in_blocks,
-    surfels_in_blocks,
+    sort_mesh_into_blocks,
+    sort_surfels_into_blocks,
 )
-from world2minecraft.capture.readers.meshes.interior import find_interior, grid_of, outward_share
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Loaded, Mesh, Solid
-from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, see_triangles
-from world2minecraft.capture.readers.meshes.orientation_and_unit import stance_of, unit_of
-from world2minecraft.capture.readers.meshes.surfels import surfels_of
+from world2minecraft.capture.readers.meshes.interior import (
+    backface_share,
+    find_interior,
+    voxelise_surface,
+)
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Geometry, LoadedGeometry, Mesh
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY, render_mesh
+from world2minecraft.capture.readers.meshes.orientation_and_unit import find_orientation, find_unit
+from world2minecraft.capture.readers.meshes.surface_sampling import sample_surface
+from world2minecraft.capture.readers.meshes.surfels import estimate_surfels
 from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
-from world2minecraft.capture.readers.meshes.surface_sampling import samples_of
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.classes import CLASS_COLOURS
@@ -56,13 +60,17 @@ READERS = {
     ".txt": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
     ".csv": "world2minecraft.capture.readers.meshes.text_clouds:load_text",
 }
-VAGUE = (".txt", ".csv", ".asc")  # Anything may be in them: taken only where they are named.
-SOLID_READERS = Registry("solid format", READERS)
+AMBIGUOUS_SUFFIXES = (
+    ".txt",
+    ".csv",
+    ".asc",
+)  # Anything may be in them: taken only where they are named.
+MESH_READERS = Registry("solid format", READERS)
 ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder beside the room's own.
 LABELLED = ".labels"  # ScanNet: the same mesh again, coloured by class.
 
 
-def find_solid(place: AnyPath) -> AnyPath | None:
+def find_mesh_file(place: AnyPath) -> AnyPath | None:
     """Return the file of a place that is a mesh or a cloud, the folder of an S3DIS room, or None.
 
     Raises:
@@ -74,7 +82,7 @@ def find_solid(place: AnyPath) -> AnyPath | None:
         return None
     if any((place / ANNOTATIONS).glob("*.txt")) if (place / ANNOTATIONS).is_dir() else False:
         return place
-    order = [suffix for suffix in READERS if suffix not in VAGUE]
+    order = [suffix for suffix in READERS if suffix not in AMBIGUOUS_SUFFIXES]
     found = [entry for entry in place.iterdir() if entry.suffix.lower() in order]
     found = [entry for entry in found if entry.is_file() and not entry.name.startswith(".")]
     plain = [entry for entry in found if not entry.stem.endswith(LABELLED)] or found
@@ -86,14 +94,14 @@ def find_solid(place: AnyPath) -> AnyPath | None:
     return min(plain, key=lambda e: (order.index(e.suffix.lower()), e.name), default=None)
 
 
-def load_solid(place: AnyPath) -> Loaded:
-    """Read a file that ``find_solid`` found. Raises what its reader raises."""
+def load_geometry(place: AnyPath) -> LoadedGeometry:
+    """Read a file that ``find_mesh_file`` found. Raises what its reader raises."""
     if place.is_dir():
         return load_s3dis(place)
-    return SOLID_READERS.load(place.suffix.lower())(place)
+    return MESH_READERS.load(place.suffix.lower())(place)
 
 
-def stamp_of(place: AnyPath) -> tuple[int, ...]:
+def file_stamp(place: AnyPath) -> tuple[int, ...]:
     """Return what changes when a file does: its size and time."""
     file = Path(place.path) if isinstance(place, ArchivePath) else place
     found = file.stat()
@@ -102,13 +110,13 @@ def stamp_of(place: AnyPath) -> tuple[int, ...]:
 
 # Frames of a solid: rendered when they are first asked for, and kept for the next stage.
 
-KEPT_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
+MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
 MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
-Seen = tuple[np.ndarray, np.ndarray, np.ndarray]
+RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(eq=False)
-class Looker:
+class ViewRenderer:
     """Renders views of one solid and keeps the last ones; ``name`` is that of its file."""
 
     name: str
@@ -120,7 +128,7 @@ class Looker:
     _kept: "OrderedDict[int, Seen]" = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
-    def seen(self, view: int) -> Seen:
+    def seen(self, view: int) -> RenderedView:
         """Return depth, colour and labels of a view, all [H, W]."""
         with self._lock:
             if view in self._kept:
@@ -132,24 +140,24 @@ class Looker:
                 colours[: len(CLASS_COLOURS)] = CLASS_COLOURS
                 found = found[0], colours[found[2]], found[2]
             self._kept[view] = found
-            most = max(2, KEPT_BYTES // sum(image.nbytes for image in found))
+            most = max(2, MAX_CACHE_BYTES // sum(image.nbytes for image in found))
             while len(self._kept) > most:
                 self._kept.popitem(last=False)
             return found
 
-    def _rendered(self, view: int) -> Seen:
+    def _rendered(self, view: int) -> RenderedView:
         world_to_camera = invert_rigid(self.camera_to_world[view])
         runs = self.blocks.runs(self.camera, world_to_camera)
         if isinstance(self.solid, Mesh):
-            return see_triangles(self.solid, self.camera, world_to_camera, runs)
-        return see_points(self.solid, self.camera, world_to_camera, runs)
+            return render_mesh(self.solid, self.camera, world_to_camera, runs)
+        return render_surfels(self.solid, self.camera, world_to_camera, runs)
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class RenderedImage:
     """One image of one view: ``kind`` is colour, depth or labels. An ``ImageSource``."""
 
-    looker: Looker
+    looker: ViewRenderer
     view: int
     kind: str
 
@@ -196,20 +204,20 @@ def view_name(view: int) -> str:
 
 
 MARGIN_M = 0.3
-LEAST_SIDES_M = (1.0, 1.0, 1.2)
-MOST_SIDE_M = 200.0
-OUTWARD_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
-TELL_UNIT = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
+MIN_SIDES_M = (1.0, 1.0, 1.2)
+MAX_SIDE_M = 200.0
+MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
+UNIT_ADVICE = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
 
 
-class SolidSource:
+class MeshSource:
     """Reads one mesh or point cloud of a room, alone or beside its textures."""
 
     layout = "a mesh or a point cloud (.glb .gltf .obj .ply .stl .usdz .las .laz .e57 .xyz .pts ..)"
 
     def recognise(self, folder: AnyPath) -> bool:
         """Return whether the place is such a file, or a folder with one and no frames."""
-        return find_solid(folder) is not None
+        return find_mesh_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
         """List virtual views of it. Raises what ``read_with`` raises."""
@@ -222,34 +230,34 @@ class SolidSource:
             CaptureError: it shows no inside of a room. DamagedFileError: it is not what its
                 format says. LimitError: it is too large. MissingExtraError: its library is absent.
         """
-        place = find_solid(folder)
+        place = find_mesh_file(folder)
         if place is None:
             raise CaptureError(folder, "holds no mesh and no point cloud")
-        return _read_once(place, stamp_of(place), options)
+        return _read_once(place, file_stamp(place), options)
 
 
 @lru_cache(maxsize=1)
 def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
     """Read a file; the same file is asked for twice, to be judged and to be opened."""
-    loaded = load_solid(place)
+    loaded = load_geometry(place)
     if not len(loaded.solid.places) or (
         isinstance(loaded.solid, Mesh) and not len(loaded.solid.faces)
     ):
         raise CaptureError(place, "holds no surface at all: no triangles and no points")
-    file_to_world, said = world_of(place, loaded, options)
+    file_to_world, said = estimate_world_frame(place, loaded, options)
     inside_m = None
     if options.inside is not None:
         inside_m = apply(file_to_world, np.array(options.inside) - loaded.offset)
     solid = loaded.solid.moved(file_to_world)
-    poses, spaces = _views(place, solid, inside_m)
+    poses, spaces = _choose_poses(place, solid, inside_m)
     if isinstance(solid, Mesh):
-        looked_at, blocks = mesh_in_blocks(solid)
+        looked_at, blocks = sort_mesh_into_blocks(solid)
     else:
-        looked_at, blocks = surfels_in_blocks(surfels_of(solid))
+        looked_at, blocks = sort_surfels_into_blocks(estimate_surfels(solid))
     by_class = solid.labels is not None and not solid.coloured
-    looker = Looker(place.name, looked_at, CAMERA, poses, blocks, by_class)
+    looker = ViewRenderer(place.name, looked_at, CAMERA, poses, blocks, by_class)
     notes = (
-        f"{_counts(loaded)}; {said}",
+        f"{_size_note(loaded)}; {said}",
         f"looked at from {len(poses)} places in {spaces} closed space{'s' * (spaces > 1)}",
         *loaded.notes,
     )
@@ -264,21 +272,23 @@ def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> 
     )
 
 
-def world_of(place: AnyPath, loaded: Loaded, options: ScanOptions) -> tuple[np.ndarray, str]:
+def estimate_world_frame(
+    place: AnyPath, loaded: LoadedGeometry, options: ScanOptions
+) -> tuple[np.ndarray, str]:
     """Return the 4x4 from the solid's own frame to metres with z up, and what to tell of it."""
-    samples = samples_of(loaded.solid)
+    samples = sample_surface(loaded.solid)
     if not len(samples.points):
         raise CaptureError(place, "holds no surface at all: its triangles have no area")
-    stance = stance_of(samples, loaded.usual_up, loaded.up_stated, options.up)
+    stance = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
     upright = samples.points @ stance.turn.T
     low, high = np.quantile(upright, [0.002, 0.998], axis=0)
-    unit_m, unit_said = unit_of(high - low, loaded.unit_m, options.unit)
+    unit_m, unit_said = find_unit(high - low, loaded.unit_m, options.unit)
     size = (high - low) * unit_m
-    if (size < LEAST_SIDES_M).any() or (size > MOST_SIDE_M).any():
+    if (size < MIN_SIDES_M).any() or (size > MAX_SIDE_M).any():
         raise CaptureError(
             place,
             f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_said}; {stance.told}), "
-            f"which is no room but an object or a landscape; {TELL_UNIT}",
+            f"which is no room but an object or a landscape; {UNIT_ADVICE}",
         )
     file_to_world = np.eye(4)
     file_to_world[:3, :3] = stance.turn * unit_m
@@ -288,20 +298,22 @@ def world_of(place: AnyPath, loaded: Loaded, options: ScanOptions) -> tuple[np.n
     return file_to_world, told
 
 
-def _views(place: AnyPath, solid: Solid, inside_m: np.ndarray | None) -> tuple[np.ndarray, int]:
+def _choose_poses(
+    place: AnyPath, solid: Geometry, inside_m: np.ndarray | None
+) -> tuple[np.ndarray, int]:
     """Return the poses of the views and how many spaces they look at."""
-    low, high = samples_of(solid).box()
+    low, high = sample_surface(solid).box()
     try:
-        grid = grid_of(solid, low - MARGIN_M, high + MARGIN_M)
+        grid = voxelise_surface(solid, low - MARGIN_M, high + MARGIN_M)
     except ValueError as error:
         raise CaptureError(place, str(error)) from error
     interior = find_interior(grid, inside_m)
     if interior is None:
-        raise CaptureError(place, _no_inside(inside_m))
+        raise CaptureError(place, _no_interior_reason(inside_m))
     poses = choose_views(grid, interior)
     if isinstance(solid, Mesh) and inside_m is None:
-        share = outward_share(solid, CAMERA, poses)
-        if share > OUTWARD_SHARE:
+        share = backface_share(solid, CAMERA, poses)
+        if share > MAX_BACKFACE_SHARE:
             raise CaptureError(
                 place,
                 "is seen from outside: all its faces look outward, as those of an object or of a "
@@ -310,7 +322,7 @@ def _views(place: AnyPath, solid: Solid, inside_m: np.ndarray | None) -> tuple[n
     return poses, interior.spaces
 
 
-def _no_inside(inside_m: np.ndarray | None) -> str:
+def _no_interior_reason(inside_m: np.ndarray | None) -> str:
     if inside_m is not None:
         return (
             "has no free space that surface surrounds within 1 m of the point named by inside; "
@@ -323,20 +335,20 @@ def _no_inside(inside_m: np.ndarray | None) -> str:
     )
 
 
-def _frame(looker: Looker, view: int, solid: Solid) -> FrameFiles:
+def _frame(looker: ViewRenderer, view: int, solid: Geometry) -> FrameFiles:
     camera, coloured = looker.camera, solid.coloured or looker.by_class
     return FrameFiles(
         view_name(view),
         looker.camera_to_world[view],
-        Look(looker, view, "colour") if coloured else None,
+        RenderedImage(looker, view, "colour") if coloured else None,
         camera if coloured else None,
-        Look(looker, view, "depth"),
+        RenderedImage(looker, view, "depth"),
         camera,
-        labels_path=Look(looker, view, "labels") if solid.labels is not None else None,
+        labels_path=RenderedImage(looker, view, "labels") if solid.labels is not None else None,
     )
 
 
-def _counts(loaded: Loaded) -> str:
+def _size_note(loaded: LoadedGeometry) -> str:
     if isinstance(loaded.solid, Mesh):
         return f"{loaded.kind} mesh of {len(loaded.solid.faces):,} triangles"
     thinned = (

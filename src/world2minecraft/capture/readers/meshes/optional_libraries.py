@@ -6,7 +6,7 @@ from typing import Any
 from world2minecraft.core.errors import MissingExtraError
 
 
-def library(name: str, doing: str, extra: str = "capture") -> Any:
+def import_optional(name: str, doing: str, extra: str = "capture") -> Any:
     """Return a module of an optional library.
 
     Args:

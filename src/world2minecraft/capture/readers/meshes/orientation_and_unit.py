@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.capture.options import MESH_UNITS_M
-from world2minecraft.capture.readers.meshes.surface_sampling import Samples
+from world2minecraft.capture.readers.meshes.surface_sampling import SurfaceSamples
 
 AXES = {
     "x": (1.0, 0.0, 0.0),
@@ -26,12 +26,12 @@ AXES = {
 ALIGNED = 0.985  # Cosine of 10 degrees: the file's own axis is meant.
 FACING = 0.94  # Cosine of 20 degrees.
 DIRECTIONS = 1500
-VOTERS = 4000
+MAX_VOTERS = 4000
 OUTER = 0.08  # Of a length: the shell's share at each end.
 # What each sign is worth, in the natural logarithm of odds. Guesses, then held to the rooms of
 # the tests, turned to all six axes.
-USUAL, UPRIGHT_AXIS, DOWNWARD, SIDEWAYS = 2.2, 0.7, 0.2, -2.0
-FACED, SHORT, BELOW = 3.0, 1.5, 4.0
+FORMAT_AXIS, UPRIGHT_AXIS, DOWNWARD, SIDEWAYS = 2.2, 0.7, 0.2, -2.0
+FACING_WEIGHT, SHORTNESS_WEIGHT, BELOW_WEIGHT = 3.0, 1.5, 4.0
 HEIGHT_M, HEIGHT_SPREAD = 2.6, 0.35  # The middle and the spread of rooms' heights (logarithm).
 RARITY = {"m": 0.0, "cm": 1.0, "mm": 1.0, "foot": 3.0, "inch": 3.0}
 SIDES_M, HEIGHTS_M = (1.2, 40.0), (1.5, 12.0)
@@ -39,14 +39,16 @@ STATED_MARGIN = 3.0  # A format's unit is doubted only where another fits so muc
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class Orientation:
     """``turn`` float64 [3, 3] carries the file's axes to z up; ``told`` names up in words."""
 
     turn: np.ndarray
     told: str
 
 
-def stance_of(samples: Samples, usual_up: str, stated: bool, chosen: str | None) -> Stance:
+def find_orientation(
+    samples: SurfaceSamples, usual_up: str, stated: bool, chosen: str | None
+) -> Orientation:
     """Return how a solid stands.
 
     Args:
@@ -56,25 +58,31 @@ def stance_of(samples: Samples, usual_up: str, stated: bool, chosen: str | None)
         chosen: the axis that the user says, or None.
     """
     if chosen is not None:
-        return Stance(turn_of(np.array(AXES[chosen])), f"up is {chosen}, as told")
+        return Orientation(rotation_to_up(np.array(AXES[chosen])), f"up is {chosen}, as told")
     if stated:
-        return Stance(turn_of(np.array(AXES[usual_up])), f"up is {usual_up}, as the file says")
-    frame = _frame(samples.normals)
+        return Orientation(
+            rotation_to_up(np.array(AXES[usual_up])), f"up is {usual_up}, as the file says"
+        )
+    frame = _dominant_frame(samples.normals)
     ups = [sign * axis for axis in frame for sign in (1.0, -1.0)]
-    scores = [_score(samples, up, usual_up) for up in ups]
+    scores = [_up_score(samples, up, usual_up) for up in ups]
     best = ups[int(np.argmax(scores))]
     name = max(AXES, key=lambda axis: float(best @ AXES[axis]))
     if best @ AXES[name] > ALIGNED:
-        return Stance(turn_of(np.array(AXES[name])), f"up is taken to be {name} (guessed)")
+        return Orientation(
+            rotation_to_up(np.array(AXES[name])), f"up is taken to be {name} (guessed)"
+        )
     tilt = np.degrees(np.arccos(np.clip(best @ AXES[name], -1, 1)))
-    return Stance(turn_of(best), f"up is taken to be {tilt:.0f} degrees off {name} (guessed)")
+    return Orientation(
+        rotation_to_up(best), f"up is taken to be {tilt:.0f} degrees off {name} (guessed)"
+    )
 
 
-def turn_of(up: np.ndarray) -> np.ndarray:
+def rotation_to_up(up: np.ndarray) -> np.ndarray:
     """Return the rotation [3, 3] that carries ``up`` to +z along the shortest way.
 
     Example:
-        >>> (turn_of(np.array([0.0, 1.0, 0.0])) @ [0, 0, 1]).tolist()
+        >>> (rotation_to_up(np.array([0.0, 1.0, 0.0])) @ [0, 0, 1]).tolist()
         [0.0, -1.0, 0.0]
     """
     x, y, z = up
@@ -89,10 +97,10 @@ def turn_of(up: np.ndarray) -> np.ndarray:
     )
 
 
-def _frame(normals: np.ndarray) -> np.ndarray:
+def _dominant_frame(normals: np.ndarray) -> np.ndarray:
     """Return three directions at right angles that most surface faces, float64 [3, 3] rows."""
     known = normals[np.abs(normals).sum(axis=1) > 0]
-    known = known[:: max(1, len(known) // VOTERS)]
+    known = known[:: max(1, len(known) // MAX_VOTERS)]
     if len(known) < 20:
         return np.eye(3)
     index = np.arange(DIRECTIONS) + 0.5
@@ -101,15 +109,15 @@ def _frame(normals: np.ndarray) -> np.ndarray:
     ways = np.stack([flat * np.cos(angle), flat * np.sin(angle), height], axis=1)
     ways = np.concatenate([np.eye(3), ways])
     votes = (np.abs(ways @ known.T) > np.cos(np.radians(6))).sum(axis=1)
-    first = _middle(known, ways[int(np.argmax(votes))])
+    first = _refine_direction(known, ways[int(np.argmax(votes))])
     across = np.abs(ways @ first) < np.sin(np.radians(5))
-    second = _middle(known, ways[int(np.argmax(np.where(across, votes, -1)))])
+    second = _refine_direction(known, ways[int(np.argmax(np.where(across, votes, -1)))])
     second -= first * (first @ second)
     second /= np.linalg.norm(second)
     return np.stack([first, second, np.cross(first, second)])
 
 
-def _middle(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
+def _refine_direction(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
     """Move a direction to the middle of the normals around it."""
     for within_deg in (8.0, 5.0, 4.0):
         near = normals[np.abs(normals @ way) > np.cos(np.radians(within_deg))]
@@ -120,31 +128,31 @@ def _middle(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
     return way
 
 
-def _score(samples: Samples, up: np.ndarray, usual_up: str) -> float:
+def _up_score(samples: SurfaceSamples, up: np.ndarray, usual_up: str) -> float:
     """Return how likely a direction is up."""
     score = 0.0
     if up @ AXES[usual_up] > FACING:
-        score += USUAL
+        score += FORMAT_AXIS
     elif max(up[1], up[2]) > FACING:
         score += UPRIGHT_AXIS
     elif min(up[1], up[2]) < -FACING:
         score += DOWNWARD
     elif abs(up[0]) > FACING:
         score += SIDEWAYS
-    turned = samples.points @ turn_of(up).T
+    turned = samples.points @ rotation_to_up(up).T
     low, high = np.quantile(turned, [0.005, 0.995], axis=0)
     length = np.maximum(high - low, 1e-9)
-    score -= SHORT * float(np.log(length[2] / length.min()))
+    score -= SHORTNESS_WEIGHT * float(np.log(length[2] / length.min()))
     facing = np.abs(samples.normals @ up) > FACING
-    score += FACED * float(facing.mean())
+    score += FACING_WEIGHT * float(facing.mean())
     place = (turned - low) / length
     within = ((place > OUTER) & (place < 1 - OUTER)).all(axis=1)
     if within.sum() > 50:
-        score += BELOW * float((place[within, 2] < 0.5).mean() - 0.5) * 2
+        score += BELOW_WEIGHT * float((place[within, 2] < 0.5).mean() - 0.5) * 2
     return score
 
 
-def unit_of(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tuple[float, str]:
+def find_unit(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tuple[float, str]:
     """Return metres per unit and the sentence that tells it.
 
     Args:
@@ -154,15 +162,20 @@ def unit_of(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tup
     """
     if chosen is not None:
         return MESH_UNITS_M[chosen], f"one unit is 1 {chosen}, as told"
-    scores = {name: _plausible(size * MESH_UNITS_M[name]) - RARITY[name] for name in RARITY}
+    scores = {
+        name: _size_log_likelihood(size * MESH_UNITS_M[name]) - RARITY[name] for name in RARITY
+    }
     best = max(scores, key=lambda name: scores[name])
-    if stated_m is not None and _plausible(size * stated_m) > scores[best] - STATED_MARGIN:
+    if (
+        stated_m is not None
+        and _size_log_likelihood(size * stated_m) > scores[best] - STATED_MARGIN
+    ):
         name = next((n for n in RARITY if MESH_UNITS_M[n] == stated_m), f"{stated_m:g} m")
         return stated_m, f"one unit is 1 {name}, as its format says"
     return MESH_UNITS_M[best], f"one unit is taken to be 1 {best} (guessed from the size)"
 
 
-def _plausible(size_m: np.ndarray) -> float:
+def _size_log_likelihood(size_m: np.ndarray) -> float:
     """Return the logarithm of how likely a room has this size."""
     off = (np.log(max(float(size_m[2]), 1e-9)) - np.log(HEIGHT_M)) / HEIGHT_SPREAD
     score = -off * off / 2

@@ -9,16 +9,19 @@ from typing import NoReturn
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.capture.readers.meshes.attributes import classes_of_numbers, colour_of
+from world2minecraft.capture.readers.meshes.attributes import (
+    classes_of_label_ids,
+    colours_of_columns,
+)
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
     MAX_FACES,
     MAX_POINTS,
     MAX_VERTICES,
-    Loaded,
+    LoadedGeometry,
 )
-from world2minecraft.capture.readers.meshes.mesh_assembly import Part, joined
+from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, join_parts
 from world2minecraft.capture.readers.meshes.text_clouds import parse_numbers
-from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
+from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
@@ -26,11 +29,11 @@ from world2minecraft.core.jit import njit
 
 # Rows with lists of their own lengths, as the faces of PLY files are.
 
-MOST_CORNERS = 1 << 16  # Of one polygon.
+MAX_CORNERS = 1 << 16  # Of one polygon.
 
 
 @njit
-def walk_lists(raw, rows, steps, big):
+def locate_binary_lists(raw, rows, steps, big):
     """Find where the values of each property of each row lie among bytes.
 
     Args:
@@ -55,7 +58,7 @@ def walk_lists(raw, rows, steps, big):
                 for b in range(head):
                     byte = raw[place + b] if big else raw[place + head - 1 - b]
                     count = count * 256 + byte
-                if count > MOST_CORNERS:
+                if count > MAX_CORNERS:
                     return starts, counts, -1
                 counts[row, p] = count
                 place += head
@@ -67,8 +70,8 @@ def walk_lists(raw, rows, steps, big):
 
 
 @njit
-def walk_numbers(numbers, rows, listed):
-    """Do what ``walk_lists`` does among numbers, float64 [N]; ``listed`` bool [P]."""
+def locate_text_lists(numbers, rows, listed):
+    """Do what ``locate_binary_lists`` does among numbers, float64 [N]; ``listed`` bool [P]."""
     starts = np.zeros((rows, len(listed)), np.int64)
     counts = np.ones((rows, len(listed)), np.int64)
     place = 0
@@ -77,7 +80,7 @@ def walk_numbers(numbers, rows, listed):
             if place >= len(numbers):
                 return starts, counts, -1
             if listed[p]:
-                if not 0 <= numbers[place] <= MOST_CORNERS:
+                if not 0 <= numbers[place] <= MAX_CORNERS:
                     return starts, counts, -1
                 counts[row, p] = int(numbers[place])
                 place += 1
@@ -89,7 +92,7 @@ def walk_numbers(numbers, rows, listed):
 
 
 @njit
-def gathered(raw, starts, counts, width):
+def gather_bytes(raw, starts, counts, width):
     """Return the bytes of values that lie in runs: ``counts[i]`` of them from ``starts[i]``."""
     result = np.empty(counts.sum() * width, np.uint8)
     place = 0
@@ -100,7 +103,7 @@ def gathered(raw, starts, counts, width):
     return result
 
 
-def fans(counts: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def triangulate_fans(counts: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cut polygons into triangles around their first corners.
 
     Args:
@@ -230,7 +233,7 @@ def read_ply(place: AnyPath) -> PlyFile:
             reader.read(element)
     if not {"x", "y", "z"} <= set(vertex):
         raise DamagedFileError(place, "has no vertices with x, y and z: export it uncompressed")
-    triangles, owner = fans(*lists)
+    triangles, owner = triangulate_fans(*lists)
     held = len(vertex["x"])
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < held):
         raise DamagedFileError(
@@ -260,7 +263,7 @@ def _header(place: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str,
         elif words[0] == "element" and len(words) == 3 and re.fullmatch(r"\d{1,12}", words[2]):
             tables.append((words[1], int(words[2]), []))
         elif words[0] == "property" and tables:
-            tables[-1][2].append(_named_apart(_property(place, words), tables[-1][2]))
+            tables[-1][2].append(_with_unique_name(_property(place, words), tables[-1][2]))
         elif words[0] != "obj_info":
             raise DamagedFileError(
                 place, f"has a header line that is not read: {line[:60]!r}; copy it again"
@@ -282,7 +285,7 @@ def _property(place: AnyPath, words: list[str]) -> Property:
     )
 
 
-def _named_apart(new: Property, others: list[Property]) -> Property:
+def _with_unique_name(new: Property, others: list[Property]) -> Property:
     """Return a property under a name of its own: some tools write two scalar fields of one name."""
     names = {other.name for other in others}
     name, count = new.name, 1
@@ -334,7 +337,7 @@ class _Binary:
                     self._refuse(element)
                 kind = self.order + own.count_kind
                 lengths[own.name] = int(np.frombuffer(self.data[before:], kind, 1)[0])
-                if not 0 <= lengths[own.name] <= MOST_CORNERS:
+                if not 0 <= lengths[own.name] <= MAX_CORNERS:
                     self._refuse(element)
         return lengths
 
@@ -367,7 +370,9 @@ class _Binary:
             for p in element.properties
         ]
         big = self.order == ">"
-        starts, counts, used = walk_lists(raw, element.count, np.array(steps, np.int64), big)
+        starts, counts, used = locate_binary_lists(
+            raw, element.count, np.array(steps, np.int64), big
+        )
         if used < 0:
             self._refuse(element)
         self.data = self.data[used:]
@@ -375,7 +380,7 @@ class _Binary:
         for index, own in enumerate(element.properties):
             if not own.count_kind or own.name in INDICES:
                 width = np.dtype(own.kind).itemsize
-                chosen = gathered(raw, starts[:, index], counts[:, index], width)
+                chosen = gather_bytes(raw, starts[:, index], counts[:, index], width)
                 values = chosen.view(self.order + own.kind)
                 if own.count_kind:
                     lists = (counts[:, index].copy(), values.astype(np.int64))
@@ -408,14 +413,16 @@ class _Ascii:
             self.data = self.data[width * element.count :]
             return {p.name: rows[:, i] for i, p in enumerate(element.properties)}, NO_LISTS
         listed = np.array([bool(p.count_kind) for p in element.properties])
-        starts, counts, used = walk_numbers(self.data, element.count, listed)
+        starts, counts, used = locate_text_lists(self.data, element.count, listed)
         if used < 0:
             self._refuse(element)
         columns, lists = {}, NO_LISTS
         for index, own in enumerate(element.properties):
             if not own.count_kind or own.name in INDICES:
                 raw = np.ascontiguousarray(self.data).view(np.uint8)
-                chosen = gathered(raw, starts[:, index] * 8, counts[:, index], 8).view(np.float64)
+                chosen = gather_bytes(raw, starts[:, index] * 8, counts[:, index], 8).view(
+                    np.float64
+                )
                 if own.count_kind:
                     lists = (counts[:, index].copy(), chosen.astype(np.int64))
                 else:
@@ -448,16 +455,16 @@ PICTURE_AXES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 CHUNK = 1 << 20
 
 
-def load_ply(place: AnyPath) -> Loaded:
+def load_ply(place: AnyPath) -> LoadedGeometry:
     """Read a mesh or a cloud. Raises what ``read_ply`` raises."""
     file = read_ply(place)
-    twin = _twin(place, file)
+    twin = _labels_twin(place, file)
     if len(file.triangles):
-        return _mesh(place, file, twin)
-    return _cloud(place, file, twin)
+        return _load_mesh(place, file, twin)
+    return _load_cloud(place, file, twin)
 
 
-def _twin(place: AnyPath, file: PlyFile) -> PlyFile | None:
+def _labels_twin(place: AnyPath, file: PlyFile) -> PlyFile | None:
     """Return ScanNet's other file of the same mesh: the labels of colours, or the other way."""
     stem = place.stem
     name = stem.removesuffix(".labels") if stem.endswith(".labels") else f"{stem}.labels"
@@ -473,23 +480,23 @@ def _labels(place: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarr
     by_name = {name.lower(): values for name, values in columns.items()}
     for name in LABEL_NAMES:
         if name in by_name:
-            return classes_of_numbers(place, name, by_name[name])
+            return classes_of_label_ids(place, name, by_name[name])
     return None, ""
 
 
-def _places(file: PlyFile) -> np.ndarray:
+def _vertex_positions(file: PlyFile) -> np.ndarray:
     return np.stack([file.vertex[axis] for axis in "xyz"], axis=1).astype(np.float64)
 
 
-def _looks(
+def _vertex_attributes(
     place: AnyPath, file: PlyFile, twin: PlyFile | None
 ) -> tuple[np.ndarray | None, np.ndarray | None, str]:
     """Return colours and labels of the vertices, and what to tell."""
     labels, told = _labels(place, file.vertex)
-    colour = colour_of(file.vertex)
+    colour = colours_of_columns(file.vertex)
     if twin is not None:
         own_colours = place.stem.endswith(".labels")
-        colour = colour_of(twin.vertex) if own_colours else colour
+        colour = colours_of_columns(twin.vertex) if own_colours else colour
         if labels is None:
             labels, told = _labels(place, twin.vertex)
     elif place.stem.endswith(".labels"):
@@ -497,27 +504,29 @@ def _looks(
     return colour, labels, told
 
 
-def _mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
-    colour, labels, told = _looks(place, file, twin)
+def _load_mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
+    colour, labels, told = _vertex_attributes(place, file, twin)
     face_labels = None
     if labels is not None:
-        face_labels = _voted(labels[file.triangles])
+        face_labels = _majority_label(labels[file.triangles])
     else:
         own, more = _labels(place, file.face)
         told = told or more
         face_labels = None if own is None else own[file.triangle_face]
-    vertices, triangles = _places(file), file.triangles
-    if colour is None and (face_colour := colour_of(file.face)) is not None:
+    vertices, triangles = _vertex_positions(file), file.triangles
+    if colour is None and (face_colour := colours_of_columns(file.face)) is not None:
         vertices = vertices[triangles.reshape(-1)]
         colour = np.repeat(face_colour[file.triangle_face], 3, axis=0)
         triangles = np.arange(3 * len(triangles)).reshape(-1, 3)
     picture, uv = _picture(place, file)
     label = 255 if face_labels is None else face_labels
-    mesh, offset = joined(place, [Part(vertices, triangles, colour, picture, uv, label=label)])
-    return Loaded(mesh, "PLY", offset, notes=(told,) if told else ())
+    mesh, offset = join_parts(
+        place, [MeshPart(vertices, triangles, colour, picture, uv, label=label)]
+    )
+    return LoadedGeometry(mesh, "PLY", offset, notes=(told,) if told else ())
 
 
-def _voted(corners: np.ndarray) -> np.ndarray:
+def _majority_label(corners: np.ndarray) -> np.ndarray:
     """Return the label that two corners of a triangle share, else the first one's."""
     first, second, third = corners.T
     return np.where(second == third, second, first).astype(np.uint8)
@@ -538,9 +547,9 @@ def _picture(place: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndar
     return picture, np.stack([u, 1 - v], axis=1)
 
 
-def _cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
-    colour, labels, told = _looks(place, file, twin)
-    thinner = Thinner()
+def _load_cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
+    colour, labels, told = _vertex_attributes(place, file, twin)
+    thinner = VoxelDownsampler()
     count = len(file.vertex["x"])
     solid = np.ones(count, bool)
     if "opacity" in file.vertex and "f_dc_0" in file.vertex:  # Gaussian splats: the firm ones.
@@ -559,4 +568,4 @@ def _cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
         )
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
     notes = (told,) if told else ()
-    return Loaded(thinner.cloud(), "PLY", offset, notes=notes, read=thinner.read)
+    return LoadedGeometry(thinner.cloud(), "PLY", offset, notes=notes, read=thinner.read)

@@ -4,16 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud, Mesh, Solid
-from world2minecraft.capture.readers.meshes.surfels import cells_of, facing_of_cells
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import Geometry, Mesh, PointCloud
+from world2minecraft.capture.readers.meshes.surfels import assign_cells, cell_normals
 
-MOST = 60_000
+MAX_SAMPLES = 60_000
 CELLS_ALONG = 48  # Of a cloud's longest side, for its normals: 10 cm in a room of 5 m.
 OUTER_SHARE = 0.002  # Of the samples at each end of an axis: stray points and triangles.
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class SurfaceSamples:
     """``points`` and unit ``normals`` (either way round; 0 where unknown) float64 [N, 3]."""
 
     points: np.ndarray
@@ -25,40 +25,40 @@ class Samples:
         return low, high
 
 
-def samples_of(solid: Solid) -> Samples:
-    """Return at most ``MOST`` samples of a solid, the same for the same solid."""
-    return _of_mesh(solid) if isinstance(solid, Mesh) else _of_cloud(solid)
+def sample_surface(solid: Geometry) -> SurfaceSamples:
+    """Return at most ``MAX_SAMPLES`` samples of a solid, the same for the same solid."""
+    return _sample_mesh(solid) if isinstance(solid, Mesh) else _sample_cloud(solid)
 
 
-def _of_mesh(mesh: Mesh) -> Samples:
+def _sample_mesh(mesh: Mesh) -> SurfaceSamples:
     """Sample triangles by their area, at places that a sequence without clumps gives."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     twice = np.linalg.norm(cross, axis=1)
     total = twice.cumsum()
     if not len(total) or not total[-1] > 0:
-        return Samples(np.zeros((0, 3)), np.zeros((0, 3)))
-    count = np.arange(MOST) + 0.5
-    face = np.searchsorted(total, count / MOST * total[-1]).clip(max=len(total) - 1)
+        return SurfaceSamples(np.zeros((0, 3)), np.zeros((0, 3)))
+    count = np.arange(MAX_SAMPLES) + 0.5
+    face = np.searchsorted(total, count / MAX_SAMPLES * total[-1]).clip(max=len(total) - 1)
     s, t = np.modf(count * 0.7548776662466927)[0], np.modf(count * 0.5698402909980532)[0]
     folded = s + t > 1
     s, t = np.where(folded, 1 - s, s)[:, None], np.where(folded, 1 - t, t)[:, None]
     a, b, c = corners[face, 0], corners[face, 1], corners[face, 2]
     normals = cross[face] / np.maximum(twice[face], 1e-300)[:, None]
-    return Samples(a + s * (b - a) + t * (c - a), normals)
+    return SurfaceSamples(a + s * (b - a) + t * (c - a), normals)
 
 
-def _of_cloud(cloud: Cloud) -> Samples:
+def _sample_cloud(cloud: PointCloud) -> SurfaceSamples:
     """Sample a cloud by the cells that it touches, so that dense places weigh no more."""
     points = cloud.points
     if not len(points):
-        return Samples(np.zeros((0, 3)), np.zeros((0, 3)))
-    low, high = np.quantile(points[:: max(1, len(points) // MOST)], [0.002, 0.998], axis=0)
+        return SurfaceSamples(np.zeros((0, 3)), np.zeros((0, 3)))
+    low, high = np.quantile(points[:: max(1, len(points) // MAX_SAMPLES)], [0.002, 0.998], axis=0)
     within = ((points >= low - 0.1 * (high - low)) & (points <= high + 0.1 * (high - low))).all(1)
     points = points[within]
     cell = max(float((high - low).max()) / CELLS_ALONG, 1e-9)
-    own, count = cells_of(points, cell)
-    means, normals, held = facing_of_cells(points, own, count)
+    own, count = assign_cells(points, cell)
+    means, normals, held = cell_normals(points, own, count)
     normals[held < 4] = 0
-    every = max(1, count // MOST)
-    return Samples(means[::every], normals[::every].astype(np.float64))
+    every = max(1, count // MAX_SAMPLES)
+    return SurfaceSamples(means[::every], normals[::every].astype(np.float64))

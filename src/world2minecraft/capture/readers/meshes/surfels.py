@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
 
 CELLS_M = (0.06, 0.12, 0.24)  # The first that holds enough points is taken.
-ENOUGH = 6
+MIN_POINTS = 6
 RADIUS_SHARE = 1.5  # At random places, discs of 1.5 times the spacing leave 0.1 % open.
 RADII_M = (0.006, 0.10)
-FLAT_SHARE = 0.25  # Of the second largest spread: what is thicker is an edge or clutter.
+MAX_FLATNESS = 0.25  # Of the second largest spread: what is thicker is an edge or clutter.
 
 
-def surfels_of(cloud: Cloud) -> Surfels:
+def estimate_surfels(cloud: PointCloud) -> Surfels:
     """Return the discs of a cloud in metres."""
     count = len(cloud.points)
     radius = np.full(count, RADII_M[1], np.float32)
@@ -27,7 +27,7 @@ def surfels_of(cloud: Cloud) -> Surfels:
     left = np.arange(count)
     for cell_m in CELLS_M:
         laid, facing, held = _in_cells(cloud.points[left], cell_m)
-        chosen = held >= ENOUGH
+        chosen = held >= MIN_POINTS
         radius[left[chosen]] = RADIUS_SHARE * cell_m / np.sqrt(held[chosen])
         normals[left[chosen]] = facing[chosen]
         points[left[chosen]] = laid[chosen]
@@ -56,12 +56,12 @@ def _in_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, np.ndarray
 def _in_grid(
     points: np.ndarray, shift: np.float32, cell_m: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    own, cells = cells_of(points + shift, cell_m)
-    means, facing, held = facing_of_cells(points, own, cells)
-    return _laid_flat(points, own, means, facing), facing[own], held[own]
+    own, cells = assign_cells(points + shift, cell_m)
+    means, facing, held = cell_normals(points, own, cells)
+    return _project_to_planes(points, own, means, facing), facing[own], held[own]
 
 
-def _laid_flat(
+def _project_to_planes(
     points: np.ndarray, own: np.ndarray, means: np.ndarray, facing: np.ndarray
 ) -> np.ndarray:
     """Return points moved onto the planes of their cells, where these are flat.
@@ -73,7 +73,7 @@ def _laid_flat(
     return (points - off[:, None] * normals).astype(np.float32)
 
 
-def cells_of(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
+def assign_cells(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
     """Return the number of each point's cell, int64 [N], and how many cells hold any."""
     if not len(points):
         return np.zeros(0, np.int64), 0
@@ -85,7 +85,7 @@ def cells_of(points: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
     return own, int(own.max()) + 1
 
 
-def facing_of_cells(
+def cell_normals(
     points: np.ndarray, own: np.ndarray, cells: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return of the points of each cell their mean, the unit normal of their plane, their count.
@@ -101,5 +101,5 @@ def facing_of_cells(
             spread[:, a, b] = np.bincount(own, off[:, a] * off[:, b], cells) / held
             spread[:, b, a] = spread[:, a, b]
     sizes, axes = np.linalg.eigh(spread)
-    flat = sizes[:, 0] < FLAT_SHARE * sizes[:, 1]
+    flat = sizes[:, 0] < MAX_FLATNESS * sizes[:, 1]
     return means, np.where(flat[:, None], axes[:, :, 0], 0).astype(np.float32), held

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.attributes import (
-    as_colour,
     class_of_name,
-    classes_of_numbers,
-    colour_of,
+    classes_of_label_ids,
+    colours_of_columns,
+    to_uint8_colours,
 )
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, Loaded
-from world2minecraft.capture.readers.meshes.voxel_downsampling import Thinner
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, LoadedGeometry
+from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
 
@@ -51,21 +51,21 @@ NAMES = {"x": "x", "y": "y", "z": "z", "r": "red", "g": "green", "b": "blue"}
 LABEL_NAMES = ("label", "class", "classification", "semantic")
 
 
-def load_text(place: AnyPath) -> Loaded:
+def load_text(place: AnyPath) -> LoadedGeometry:
     """Read a cloud of lines.
 
     Raises:
         DamagedFileError: it holds no rows of numbers. LimitError: it is too large.
     """
-    thinner = Thinner()
+    thinner = VoxelDownsampler()
     told = add_text(place, thinner)
     if thinner.offset is None:
         raise DamagedFileError(place, "holds no points: a line must begin with x, y and z")
     notes = (told,) if told else ()
-    return Loaded(thinner.cloud(), "text", thinner.offset, notes=notes, read=thinner.read)
+    return LoadedGeometry(thinner.cloud(), "text", thinner.offset, notes=notes, read=thinner.read)
 
 
-def add_text(place: AnyPath, thinner: Thinner, label: int | None = None) -> str:
+def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None) -> str:
     """Add a file's points to others, all of one class where ``label`` says it.
 
     Returns what is to be told of its labels. Raises as ``load_text``.
@@ -74,8 +74,8 @@ def add_text(place: AnyPath, thinner: Thinner, label: int | None = None) -> str:
     colour_at: int | None = None
     width, told = 0, ""
     for lines in _blocks(place):
-        names, block = (names, lines) if width else _named(place, lines)
-        rows = _rows(place, block, width or _width(place, block))
+        names, block = (names, lines) if width else _column_names(place, lines)
+        rows = _parse_rows(place, block, width or _width(place, block))
         if not len(rows):
             continue
         if not width:
@@ -85,20 +85,20 @@ def add_text(place: AnyPath, thinner: Thinner, label: int | None = None) -> str:
         labels = None if label is None else np.full(len(rows), label, np.uint8)
         if names:
             points = np.stack([columns[axis] for axis in "xyz"], axis=1)
-            colour = colour_of(columns)
+            colour = colours_of_columns(columns)
             column = next((name for name in LABEL_NAMES if name in columns), None)
             if column and label is None:
-                labels, told = classes_of_numbers(place, column, columns[column])
+                labels, told = classes_of_label_ids(place, column, columns[column])
         else:
             points = rows[:, :3]
-            colour = None if colour_at is None else _bytes(rows[:, colour_at : colour_at + 3])
+            colour = None if colour_at is None else _to_colours(rows[:, colour_at : colour_at + 3])
         thinner.add(points, colour, labels)
         if thinner.read > MAX_POINTS:
             raise LimitError(place, f"has over {MAX_POINTS:,} points; thin it")
     return told
 
 
-def label_of_file(name: str) -> int:
+def class_of_file(name: str) -> int:
     """Return the class that a file's name says, 255 for none."""
     return class_of_name(name)
 
@@ -121,7 +121,7 @@ def _blocks(place: AnyPath) -> Iterator[bytes]:
         yield rest
 
 
-def _named(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes]:
+def _column_names(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes]:
     """Return the names of the columns, if the first lines say them, and the lines after those."""
     names = None
     while block:
@@ -156,7 +156,7 @@ def _width(place: AnyPath, block: bytes) -> int:
     return max(width, 3)
 
 
-def _rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
+def _parse_rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
     numbers = parse_numbers(place, block.replace(b",", b" ").replace(b";", b" "))
     if len(numbers) % width:
         raise DamagedFileError(
@@ -183,27 +183,27 @@ def _colour_column(rows: np.ndarray) -> int | None:
     return None
 
 
-def _bytes(values: np.ndarray) -> np.ndarray:
-    found = as_colour(values)
+def _to_colours(values: np.ndarray) -> np.ndarray:
+    found = to_uint8_colours(values)
     return np.zeros(values.shape, np.uint8) if found is None else found
 
 
-FOLDER = "Annotations"
+S3DIS_FOLDER = "Annotations"
 MAX_FILES = 5000
 
 
-def load_s3dis(place: AnyPath) -> Loaded:
+def load_s3dis(place: AnyPath) -> LoadedGeometry:
     """Read a room's folder.
 
     Raises:
         CaptureError: it has no points. DamagedFileError: a file is no cloud.
     """
-    thinner = Thinner(unit_m=1.0)
-    files = sorted((place / FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
+    thinner = VoxelDownsampler(unit_m=1.0)
+    files = sorted((place / S3DIS_FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
     for path in files:
-        add_text(path, thinner, label_of_file(path.stem))
+        add_text(path, thinner, class_of_file(path.stem))
     if thinner.offset is None:
-        raise CaptureError(place, f"has no points in {FOLDER}/*.txt")
-    note = f"classes are told by the names of {len(files)} files in {FOLDER}"
+        raise CaptureError(place, f"has no points in {S3DIS_FOLDER}/*.txt")
+    note = f"classes are told by the names of {len(files)} files in {S3DIS_FOLDER}"
     cloud = thinner.cloud()
-    return Loaded(cloud, "S3DIS", thinner.offset, 1.0, "z", True, (note,), thinner.read)
+    return LoadedGeometry(cloud, "S3DIS", thinner.offset, 1.0, "z", True, (note,), thinner.read)

@@ -9,9 +9,13 @@ from urllib.parse import unquote
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_FACES, MAX_VERTICES, Loaded
-from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
-from world2minecraft.capture.readers.meshes.optional_libraries import library
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
+    MAX_FACES,
+    MAX_VERTICES,
+    LoadedGeometry,
+)
+from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts
+from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
 from world2minecraft.core.files import read_bytes
@@ -22,18 +26,22 @@ MAX_JSON_BYTES = 64 << 20
 MAX_NODES = 200_000
 NO_COLOUR = (102, 102, 102, 255)  # What trimesh gives to materials that state none,
 NO_PICTURE = (2, 2)  # and the picture's size.
-UNREAD = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
+UNSUPPORTED_EXTENSIONS = (
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_texture_basisu",
+)
 KINDS = {".glb": "glTF", ".gltf": "glTF", ".obj": "OBJ", ".stl": "STL", ".off": "OFF"}
 
 
-def load_scene(place: AnyPath) -> Loaded:
+def load_scene(place: AnyPath) -> LoadedGeometry:
     """Read a mesh file with all that its scene places.
 
     Raises:
         DamagedFileError: it cannot be read. LimitError: it is too large. InputError: a file that it
             needs is not there. MissingExtraError.
     """
-    trimesh = library("trimesh", "reading meshes")
+    trimesh = import_optional("trimesh", "reading meshes")
     data = read_bytes(place, MAX_BYTES)
     suffix = place.suffix.lower()
     tree = _checked_gltf(place, data) if suffix in (".glb", ".gltf") else {}
@@ -55,10 +63,10 @@ def load_scene(place: AnyPath) -> Loaded:
         said = reason_of(error)
         reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({said}); export it again"
         raise DamagedFileError(place, reason) from error
-    mesh, offset = joined(place, parts)
+    mesh, offset = join_parts(place, parts)
     notes = () if mesh.coloured else ("it has no colours: export it with its textures beside it",)
     gltf = bool(tree)
-    return Loaded(
+    return LoadedGeometry(
         mesh,
         KINDS.get(suffix, suffix[1:].upper()),
         offset,
@@ -87,8 +95,8 @@ class _FolderResolver:
         name = key.strip().replace("\\", "/")
         names = [name, unquote(name), *(name.split()[-1:] if name.startswith("-") else [])]
         split = [[part for part in one.split("/") if part not in ("", ".")] for one in names]
-        inside = [p for p, one in zip(split, names, strict=True) if p and _stays(one, p)]
-        last = [parts[-1:] for parts in split if parts and _stays(parts[-1], parts[-1:])]
+        inside = [p for p, one in zip(split, names, strict=True) if p and _stays_in_folder(one, p)]
+        last = [parts[-1:] for parts in split if parts and _stays_in_folder(parts[-1], parts[-1:])]
         for parts in (*inside, *last):
             found = self.place.parent
             for part in parts:
@@ -115,7 +123,7 @@ class _FolderResolver:
         return key in self.keys()
 
 
-def _stays(name: str, parts: list[str]) -> bool:
+def _stays_in_folder(name: str, parts: list[str]) -> bool:
     """Return whether a file's name cannot leave the folder that it is sought in."""
     return not name.startswith("/") and ".." not in parts and ":" not in parts[0]
 
@@ -145,7 +153,7 @@ def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
         raise DamagedFileError(
             place, "is no glTF: its tree cannot be read; export it again"
         ) from error
-    for name in UNREAD:
+    for name in UNSUPPORTED_EXTENSIONS:
         if name in asked:
             raise DamagedFileError(
                 place, f"is packed with {name}, which is not read; export it uncompressed"
@@ -170,11 +178,11 @@ def _check_stl(place: AnyPath, data: bytes) -> None:
         )
 
 
-def _parts(place: AnyPath, scene: Any, generator: str) -> list[Part]:
+def _parts(place: AnyPath, scene: Any, generator: str) -> list[MeshPart]:
     """Return the parts of a trimesh scene, each placed as its nodes say."""
     nodes = list(scene.graph.nodes_geometry)
     shapes = [(node, *scene.graph[node]) for node in nodes]
-    sizes = {name: _size(mesh) for name, mesh in scene.geometry.items()}
+    sizes = {name: _mesh_size(mesh) for name, mesh in scene.geometry.items()}
     check_sizes(
         place,
         sum(sizes[name][0] for _, _, name in shapes),
@@ -196,31 +204,33 @@ def _parts(place: AnyPath, scene: Any, generator: str) -> list[Part]:
     return parts
 
 
-def _size(mesh: Any) -> tuple[int, int]:
+def _mesh_size(mesh: Any) -> tuple[int, int]:
     faces = getattr(mesh, "faces", None)
     return (0, 0) if faces is None else (len(mesh.vertices), len(faces))
 
 
-def _part(mesh: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, label: int) -> Part:
+def _part(
+    mesh: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, label: int
+) -> MeshPart:
     visual = mesh.visual
     kind = getattr(visual, "kind", None)
     if kind == "face":
         colour = np.repeat(np.asarray(visual.face_colors)[:, :3], 3, axis=0).astype(np.uint8)
         own = np.arange(3 * len(faces)).reshape(-1, 3)
-        return Part(vertices[faces.reshape(-1)], own, colour, label=label)
+        return MeshPart(vertices[faces.reshape(-1)], own, colour, label=label)
     if kind == "vertex":
         colour = np.asarray(visual.vertex_colors)[:, :3].astype(np.uint8)
         if "Blender" in generator:  # It stores light, as glTF asks; scanners' exporters do not.
             colour = linear_to_srgb(colour / 255.0)
-        return Part(vertices, faces, colour, label=label)
+        return MeshPart(vertices, faces, colour, label=label)
     if kind == "texture":
         return _textured(visual, vertices, faces, generator, label)
-    return Part(vertices, faces, label=label)
+    return MeshPart(vertices, faces, label=label)
 
 
 def _textured(
     visual: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, label: int
-) -> Part:
+) -> MeshPart:
     material = visual.material
     picture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     factor = getattr(material, "baseColorFactor", None)
@@ -243,7 +253,7 @@ def _textured(
         shade = (int(tint[0]), int(tint[1]), int(tint[2]))
         # OBJ files state a grey that viewers do not multiply on pictures.
         shade = shade if hasattr(material, "baseColorFactor") else (255, 255, 255)
-        return Part(vertices, faces, None, picture, flipped, shade, label)
+        return MeshPart(vertices, faces, None, picture, flipped, shade, label)
     if factor is None:
-        return Part(vertices, faces, label=label)
-    return Part(vertices, faces, np.repeat(tint[None], len(vertices), axis=0), label=label)
+        return MeshPart(vertices, faces, label=label)
+    return MeshPart(vertices, faces, np.repeat(tint[None], len(vertices), axis=0), label=label)

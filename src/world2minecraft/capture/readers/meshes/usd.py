@@ -8,11 +8,11 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name
-from world2minecraft.capture.readers.meshes.las_and_e57 import on_disk
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Loaded
-from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
-from world2minecraft.capture.readers.meshes.optional_libraries import library
-from world2minecraft.capture.readers.meshes.ply import fans
+from world2minecraft.capture.readers.meshes.las_and_e57 import file_on_disk
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import LoadedGeometry
+from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts
+from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
+from world2minecraft.capture.readers.meshes.ply import triangulate_fans
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.geometry.colour import linear_to_srgb
@@ -22,20 +22,20 @@ MAX_PRIMS = 200_000
 MAX_PICTURE_BYTES = 256 << 20
 
 
-def load_usd(place: AnyPath) -> Loaded:
+def load_usd(place: AnyPath) -> LoadedGeometry:
     """Read all meshes of a stage.
 
     Raises:
         DamagedFileError: it cannot be read, or refers to files elsewhere. LimitError: it is too
             large. MissingExtraError: the library is absent.
     """
-    library("pxr", "reading USD files", "usd")
-    tf, usd, geom = _pxr("Tf"), _pxr("Usd"), _pxr("UsdGeom")
+    import_optional("pxr", "reading USD files", "usd")
+    tf, usd, geom = _import_pxr("Tf"), _import_pxr("Usd"), _import_pxr("UsdGeom")
     if place.stat().st_size > MAX_BYTES:
         raise LimitError(
             place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: make it smaller"
         )
-    with on_disk(place) as path:
+    with file_on_disk(place) as path:
         try:
             stage = usd.Stage.Open(str(path))
         except tf.ErrorException as error:
@@ -50,7 +50,7 @@ def load_usd(place: AnyPath) -> Loaded:
                 )
         try:
             parts = _parts(place, stage, folder)
-            mesh, offset = joined(place, parts)
+            mesh, offset = join_parts(place, parts)
             unit_m = float(geom.GetStageMetersPerUnit(stage))
             stated = bool(geom.StageHasAuthoredMetersPerUnit(stage))
             up = str(geom.GetStageUpAxis(stage)).lower()
@@ -58,22 +58,22 @@ def load_usd(place: AnyPath) -> Loaded:
         except (tf.ErrorException, RuntimeError) as error:
             raise DamagedFileError(place, "cannot be read as USD; export it again") from error
     # What states no unit is in centimetres by USD's rule, yet often in metres: it is told by size.
-    return Loaded(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
+    return LoadedGeometry(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
 
 
-def _pxr(name: str) -> Any:
-    return library(f"pxr.{name}", "reading USD files", "usd")
+def _import_pxr(name: str) -> Any:
+    return import_optional(f"pxr.{name}", "reading USD files", "usd")
 
 
-def _parts(place: AnyPath, stage: Any, folder: str) -> list[Part]:
-    places = _pxr("UsdGeom").XformCache()
+def _parts(place: AnyPath, stage: Any, folder: str) -> list[MeshPart]:
+    places = _import_pxr("UsdGeom").XformCache()
     pictures: dict[str, Image.Image | None] = {}
     parts, vertices, faces = [], 0, 0
-    predicate = _pxr("Usd").TraverseInstanceProxies(_pxr("Usd").PrimDefaultPredicate)
-    for number, prim in enumerate(_pxr("Usd").PrimRange(stage.GetPseudoRoot(), predicate)):
+    predicate = _import_pxr("Usd").TraverseInstanceProxies(_import_pxr("Usd").PrimDefaultPredicate)
+    for number, prim in enumerate(_import_pxr("Usd").PrimRange(stage.GetPseudoRoot(), predicate)):
         if number > MAX_PRIMS:
             raise LimitError(place, f"has over {MAX_PRIMS:,} prims; that is no room")
-        if not prim.IsA(_pxr("UsdGeom").Mesh):
+        if not prim.IsA(_import_pxr("UsdGeom").Mesh):
             continue
         part = _part(place, prim, np.array(places.GetLocalToWorldTransform(prim)), pictures, folder)
         if part is not None:
@@ -89,8 +89,8 @@ def _part(
     transform: np.ndarray,
     pictures: dict[str, Image.Image | None],
     folder: str,
-) -> Part | None:
-    shape = _pxr("UsdGeom").Mesh(prim)
+) -> MeshPart | None:
+    shape = _import_pxr("UsdGeom").Mesh(prim)
     points = np.array(shape.GetPointsAttr().Get() or [], np.float64).reshape(-1, 3)
     counts = np.array(shape.GetFaceVertexCountsAttr().Get() or [], np.int64)
     corners = np.array(shape.GetFaceVertexIndicesAttr().Get() or [], np.int64)
@@ -106,13 +106,17 @@ def _part(
         )
     moved = points @ transform[:3, :3] + transform[3, :3]  # USD's vectors are rows.
     # Every corner becomes a vertex of its own: colours and uv may differ from face to face.
-    order, owner = fans(counts, np.arange(len(corners)))
+    order, owner = triangulate_fans(counts, np.arange(len(corners)))
     if shape.GetOrientationAttr().Get() == "leftHanded":
         order = order[:, ::-1]
     own = order.reshape(-1)
     picture, plain = _material(prim, pictures, folder)
-    uv = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("st", "UVMap", "st0"), corners, owner, own, 2)
-    colour = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("displayColor",), corners, owner, own, 3)
+    uv = _corner_values(
+        _import_pxr("UsdGeom").PrimvarsAPI(prim), ("st", "UVMap", "st0"), corners, owner, own, 2
+    )
+    colour = _corner_values(
+        _import_pxr("UsdGeom").PrimvarsAPI(prim), ("displayColor",), corners, owner, own, 3
+    )
     if colour is not None:
         colour = linear_to_srgb(colour)
     elif plain is not None:
@@ -128,12 +132,12 @@ def _part(
         255,
     )
     faces = np.arange(len(own)).reshape(-1, 3)
-    return Part(
+    return MeshPart(
         moved[corners[own]], faces, colour, picture if uv is not None else None, uv, label=label
     )
 
 
-def _spread(
+def _corner_values(
     primvars: Any,
     names: tuple[str, ...],
     corners: np.ndarray,
@@ -164,7 +168,7 @@ def _material(
     prim: Any, pictures: dict[str, Image.Image | None], folder: str
 ) -> tuple[Image.Image | None, np.ndarray | None]:
     """Return the picture and the plain colour (linear float64 [3]) of a prim's material."""
-    material = _pxr("UsdShade").MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+    material = _import_pxr("UsdShade").MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     surface = material.ComputeSurfaceSource()[0] if material else None
     slot = surface.GetInput("diffuseColor") if surface else None
     if not slot:
@@ -173,22 +177,22 @@ def _material(
     if not source:
         value = slot.Get()
         return None, None if value is None else np.array(value, np.float64)
-    shader = _pxr("UsdShade").Shader(source[0].GetPrim())
+    shader = _import_pxr("UsdShade").Shader(source[0].GetPrim())
     file = shader.GetInput("file") if shader else None
     asset = file.Get() if file else None
     if asset is None:
         return None, None
     where = asset.resolvedPath or asset.path
     if where not in pictures:
-        pictures[where] = _opened(where, folder)
+        pictures[where] = _open_picture(where, folder)
     return pictures[where], None
 
 
-def _opened(where: str, folder: str) -> Image.Image | None:
+def _open_picture(where: str, folder: str) -> Image.Image | None:
     """Return the picture of a stage's asset; None where it is absent, elsewhere or no picture."""
     if not Path(where).is_relative_to(folder):
         return None
-    asset = _pxr("Ar").GetResolver().OpenAsset(_pxr("Ar").ResolvedPath(where))
+    asset = _import_pxr("Ar").GetResolver().OpenAsset(_import_pxr("Ar").ResolvedPath(where))
     if asset is None or asset.GetSize() > MAX_PICTURE_BYTES:
         return None
     try:

@@ -8,43 +8,43 @@ quarter.
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.interior import Grid, Interior
+from world2minecraft.capture.readers.meshes.interior import Interior, SurfaceGrid
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 
 CAMERA = Camera(480, 360, 240.0, 240.0, 240.0, 180.0)  # 90 degrees wide.
 HEIGHTS_M = (1.55, 0.6, 1.1, 2.0)  # Of eyes, a child's, a desk's, an arm's reach.
-APART_M = 0.6
-MOST_PLACES = 400
+POSITION_SPACING_M = 0.6
+MAX_POSITIONS = 400
 YAWS = 8
 PITCHES_DEG = (-12.0, -42.0, 28.0)  # With 74 degrees of height: from straight down to the ceiling.
 RAYS_WIDE, RAYS_HIGH = 24, 18
 REACH_M = 4.5  # Beyond, a pixel covers over 2 cm; fusion takes up to 6 m.
-LEAST_VIEWS, MOST_VIEWS = 40, 120
-LEAST_GAIN = 0.08  # Of the first view's: less is not worth another.
-WORTH = (1.0, 0.5, 0.25)  # Of the first, second and third look at a place.
+MIN_VIEWS, MAX_VIEWS = 40, 120
+MIN_GAIN = 0.08  # Of the first view's: less is not worth another.
+VIEW_GAINS = (1.0, 0.5, 0.25)  # Of the first, second and third look at a place.
 
 
-def choose_views(grid: Grid, interior: Interior) -> np.ndarray:
+def choose_views(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
     """Return camera_to_world float64 [F, 4, 4] of the views, best first; z is up."""
-    places = _places(grid, interior)
-    turns = _turns()
+    places = _candidate_positions(grid, interior)
+    turns = _camera_rotations()
     poses = np.tile(np.eye(4), (len(places) * len(turns), 1, 1))
     poses[:, :3, :3] = np.tile(turns, (len(places), 1, 1))
     poses[:, :3, 3] = np.repeat(places, len(turns), axis=0)
-    sides = _sides(grid, poses)
-    return poses[_greedy(sides, grid.held.size * 6)]
+    sides = _visible_sides(grid, poses)
+    return poses[_select_greedily(sides, grid.held.size * 6)]
 
 
-def _places(grid: Grid, interior: Interior) -> np.ndarray:
+def _candidate_positions(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
     """Return places to look from, float64 [N, 3], evenly spread over the clear space."""
     cells = np.argwhere(interior.clear)
     drop = interior.drop[tuple(cells.T)]
     levels = np.unique([max(1, round(high / grid.cell_m)) for high in HEIGHTS_M])
     chosen = np.isin(drop, levels)
     cells = cells[chosen] if chosen.any() else cells
-    step = max(1, round(APART_M / grid.cell_m))
+    step = max(1, round(POSITION_SPACING_M / grid.cell_m))
     while True:
         # One of each square of the plan, level and floor: the cell nearest to the square's middle.
         square = cells // [step, step, 1]
@@ -52,12 +52,12 @@ def _places(grid: Grid, interior: Interior) -> np.ndarray:
         order = np.lexsort((cells[:, 1], cells[:, 0], off))
         _, first = np.unique(square[order], axis=0, return_index=True)
         found = cells[np.sort(order[first])]
-        if len(found) <= MOST_PLACES:
+        if len(found) <= MAX_POSITIONS:
             return grid.centers_m(found)
         step += 1
 
 
-def _turns() -> np.ndarray:
+def _camera_rotations() -> np.ndarray:
     """Return the axes of upright cameras that look all around, float64 [24, 3, 3]."""
     turns = []
     for pitch_deg in PITCHES_DEG:
@@ -68,7 +68,7 @@ def _turns() -> np.ndarray:
     return np.array(turns)
 
 
-def _sides(grid: Grid, poses: np.ndarray) -> np.ndarray:
+def _visible_sides(grid: SurfaceGrid, poses: np.ndarray) -> np.ndarray:
     """Return int32 [views, rays]: which side of which cell each ray meets, -1 for none."""
     across = (np.arange(RAYS_WIDE) + 0.5) / RAYS_WIDE * CAMERA.width_px
     down = (np.arange(RAYS_HIGH) + 0.5) / RAYS_HIGH * CAMERA.height_px
@@ -78,14 +78,14 @@ def _sides(grid: Grid, poses: np.ndarray) -> np.ndarray:
     found = np.empty((len(poses), len(rays)), np.int32)
     starts = (poses[:, :3, 3] - grid.origin_m) / grid.cell_m
     turns = np.ascontiguousarray(poses[:, :3, :3])
-    _cast(grid.held, starts, turns, rays, REACH_M / grid.cell_m, found)
+    _cast_rays(grid.held, starts, turns, rays, REACH_M / grid.cell_m, found)
     found.sort(axis=1)
     found[:, 1:][found[:, 1:] == found[:, :-1]] = -1  # Each side counts once a view.
     return found
 
 
 @njit
-def _cast(held, starts, turns, rays, reach, found):
+def _cast_rays(held, starts, turns, rays, reach, found):
     """Walk each ray cell by cell to the first held one; all lengths are in cells."""
     cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
     due, every = np.empty(3), np.empty(3)
@@ -119,25 +119,25 @@ def _cast(held, starts, turns, rays, reach, found):
                     break
 
 
-def _greedy(sides: np.ndarray, count: int) -> np.ndarray:
+def _select_greedily(sides: np.ndarray, count: int) -> np.ndarray:
     """Return the rows of the views that are taken, in order."""
     seen = np.zeros(count, np.uint8)
-    worth = np.array([*WORTH, 0.0])
+    worth = np.array([*VIEW_GAINS, 0.0])
     chosen: list[int] = []
     first = 0.0
-    while len(chosen) < min(MOST_VIEWS, len(sides)):
-        best, gain = _best(sides, seen, worth)
+    while len(chosen) < min(MAX_VIEWS, len(sides)):
+        best, gain = _best_view(sides, seen, worth)
         first = first or gain
-        if gain <= 0 or (len(chosen) >= LEAST_VIEWS and gain < LEAST_GAIN * first):
+        if gain <= 0 or (len(chosen) >= MIN_VIEWS and gain < MIN_GAIN * first):
             break
         chosen.append(int(best))
         met = sides[best][sides[best] >= 0]
-        seen[met] = np.minimum(seen[met] + 1, len(WORTH))
+        seen[met] = np.minimum(seen[met] + 1, len(VIEW_GAINS))
     return np.array(chosen, np.int64)
 
 
 @njit
-def _best(sides, seen, worth):
+def _best_view(sides, seen, worth):
     best, most = 0, -1.0
     for n in range(len(sides)):
         gain = 0.0

@@ -1,18 +1,18 @@
 """Clouds thinned as they are read: one point for each small cell, the mean of those in it.
 
-What is held never grows much beyond ``MOST_HELD`` points, however long the file is.
+What is held never grows much beyond ``MAX_POINTS`` points, however long the file is.
 """
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.mesh_and_cloud import Cloud
+from world2minecraft.capture.readers.meshes.mesh_and_cloud import PointCloud
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
-MOST_HELD = 4_000_000
-LONGEST = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so many metres.
+MAX_POINTS = 4_000_000
+UNIT_BY_LENGTH = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so many metres.
 
 
-class Thinner:
+class VoxelDownsampler:
     """Takes chunks of points in any frame and gives one thinned cloud.
 
     The first point's neighbourhood becomes the origin, so that float32 keeps millimetres of
@@ -51,19 +51,19 @@ class Thinner:
         if labels is not None:
             self._labels.append(labels[good])
         self._held += len(points)
-        if self._held > MOST_HELD:
+        if self._held > MAX_POINTS:
             self._merge(self._fitting_cell())
 
-    def cloud(self) -> Cloud:
+    def cloud(self) -> PointCloud:
         """Return all that came, one point a cell where there were too many."""
         if not self._points:
-            return Cloud(np.zeros((0, 3), np.float32))
-        if self._held > MOST_HELD // 8:
+            return PointCloud(np.zeros((0, 3), np.float32))
+        if self._held > MAX_POINTS // 8:
             self._merge(self._fitting_cell())
         count = self._held
         colour = np.concatenate(self._colours) if self._colours else None
         labels = np.concatenate(self._labels) if self._labels else None
-        return Cloud(
+        return PointCloud(
             np.concatenate(self._points),
             colour if colour is not None and len(colour) == count else None,
             labels if labels is not None and len(labels) == count else None,
@@ -81,7 +81,7 @@ class Thinner:
         low = np.min([span[0] for span in spans], axis=0)
         high = np.max([span[1] for span in spans], axis=0)
         longest = float((high - low).max())
-        unit_m = next((unit for most, unit in LONGEST if longest <= most), 0.001)
+        unit_m = next((unit for most, unit in UNIT_BY_LENGTH if longest <= most), 0.001)
         return max(self.cell, CELL_M / unit_m)
 
     def _merge(self, cell: float) -> None:
@@ -91,7 +91,7 @@ class Thinner:
         labels = np.concatenate(self._labels) if self._labels else None
         while True:
             first, own, counts = _cells(points, cell)
-            if len(first) <= MOST_HELD // 2 or cell == 0:
+            if len(first) <= MAX_POINTS // 2 or cell == 0:
                 break
             cell *= 1.26
         means = [np.bincount(own, points[:, a].astype(np.float64)) / counts for a in range(3)]

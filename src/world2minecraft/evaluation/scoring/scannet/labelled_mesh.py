@@ -13,12 +13,15 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.capture.readers.datasets.nyu40_labels import (
-    TABLE,
-    find_table,
+    LABEL_TABLE,
+    find_label_table,
     nyu40_classes,
     raw_id_classes,
 )
-from world2minecraft.capture.readers.datasets.scannet_metadata import axis_alignment, read_facts
+from world2minecraft.capture.readers.datasets.scannet_metadata import (
+    axis_alignment,
+    read_scene_info,
+)
 from world2minecraft.capture.readers.meshes.ply import read_ply
 from world2minecraft.core.classes import CLASS_COUNT, OBJECT_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import apply, invert_rigid
@@ -106,16 +109,16 @@ def _classes(path: Path, scene: Path, columns: dict[str, np.ndarray]) -> np.ndar
     most = int(numbers.max(initial=0))
     if most <= NYU40_NUMBERS:
         return nyu40_classes()[numbers]
-    table = find_table([scene, scene.parent, scene.parent.parent])
+    table = find_label_table([scene, scene.parent, scene.parent.parent])
     if table is None:
         raise CaptureError(
-            path, f"has labels up to {most}, ScanNet's raw ids: put {TABLE} beside the scene"
+            path, f"has labels up to {most}, ScanNet's raw ids: put {LABEL_TABLE} beside the scene"
         )
     return raw_id_classes(table)[numbers]
 
 
 def _alignment(path: Path) -> np.ndarray:
-    found = axis_alignment(path, read_facts(path))
+    found = axis_alignment(path, read_scene_info(path))
     if found is None:
         raise CaptureError(
             path, "states no axisAlignment; scenes of the train and val splits have one"

@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
 
+RULES = FindParameters()
 SHAPE = (24, 20, 14)
 RED, BLUE = (200, 40, 40), (40, 60, 200)
 
@@ -32,7 +34,7 @@ def _grid(*boxes):
 
 
 def _parted(grid):
-    return split_by_colour((grid.labels == SemanticClass.OBJS).astype(np.int32), grid)
+    return split_by_colour((grid.labels == SemanticClass.OBJS).astype(np.int32), grid, RULES)
 
 
 def test_a_red_box_beside_a_blue_one_is_its_own():

@@ -6,9 +6,11 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.merge_pieces import merge_lamp_parts
 from world2minecraft.reconstruction.instances.split_by_support import split_by_support
 
+RULES = FindParameters()
 SHAPE = (30, 30, 34)
 GREEN, BEIGE = (40, 120, 40), (220, 200, 150)
 
@@ -49,25 +51,25 @@ LEAVES = (11, GREEN, 2, 13, 10, 12, 14, 12)
 
 def test_a_lamp_on_a_chest_and_the_plant_beside_it_are_two():
     grid = _room(CHEST, PLANT, LAMP, (11, GREEN, 12, 11, 11, 13, 12, 13))
-    parted = split_by_support(_owners(grid), grid)
+    parted = split_by_support(_owners(grid), grid, RULES)
     assert parted[12, 9, 12] != parted[12, 14, 3]
     assert len(np.unique(parted[grid.labels == SemanticClass.OBJS])) == 2
 
 
 def test_what_stands_on_one_thing_stays_one():
     grid = _room(CHEST, LAMP, (11, GREEN, 11, 5, 10, 14, 8, 12))
-    np.testing.assert_array_equal(split_by_support(_owners(grid), grid), _owners(grid))
+    np.testing.assert_array_equal(split_by_support(_owners(grid), grid, RULES), _owners(grid))
 
 
 def test_a_curtain_is_told_from_the_plant_that_leans_on_it():
     grid = _room(CURTAIN, PLANT, LEAVES)
-    parted = split_by_support(_owners(grid), grid)
+    parted = split_by_support(_owners(grid), grid, RULES)
     assert parted[1, 11, 20] != parted[12, 14, 5]
 
 
 def test_leaves_at_a_wall_are_part_of_their_plant():
     grid = _room((11, GREEN, 4, 12, 1, 8, 16, 14), (11, GREEN, 1, 12, 9, 4, 15, 13))
-    np.testing.assert_array_equal(split_by_support(_owners(grid), grid), _owners(grid))
+    np.testing.assert_array_equal(split_by_support(_owners(grid), grid, RULES), _owners(grid))
 
 
 @settings(max_examples=15)
@@ -82,7 +84,7 @@ def test_no_cell_is_lost_and_furniture_keeps_its_number(seed):
         labels, grid.confidence, grid.colour, grid.source, grid.instance, 0.08, grid.origin_m
     )
     owners = _owners(noisy)
-    parted = split_by_support(owners, noisy)
+    parted = split_by_support(owners, noisy, RULES)
     np.testing.assert_array_equal(parted > 0, owners > 0)
     np.testing.assert_array_equal(parted == 2, owners == 2)
 
@@ -96,7 +98,7 @@ def test_the_foot_and_the_cord_of_a_lamp_belong_to_its_shade():
     grid = _room(shade, foot, cord)
     owners = np.zeros(SHAPE, np.int32)
     owners[10:15, 10:15, 15:18], owners[11:14, 11:14, 1:2], owners[12, 12, 22:28] = 1, 2, 3
-    np.testing.assert_array_equal(merge_lamp_parts(owners, grid), owners > 0)
+    np.testing.assert_array_equal(merge_lamp_parts(owners, grid, RULES), owners > 0)
 
 
 def test_a_box_on_the_floor_under_a_table_is_no_foot_of_the_vase_upon_it():
@@ -104,10 +106,10 @@ def test_a_box_on_the_floor_under_a_table_is_no_foot_of_the_vase_upon_it():
                  (11, GREEN, 11, 11, 1, 14, 14, 2))  # fmt: skip
     owners = np.zeros(SHAPE, np.int32)
     owners[11:14, 11:14, 10:14], owners[11:14, 11:14, 1:2] = 1, 2
-    np.testing.assert_array_equal(merge_lamp_parts(owners, grid), owners)
+    np.testing.assert_array_equal(merge_lamp_parts(owners, grid, RULES), owners)
 
 
 def test_what_lies_within_the_floor_is_nothing():
     grid = _room((11, BEIGE, 10, 10, 0, 20, 11, 1))
     owners = (grid.labels == SemanticClass.OBJS).astype(np.int32)
-    assert not merge_lamp_parts(owners, grid).any()
+    assert not merge_lamp_parts(owners, grid, RULES).any()

@@ -14,7 +14,7 @@ CRUMB_M3 = 0.03  # Two blocks at 4 blocks a metre.
 FREE = (AIR, "minecraft:cave_air", "minecraft:void_air", "minecraft:light")
 
 
-def seen_blocks(draft: Draft) -> np.ndarray:
+def visible_blocks(draft: Draft) -> np.ndarray:
     """Return bool [X, Y, Z]: blocks that one sees; not air, light or barriers."""
     return _by_state(draft, lambda state: len(visual_boxes_of(state)) > 0)
 
@@ -24,27 +24,27 @@ def free_cells(draft: Draft) -> np.ndarray:
     return _by_state(draft, lambda state: state.partition("[")[0] in FREE)
 
 
-def structure_of(draft: Draft) -> np.ndarray:
+def structure_blocks(draft: Draft) -> np.ndarray:
     """Return bool [X, Y, Z]: blocks of floor, walls, ceiling and windows that one sees."""
-    return np.isin(draft.semantic, STRUCTURE_CLASSES) & seen_blocks(draft)
+    return np.isin(draft.semantic, STRUCTURE_CLASSES) & visible_blocks(draft)
 
 
-def things_of(draft: Draft) -> np.ndarray:
+def object_blocks(draft: Draft) -> np.ndarray:
     """Return bool [X, Y, Z]: blocks of objects that one sees."""
-    return np.isin(draft.semantic, OBJECT_CLASSES) & seen_blocks(draft)
+    return np.isin(draft.semantic, OBJECT_CLASSES) & visible_blocks(draft)
 
 
-def blocks_in(draft: Draft, metres: float, least: int = 1) -> int:
+def metres_to_blocks(draft: Draft, metres: float, least: int = 1) -> int:
     """Return a length in whole blocks, at least ``least``."""
     return max(least, round(metres * draft.start.blocks_per_metre))
 
 
-def crumb_blocks(draft: Draft) -> float:
+def max_crumb_blocks(draft: Draft) -> float:
     """Return how many blocks a crumb has at most: without its object it is noise."""
     return max(1.0, CRUMB_M3 * draft.start.blocks_per_metre**3)
 
 
-def take_away(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockEdit:
+def remove_blocks(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockEdit:
     """Make cells [N, 3] air and record it; the object is that of most of them."""
     numbers = draft.instance[tuple(cells.T)]
     classes = draft.semantic[tuple(cells.T)]
@@ -58,7 +58,7 @@ def take_away(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockE
     )
 
 
-def move(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) -> BlockEdit:
+def move_blocks(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) -> BlockEdit:
     """Move what stands in cells [N, 3] by a step of whole blocks, int [3], and record it.
 
     What signs and chests hold goes with them. What is in the cells that they come to is gone.

@@ -7,7 +7,10 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import surface
+from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
+
+RULES = FindParameters()
 
 
 def _room(*boxes):
@@ -33,7 +36,7 @@ def _grid(labels, colour=None):
 
 def _parted(labels, colour=None):
     furniture = labels == SemanticClass.FURN
-    return split_cabinet_runs(furniture.astype(np.int32), _grid(labels, colour))
+    return split_cabinet_runs(furniture.astype(np.int32), _grid(labels, colour), RULES)
 
 
 def _numbers(parted):
@@ -77,7 +80,7 @@ def test_a_short_piece_a_plain_run_and_other_classes_stay_one():
     corner = _room((2, 2, 1, 10, 34, 12), (10, 2, 1, 36, 10, 12))
     table = np.where(corner == SemanticClass.FURN, SemanticClass.TABLE, corner).astype(np.uint8)
     owners = (table == SemanticClass.TABLE).astype(np.int32)
-    np.testing.assert_array_equal(split_cabinet_runs(owners, _grid(table)), owners)
+    np.testing.assert_array_equal(split_cabinet_runs(owners, _grid(table), RULES), owners)
 
 
 def test_an_open_bookcase_is_one():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.reconstruction.instances.test_find_objects import grid_of
+from tests.reconstruction.instances.test_instances import grid_of
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid

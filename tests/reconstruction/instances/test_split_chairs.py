@@ -9,11 +9,13 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import cells_of, template
+from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.split_chairs import (
     merge_chair_backs,
     split_touching_chairs,
 )
 
+RULES = FindParameters()
 SHAPE = (44, 40, 20)
 
 
@@ -42,7 +44,7 @@ def _grid(labels):
 
 def _parted(labels):
     owners = (labels == SemanticClass.CHAIR).astype(np.int32)
-    return split_touching_chairs(owners, _grid(labels))
+    return split_touching_chairs(owners, _grid(labels), RULES)
 
 
 @pytest.mark.parametrize(("first", "second"), [(0, 0), (0, 2), (1, 1), (3, 1), (0, 1)])
@@ -90,16 +92,16 @@ def _seat_and_back(gap):
 
 def test_a_back_joins_the_seat_beside_it_and_none_farther_off():
     labels, owners = _seat_and_back(0)
-    np.testing.assert_array_equal(merge_chair_backs(owners, _grid(labels)), owners > 0)
+    np.testing.assert_array_equal(merge_chair_backs(owners, _grid(labels), RULES), owners > 0)
     labels, owners = _seat_and_back(4)
-    np.testing.assert_array_equal(merge_chair_backs(owners, _grid(labels)), owners)
+    np.testing.assert_array_equal(merge_chair_backs(owners, _grid(labels), RULES), owners)
 
 
 def test_a_seat_takes_one_back_alone():
     labels, owners = _seat_and_back(0)
     labels[10:16, 8:10, 8:11] = SemanticClass.CHAIR
     owners[10:16, 8:10, 8:11] = 3
-    assert len(np.unique(merge_chair_backs(owners, _grid(labels)))) == 3
+    assert len(np.unique(merge_chair_backs(owners, _grid(labels), RULES))) == 3
 
 
 def test_the_top_of_a_far_back_is_no_part_of_its_neighbour():
