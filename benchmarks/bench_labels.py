@@ -10,7 +10,7 @@ from benchmarks.render_scenes import time_all
 from benchmarks.rows import Row
 from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 
@@ -23,12 +23,12 @@ def run() -> list[Row]:
     made = generate_world(700, rooms=ROOMS)
     scene = prepare_scene(made.volume)
     designs = (made.design, made.designs)
-    voxels = scene_voxels(made.volume, designs, scene=scene)
+    voxels = voxelize_scene(made.volume, designs, scene=scene)
     begin = time.process_time()
-    scene_voxels(made.volume, designs, scene=scene)
+    voxelize_scene(made.volume, designs, scene=scene)
     spent = time.process_time() - begin
     tracemalloc.start()
-    scene_voxels(made.volume, designs, scene=scene)
+    voxelize_scene(made.volume, designs, scene=scene)
     peak_mb = tracemalloc.get_traced_memory()[1] / 1e6
     tracemalloc.stop()
     cells = "x".join(map(str, voxels.labels.shape))

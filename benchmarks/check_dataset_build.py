@@ -21,7 +21,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.minecraftocc.building import TITLES, BuildReport, build_dataset
 from world2minecraft.minecraftocc.building.scene_survey import SceneTask, survey_scene
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.minecraftocc.tours import paper_camera
 
@@ -34,7 +34,7 @@ VIEWS = "views"
 
 def built(folder: Path, houses: int, images: int, recipe: Recipe, jobs: int) -> BuildReport:
     plan = plan_dataset(house_scenes(houses), images, recipe=recipe)
-    with opened_engine("pool", jobs) as engine:
+    with open_engine("pool", jobs) as engine:
         return build_dataset(folder, plan, engine)
 
 

@@ -22,7 +22,7 @@ import time
 from pathlib import Path
 
 from world2minecraft.minecraftocc.building import build_dataset
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, house_scenes, plan_dataset
 from world2minecraft.minecraftocc.store import verify_store
 from world2minecraft.minecraftocc.store.shard import stored_samples
@@ -44,7 +44,7 @@ def work(folder: Path, jobs: int, out: int) -> None:
     def told(stage: str, done: int, total: int, note: str = "") -> None:
         os.write(out, f"{stage} {done}\n".encode())
 
-    with opened_engine("pool", jobs) as engine:
+    with open_engine("pool", jobs) as engine:
         build_dataset(folder, the_plan(), engine, told)
 
 
@@ -163,7 +163,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as place:
         first = Path(place) / "first"
         began = time.monotonic()
-        with opened_engine("pool", 1) as engine:
+        with open_engine("pool", 1) as engine:
             build_dataset(first, the_plan(), engine)
         longest_s, wanted = time.monotonic() - began, files_of(first)
         print(f"whole in {longest_s:.1f} s: {len(wanted)} files, {IMAGES} images")
@@ -172,7 +172,7 @@ def main() -> int:
             pool = number % max(1, words.kills // max(words.pools, 1)) == 0 and words.pools > 0
             right, line = one_kill(folder, rng, longest_s * (3 if pool else 0.7), pool)
             if is_complete(folder) or number == words.kills - 1:
-                with opened_engine("pool", 1) as engine:
+                with open_engine("pool", 1) as engine:
                     build_dataset(folder, the_plan(), engine)
                 other = differing(files_of(folder), wanted)
                 same = not other and not verify_store(folder).faults

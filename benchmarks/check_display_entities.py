@@ -16,8 +16,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from world2minecraft.construction.display.boxes import Frame, entities_of, pieces_of
-from world2minecraft.construction.display.builder import most_pieces
+from world2minecraft.construction.display.boxes import Frame, display_entities, template_boxes
+from world2minecraft.construction.display.builder import max_boxes
 from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import Entity
@@ -51,9 +51,9 @@ def entities_at(one: Template, size: np.ndarray) -> tuple[list[Entity], Frame]:
     """Return the entities of a design that stands turned, and its frame."""
     parts = one.parts(size)
     states = [_block_of(one, part.role) for part in parts]
-    pieces = pieces_of(parts, states, most_pieces(one), SCALE)
+    pieces = template_boxes(parts, states, max_boxes(one), SCALE)
     frame = Frame(np.array([1.0, -1.0, 0.0]), size, YAW_DEG)
-    return entities_of(pieces, frame, CORNER_M, SCALE, one.class_id, 1), frame
+    return display_entities(pieces, frame, CORNER_M, SCALE, one.class_id, 1), frame
 
 
 def _block_of(one: Template, role: str) -> str:
@@ -87,7 +87,7 @@ def row_of(name: str) -> Row:
     one = template(name)
     counts = [len(entities_at(one, size)[0]) for size in sizes_of(one)]
     wrong = wrong_of(one, sizes_of(one)[1])
-    return Row(name, one.family, (counts[0], counts[1], counts[2]), most_pieces(one), wrong)
+    return Row(name, one.family, (counts[0], counts[1], counts[2]), max_boxes(one), wrong)
 
 
 def design_table(rows: list[Row]) -> Table:

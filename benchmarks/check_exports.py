@@ -25,15 +25,15 @@ from tests.minecraftocc.exchange import page_loader
 
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.minecraftocc.building import build_dataset
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.exporters import export_samples
 from world2minecraft.minecraftocc.plan import house_scenes, plan_dataset
 from world2minecraft.minecraftocc.store import open_store
 from world2minecraft.minecraftocc.types import OccSample
-from world2minecraft.minecraftocc.visualization import cells_behind
+from world2minecraft.minecraftocc.visualization import cells_behind_depth
 
 HOUSES, IMAGES = 4, 40
-NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind`` looks.
+NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind_depth`` looks.
 Load = Callable[[OccSample], page_loader.Loaded]
 
 
@@ -47,7 +47,7 @@ def count(sample: OccSample, loaded: page_loader.Loaded, matrix: np.ndarray, sum
         sums["cells in view or not, otherwise"] += int((loaded.in_view != occ.in_frustum).sum())
     found = page_loader.first_seen_labels(loaded, matrix, nudge_m=NUDGE_M)
     assert sample.depth_m is not None
-    pixels, cells = cells_behind(sample, sample.depth_m)
+    pixels, cells = cells_behind_depth(sample, sample.depth_m)
     sums["pixels"] += len(pixels)
     own = occ.labels[tuple(cells.T)]
     sums["pixels with the same label"] += int((found.reshape(-1)[pixels] == own).sum())
@@ -76,7 +76,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as place:
         if data is None:
             data = Path(place) / "DATA"
-            with opened_engine("pool", 2) as engine:
+            with open_engine("pool", 2) as engine:
                 build_dataset(data, plan_dataset(house_scenes(HOUSES), IMAGES), engine)
         samples = list(open_store(data).samples())
         nyu, scans = Path(place) / "nyu", Path(place) / "occscannet"

@@ -32,8 +32,8 @@ from world2minecraft.construction.fitting import (
     shape_set,
     thin_cells,
 )
-from world2minecraft.construction.fitting.shapes import PROBES, SUB, solid_of
-from world2minecraft.construction.fitting.stabilization import parts_of_shapes
+from world2minecraft.construction.fitting.shapes import PROBES, SUB, probe_state
+from world2minecraft.construction.fitting.stabilization import label_parts
 from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import AIR, BlockVolume
@@ -182,7 +182,7 @@ def judge(
         seconds: the CPU time that the fit took.
     """
     states, palette, shaky = settled_states(grid, shapes, stands)
-    table = np.stack([solid_of(state) for state in palette])
+    table = np.stack([probe_state(state) for state in palette])
     spans = [
         _spans(n, side, origins[axis], grid.shape[axis])
         for axis, n in enumerate(wanted.filled.shape)
@@ -219,7 +219,7 @@ def settled_states(
 
 def loose(grid: np.ndarray, shapes: ShapeSet, stands: bool, walled: np.ndarray) -> int:
     """Return how many parts touch neither the floor nor a wall; one that hangs may."""
-    parts = parts_of_shapes(grid, shapes)
+    parts = label_parts(grid, shapes)
     held = np.zeros(int(parts.max()) + 1, bool)
     held[0] = True
     held[parts[walled]] = True

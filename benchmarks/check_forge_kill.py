@@ -54,7 +54,7 @@ def edit(editor: Editor, number: int) -> None:
         editor.do(planned(editor.draft, number))
 
 
-def planned(draft: SceneDraft, number: int) -> Operation:
+def plan_operation(draft: SceneDraft, number: int) -> Operation:
     """Give a thousand cells other values, and turn or remove an object."""
     rng = np.random.default_rng(number)
     size = int(np.prod(draft.shape))
@@ -74,7 +74,9 @@ def planned(draft: SceneDraft, number: int) -> Operation:
     cells = np.column_stack(np.unravel_index(flat, draft.shape))
     gone = [ids[-1]] if number % 29 == 0 and len(ids) > 3 else []
     objects = [turned] if chosen.id not in gone else []
-    return draft.planned("paint", cells, after, gone=gone, objects=objects, counts_as="other")
+    return draft.plan_operation(
+        "paint", cells, after, gone=gone, objects=objects, counts_as="other"
+    )
 
 
 def work(folder: Path, out: int) -> None:

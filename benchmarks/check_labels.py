@@ -34,10 +34,10 @@ from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraftocc.labels.image_labels import (
     cells_of_pixels,
     label_image,
-    resized,
+    resize_camera,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.tours import nyu_camera
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.procgen.worlds import generate_world
@@ -67,7 +67,7 @@ def houses(seeds: range) -> Iterator[House]:
         scene = prepare_scene(made.volume)
         designs = (made.design, made.designs)
         fine, coarse = (
-            scene_voxels(made.volume, designs, voxel_m=size, scene=scene) for size in (0.08, None)
+            voxelize_scene(made.volume, designs, voxel_m=size, scene=scene) for size in (0.08, None)
         )
         yield House(seed, made.volume, scene, fine, coarse)
 
@@ -187,7 +187,7 @@ def main() -> int:
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     console = Console(width=110)
-    camera = resized(NYU, chosen.size[0])
+    camera = resize_camera(NYU, chosen.size[0])
     counts, ids = Counter(), Counter()
     count = -(-chosen.frames // FRAMES_A_HOUSE)
     for house in houses(range(FIRST_SEED, FIRST_SEED + count)):

@@ -28,8 +28,12 @@ from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
-from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import (
+    CleanParameters,
+    close_structure,
+    extract_grid,
+    remove_floaters,
+)
 from world2minecraft.reconstruction.fusion.confidence import (
     FREE_FEATURES,
     OCCUPIED_FEATURES,
@@ -93,7 +97,7 @@ def gather(each: int, base: Path) -> dict[str, list[Example]]:
 
 def named(name: str, evidence: FusedEvidence) -> OccupancyGrid:
     """Return what a labeller says, with its own confidence."""
-    grid = remove_floaters(read_out(evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleanParameters())
     return close_structure(labeller(name).label(grid, evidence), CleanParameters())
 
 

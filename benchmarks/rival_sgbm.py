@@ -15,12 +15,12 @@ import numpy as np
 
 from world2minecraft.capture.stereo.depth_maps import (
     DEPTH_PERCENTILES,
-    chosen_neighbours,
-    confirmed,
+    filter_consistent,
+    select_neighbours,
 )
 from world2minecraft.capture.stereo.parameters import StereoParameters
 from world2minecraft.capture.stereo.plane_sweep import depth_range
-from world2minecraft.capture.stereo.stereo_photos import SmallPhoto, small_photos
+from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
@@ -65,22 +65,22 @@ def depth_maps(
     hold here too. ``guide`` does not.
     """
     half_px = max(camera.width_px for camera in scene.cameras) // 2
-    small = small_photos(photos, scene, half_px, silent)
+    small = prepare_stereo_photos(photos, scene, half_px, silent)
     all_m = np.concatenate([photo.guide_m for photo in small])
     stand_in = [p.guide_m if len(p.guide_m) > FEW_POINTS else all_m for p in small]
     depths_m = np.array([np.percentile(known, DEPTH_PERCENTILES) for known in stand_in])
     values = parameters or StereoParameters()
-    neighbours = chosen_neighbours(small, depths_m, ASKED, values.angle_deg)
+    neighbours = select_neighbours(small, depths_m, ASKED, values.angle_deg)
     raw = []
     for frame, photo in enumerate(small):
         others = [small[other] for other in neighbours[frame]]
         raw.append(depth_of(photo, others, depth_range(photo, all_m)))
         progress("stereo", frame + 1, len(small), photo.name)
     for frame in range(len(small)):
-        yield confirmed(frame, small, raw, neighbours, values)
+        yield filter_consistent(frame, small, raw, neighbours, values)
 
 
-def depth_of(photo: SmallPhoto, others: list[SmallPhoto], depths_m) -> np.ndarray:
+def depth_of(photo: StereoPhoto, others: list[StereoPhoto], depths_m) -> np.ndarray:
     """Return float32 [h, w]: the median of what up to six pairs say, 0 where none does."""
     found = []
     for other in others:
@@ -96,7 +96,7 @@ def depth_of(photo: SmallPhoto, others: list[SmallPhoto], depths_m) -> np.ndarra
     return np.nan_to_num(depth_m, nan=0.0).astype(np.float32)
 
 
-def rectified(photo: SmallPhoto, other: SmallPhoto) -> Pair | None:
+def rectified(photo: StereoPhoto, other: StereoPhoto) -> Pair | None:
     """Turn two photos into one row order; None where their motion does not allow it."""
     here_to_there = invert_rigid(other.camera_to_scan) @ photo.camera_to_scan
     turn, shift = here_to_there[:3, :3], here_to_there[:3, 3]

@@ -17,7 +17,7 @@ import torch
 from safetensors.torch import load_file
 
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
-from world2minecraft.networks.completion.augmentation import cropped
+from world2minecraft.networks.completion.augmentation import crop_sample
 from world2minecraft.networks.completion.export import export_completion
 from world2minecraft.networks.completion.network import MULTIPLE, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
@@ -29,7 +29,7 @@ from world2minecraft.reconstruction.semantics.completion_channels import network
 def padded(sample: Sample) -> Sample:
     """Return a sample whose sides are whole multiples of what the network takes."""
     shape = tuple(-(-side // MULTIPLE) * MULTIPLE for side in sample.truth.shape)
-    return cropped(sample, np.zeros(3, np.int64), shape)  # type: ignore[arg-type]
+    return crop_sample(sample, np.zeros(3, np.int64), shape)  # type: ignore[arg-type]
 
 
 def with_observed_surface(labels: np.ndarray, logits: np.ndarray, sight) -> np.ndarray:

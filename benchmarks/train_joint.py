@@ -26,7 +26,7 @@ from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes,
 from world2minecraft.cli.progress import shown
 from world2minecraft.core.files import write_text
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
-from world2minecraft.networks.data.run_data import CachePlace
+from world2minecraft.networks.data.run_data import CacheLocation
 
 WAYS = ("alone", "joint", "others")
 DRAWS = 2000
@@ -113,7 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--cache", default="")
     parser.add_argument("--markdown", type=Path)
     words = parser.parse_args(arguments)
-    cache, runs = CachePlace.named(words.cache), {way: [] for way in words.ways}
+    cache, runs = CacheLocation.named(words.cache), {way: [] for way in words.ways}
     with shown() as progress:
         blind = [average_scenes(config_of(words, "alone", 0), cache, progress)]
     for seed in words.seeds:  # Seeds first: a stopped table has whole rows of fewer seeds.

@@ -33,26 +33,31 @@ from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.evaluation.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
-from world2minecraft.networks.csv_logger import METRICS, read_rows
+from world2minecraft.networks.csv_logger import METRICS, read_metrics
 from world2minecraft.networks.data.cache import Frames
-from world2minecraft.networks.data.run_data import CachePlace, open_frames, open_run_data, rule_of
+from world2minecraft.networks.data.run_data import (
+    CacheLocation,
+    frame_rule,
+    open_frames,
+    open_run_data,
+)
 from world2minecraft.networks.data.splits import split_rows
 from world2minecraft.networks.models import NETWORKS
-from world2minecraft.networks.scoring import SaidOfFrame, protocol_scores, said_by_network
+from world2minecraft.networks.scoring import PredictedFrame, network_predictions, protocol_scores
 from world2minecraft.networks.training import (
     FACTS,
     LAST_SCORES,
+    load_trained_network,
     score_run,
     train_run,
-    trained_network,
 )
-from world2minecraft.networks.validation import said_labels
+from world2minecraft.networks.validation import predict_labels
 
 SCENE_COUNTS = "scene_counts.json"
 
 
 def done_run(
-    config: RunConfig, folder: Path, device: str, cache: CachePlace, progress: Progress
+    config: RunConfig, folder: Path, device: str, cache: CacheLocation, progress: Progress
 ) -> dict[str, Any]:
     """Train and score where that is not done yet; return run.json and scores_last.json as one."""
     trained = train_run(config, folder, device=device, cache=cache, progress=progress)
@@ -62,24 +67,29 @@ def done_run(
 
 
 def done_scenes(
-    config: RunConfig, folder: Path, target: str, device: str, cache: CachePlace, progress: Progress
+    config: RunConfig,
+    folder: Path,
+    target: str,
+    device: str,
+    cache: CacheLocation,
+    progress: Progress,
 ) -> dict[str, np.ndarray]:
     """Return the monoscene counts of each test scene of a target, int64 [12, 12] by name."""
     path = folder / SCENE_COUNTS
     if not path.is_file():
         on_target = replace(config, data=(DataSource(target),))
         found = open_occupancy(target)
-        frames = open_frames(found, rule_of(on_target), cache, progress)
+        frames = open_frames(found, frame_rule(on_target), cache, progress)
         splits = [found.splits[key] for key in frames.keys]
         rows = split_rows(frames.scenes, splits, config.val_share, target).scored
-        network = trained_network(folder, config, device, last=True)
-        said = said_labels(network, frames, rows, config, progress=progress)
-        tables = scene_tables(said_by_network(frames, rows, said))
+        network = load_trained_network(folder, config, device, last=True)
+        said = predict_labels(network, frames, rows, config, progress=progress)
+        tables = scene_tables(network_predictions(frames, rows, said))
         write_json(path, {name: table.tolist() for name, table in tables.items()})
     return {name: np.array(table) for name, table in read_json(path).items()}
 
 
-def scene_tables(frames: Iterable[SaidOfFrame]) -> dict[str, np.ndarray]:
+def scene_tables(frames: Iterable[PredictedFrame]) -> dict[str, np.ndarray]:
     """Return the monoscene counts of each scene, int64 [12, 12] by name."""
     counts: dict[str, ProtocolCounts] = {}
     for one in frames:
@@ -121,7 +131,7 @@ def average_labels(times: np.ndarray) -> np.ndarray:
 
 
 def averaged(
-    config: RunConfig, cache: CachePlace, progress: Progress
+    config: RunConfig, cache: CacheLocation, progress: Progress
 ) -> tuple[np.ndarray, Frames, list[int]]:
     """Return what the average of a run's target says, its frames, and the rows that are scored."""
     data = open_run_data(config, cache, progress)
@@ -130,11 +140,11 @@ def averaged(
 
 
 def average_scenes(
-    config: RunConfig, cache: CachePlace, progress: Progress
+    config: RunConfig, cache: CacheLocation, progress: Progress
 ) -> dict[str, np.ndarray]:
     """Return the monoscene counts of each scored scene, int64 [12, 12] by name."""
     said, frames, rows = averaged(config, cache, progress)
-    return scene_tables(said_by_network(frames, rows, iter([said] * len(rows))))
+    return scene_tables(network_predictions(frames, rows, iter([said] * len(rows))))
 
 
 PAPER_ROWS = {
@@ -199,11 +209,11 @@ def cells_of(network: str, done: dict[str, Any]) -> list[str]:
     ]  # fmt: skip
 
 
-def blind_row(config: RunConfig, cache: CachePlace) -> dict[str, Any]:
+def blind_row(config: RunConfig, cache: CacheLocation) -> dict[str, Any]:
     """Return the scores of the average of all training boxes."""
     with shown() as progress:
         said, frames, rows = averaged(config, cache, progress)
-        scored = said_by_network(frames, rows, iter([said] * len(rows)))
+        scored = network_predictions(frames, rows, iter([said] * len(rows)))
         return {"facts": None, "scores": protocol_scores(scored, config.cells.voxel_m)}
 
 
@@ -226,7 +236,7 @@ def class_cells(network: str, done: dict[str, Any]) -> list[str]:
 def learning_rows(folders: dict[str, Path]) -> tuple[tuple[str, ...], list[list[str]]]:
     """Return head and rows of mIoU on the scenes held out of training, by step."""
     found = {
-        name: {step: value for step, what, value in read_rows(folder / METRICS)
+        name: {step: value for step, what, value in read_metrics(folder / METRICS)
                if what == "val_miou"}
         for name, folder in folders.items()
     }  # fmt: skip
@@ -276,7 +286,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Train, score and print; 0 when every network has its row."""
     words = options().parse_args(arguments)
     names = words.networks or [*NETWORKS.names(), *ALSO]
-    cache = CachePlace.named(words.cache)
+    cache = CacheLocation.named(words.cache)
     rows = {BLIND: blind_row(chosen(words, names[0]), cache)}
     for name in names:
         with shown() as progress:

@@ -13,7 +13,7 @@ from PIL import Image
 from world2minecraft.capture import describe_capture, open_scan, write_plain
 from world2minecraft.capture.alignment.room_frame import Alignment
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.open_scan import check_cells
+from world2minecraft.capture.open_scan import check_cell_count
 from world2minecraft.core.errors import CaptureError, InputError, LimitError, UsageError
 
 
@@ -397,5 +397,5 @@ def test_depth_that_the_device_trusts_nowhere(tmp_path, views):
 def test_the_least_voxel_that_is_told_is_taken(size_m):
     alignment = Alignment(np.eye(4), np.array(size_m), ())
     with pytest.raises(UsageError, match="take at least --voxel") as caught:
-        check_cells(alignment, 0.001)
-    check_cells(alignment, float(str(caught.value).split()[-1]))
+        check_cell_count(alignment, 0.001)
+    check_cell_count(alignment, float(str(caught.value).split()[-1]))

@@ -21,8 +21,8 @@ from world2minecraft.capture.quality.view_directions import (
     count_view_directions,
     estimate_up,
 )
-from world2minecraft.capture.summary import as_data, describe, summary_lines
-from world2minecraft.capture.validation import judge
+from world2minecraft.capture.summary import describe_validated, summary_lines, summary_to_json
+from world2minecraft.capture.validation import validate
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
 
@@ -51,7 +51,9 @@ def save(folder, pictures):
 def photos(tmp_path, pictures, **fields):
     """A capture of photos of which nothing is known."""
     frames = tuple(FrameFiles(path.stem, None, path) for path in save(tmp_path, pictures))
-    return describe(judge(Capture(tmp_path, "photos", frames, **fields), ScanOptions()))
+    return describe_validated(
+        validate(Capture(tmp_path, "photos", frames, **fields), ScanOptions())
+    )
 
 
 def panned(step=30, count=10, seed=0):
@@ -85,7 +87,9 @@ def posed(tmp_path, room, poses, depth=True, change=lambda frame, index: frame, 
             frame = replace(frame, depth_path=place, depth_camera=CAMERA)
         frames.append(change(frame, index))
     fields = {"depth_unit": "mm", **fields}
-    return describe(judge(Capture(tmp_path, source, tuple(frames), **fields), ScanOptions()))
+    return describe_validated(
+        validate(Capture(tmp_path, source, tuple(frames), **fields), ScanOptions())
+    )
 
 
 def level_of(summary, about):
@@ -164,9 +168,9 @@ def test_the_routes(tmp_path, box_room):
     assert "scale from the depth" in unposed.route.words
     paths = save(tmp_path / "v", panned())
     frames = tuple(FrameFiles(p.stem, None, p, time_s=i / 2) for i, p in enumerate(paths))
-    video = describe(judge(Capture(tmp_path, "video", frames), ScanOptions()))
+    video = describe_validated(validate(Capture(tmp_path, "video", frames), ScanOptions()))
     assert video.route.kind == "video"
-    dated = describe(judge(Capture(tmp_path, "photos", frames), ScanOptions()))
+    dated = describe_validated(validate(Capture(tmp_path, "photos", frames), ScanOptions()))
     assert dated.route.kind == "photos", "photos whose EXIF says when they were taken are no video"
 
 
@@ -175,7 +179,9 @@ def test_the_next_command_can_be_typed_as_it_is(tmp_path):
     place.mkdir()
     frames = tuple(FrameFiles(p.stem, None, p) for p in save(place, panned()))
     options = {"frames": "60", "unit": "cm"}
-    command = describe(judge(Capture(place, "photos", frames), ScanOptions()), options).next_command
+    command = describe_validated(
+        validate(Capture(place, "photos", frames), ScanOptions()), options
+    ).next_command
     settings = ["--set", "capture.frames=60", "--set", "capture.unit=cm"]
     assert shlex.split(command) == ["w2m", "reconstruct", str(place), "--out", "OUT", *settings]
 
@@ -350,7 +356,7 @@ def test_up_of_cameras_is_found_in_any_frame(box_room):
 def test_the_json_is_plain(whole):
     import json
 
-    data = json.loads(json.dumps(as_data(whole)))
+    data = json.loads(json.dumps(summary_to_json(whole)))
     assert data["route"]["kind"] == "rgbd"
     assert data["doubts"][0].keys() == {"level", "about", "text", "advice"}
     assert "survey" not in data

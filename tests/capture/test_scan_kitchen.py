@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.capture import describe_capture, open_scan
-from world2minecraft.capture.open_scan import ALIGNED_FRAMES
-from world2minecraft.capture.validation import spread_over
+from world2minecraft.capture.open_scan import ALIGNMENT_FRAMES
+from world2minecraft.capture.validation import evenly_spaced
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.unprojection import unproject_depth
 
@@ -14,7 +14,7 @@ from world2minecraft.geometry.unprojection import unproject_depth
 def kitchen(shared_data):
     """The scan and the points, in the room, of its frames that were kept apart."""
     scan = open_scan(shared_data / "redkitchen_rgbd")
-    looked_at = set(spread_over(scan.frames_used, ALIGNED_FRAMES))
+    looked_at = set(evenly_spaced(scan.frames_used, ALIGNMENT_FRAMES))
     points = []
     for view in scan.views:
         if view.name not in looked_at:

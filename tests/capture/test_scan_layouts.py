@@ -11,7 +11,7 @@ from PIL import Image
 from world2minecraft.capture import describe_capture, open_scan, write_plain
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import SOURCES, find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import View
 
@@ -197,7 +197,7 @@ def test_plain_reads_frames_named_as_photos_are(tmp_path, views):
     names = ["Photo 1 (2)", "Küche.v2", "b" * 180, "0003"]
     named = [replace(view, name=name) for view, name in zip(views, names, strict=False)]
     write_plain(tmp_path, named)
-    frames = judge_capture(tmp_path, ScanOptions()).frames
+    frames = validate_capture(tmp_path, ScanOptions()).frames
     assert [frame.name for frame in frames] == names
     assert all(frame.colour_path and frame.depth_path for frame in frames)
 
@@ -209,6 +209,6 @@ def test_plain_without_poses_may_lack_its_lens(tmp_path, views):
     del stated["colour_camera"], stated["depth_camera"]
     stated["frames"] = [{"name": frame["name"]} for frame in stated["frames"]]
     path.write_text(json.dumps(stated))
-    frames = judge_capture(tmp_path, ScanOptions()).frames
+    frames = validate_capture(tmp_path, ScanOptions()).frames
     assert len(frames) == len(views)
     assert all(frame.colour_camera is None and frame.depth_camera is None for frame in frames)

@@ -7,12 +7,12 @@ import pytest
 
 from world2minecraft.capture.alignment.room_frame import ImplausibleRoomError
 from world2minecraft.capture.scale import (
-    Known,
-    KnownPoints,
+    KnownDistance,
+    KnownLength,
     collect_unscaled,
     estimate_scale,
     length_between,
-    parse_known,
+    parse_known_length,
     scale_points,
 )
 from world2minecraft.capture.scale.estimate import Posterior, main_mode
@@ -73,7 +73,7 @@ def test_the_real_kitchen_within_15_percent(shared_data):
     views = shrunk(list(open_scan(folder).views)[::3], 0.4)
     surface = collect_unscaled(views, 1500)
     assert estimate_scale(surface).scale * 0.4 == pytest.approx(1, rel=0.15)
-    known = [parse_known("table height", 0.72), parse_known("counter-height", 0.90)]
+    known = [parse_known_length("table height", 0.72), parse_known_length("counter-height", 0.90)]
     assert estimate_scale(surface, known[:1]).scale * 0.4 == pytest.approx(1, rel=0.03)
     assert estimate_scale(surface, known).scale * 0.4 == pytest.approx(1, rel=0.04)
 
@@ -111,36 +111,39 @@ def test_a_tilted_frame_changes_little(box_surface):
 )
 def test_a_known_length_gives_the_scale(box_surface, name, length_m, within):
     surface = scale_points(box_surface, 0.37)
-    found = estimate_scale(surface, [parse_known(name, length_m)])
+    found = estimate_scale(surface, [parse_known_length(name, length_m)])
     assert found.scale * 0.37 == pytest.approx(1, rel=within)
     assert found.sigma <= 0.03
     assert f"given ({length_m:g} m)" in found.told[0]
 
 
 def test_the_face_that_a_known_length_means_is_told(box_surface):
-    told = estimate_scale(box_surface, [parse_known("table height", 0.72)]).told
+    told = estimate_scale(box_surface, [parse_known_length("table height", 0.72)]).told
     assert "the table height given (0.72 m), a level face of" in told[0]
 
 
 def test_a_known_length_holds_where_habits_do_not(box_surface):
     """A doll's house, or a hall: the user's word counts, and the cameras' height is told."""
-    found = estimate_scale(box_surface, [parse_known("room height", 5.2)])
+    found = estimate_scale(box_surface, [parse_known_length("room height", 5.2)])
     assert found.scale == pytest.approx(2, rel=0.02)
     assert any("the cameras were held" in text for text in found.told)
 
 
 def test_lengths_that_agree_make_it_surer_and_one_that_does_not_is_told(box_surface):
-    ceiling, side = parse_known("ceiling height", 2.6), parse_known("room length", 4.2)
+    ceiling, side = (
+        parse_known_length("ceiling height", 2.6),
+        parse_known_length("room length", 4.2),
+    )
     both = estimate_scale(box_surface, [ceiling, side])
     assert both.sources == ("ceiling height", "room length")
-    odd = estimate_scale(box_surface, [ceiling, side, parse_known("room width", 3.6)])
+    odd = estimate_scale(box_surface, [ceiling, side, parse_known_length("room width", 3.6)])
     assert odd.scale == pytest.approx(1, rel=0.02)
     assert any("room width (3.6 m) contradicts the other lengths by 16 %" in t for t in odd.told)
 
 
 def test_two_clicked_points(box_room):
     views = box_room.views(6)
-    known = KnownPoints("000000", (80, 60), "000003", (70.5, 40.2), 1.0).known(views)
+    known = KnownDistance("000000", (80, 60), "000003", (70.5, 40.2), 1.0).known(views)
     places = [lifted(views[0], 80, 60), lifted(views[3], 70.5, 40.2)]
     assert known.measured == pytest.approx(np.linalg.norm(places[0] - places[1]), rel=0.02)
 
@@ -156,7 +159,7 @@ def test_points_far_apart_in_one_image_give_the_scale(box_room, box_surface):
     views = box_room.views(2)
     true = length_between(views, ("000000", (20, 60)), ("000000", (140, 60)))
     small = scale_points(box_surface, 0.25)
-    points = KnownPoints("000000", (20, 60), "000000", (140, 60), true)
+    points = KnownDistance("000000", (20, 60), "000000", (140, 60), true)
     found = estimate_scale(small, [points.known(shrunk(views, 0.25))])
     assert found.scale == pytest.approx(4, rel=1e-6)
     assert "distance given" in found.told[0]
@@ -201,14 +204,14 @@ def test_a_hole_of_a_pixel_does_not_matter(box_room):
 )
 def test_bad_words_are_refused_with_what_to_type(name, length, error, text):
     with pytest.raises(error, match=text):
-        parse_known(name, length)
+        parse_known_length(name, length)
 
 
 def test_what_was_not_seen_cannot_be_known(box_room, box_surface):
     floor_only = box_surface.subset(box_surface.normals[:, 2] > 0.9)
     for name, length_m in (("ceiling height", 2.5), ("room length", 4.2)):
         with pytest.raises(UsageError, match="was seen|were seen"):
-            estimate_scale(floor_only, [Known(name, length_m)])
+            estimate_scale(floor_only, [KnownLength(name, length_m)])
 
 
 def test_too_little_surface_is_refused(box_surface):

@@ -14,7 +14,7 @@ from world2minecraft.capture.poster_marker import SOFTWARE_TAG
 from world2minecraft.capture.readers.photo_exif import UprightPhoto, read_photo_metadata
 from world2minecraft.capture.readers.photos import evenly_thinned, natural_key
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError, InputError, UsageError
 
 # How a picture is stored so that each EXIF flag turns it upright, by the EXIF standard's table.
@@ -51,7 +51,7 @@ def _photos(folder, count=4, suffix=".jpg", **exif):
 
 def _refused(place, *words, kind=InputError):
     with pytest.raises(kind) as caught:
-        judged = judge_capture(place, ScanOptions())
+        judged = validate_capture(place, ScanOptions())
         assert not list(photos_of_capture(judged))
         raise CaptureError(place, f"no photo: {judged}")
     line = str(caught.value)
@@ -79,7 +79,7 @@ def test_heic_photos_are_read_and_found_when_cut_short(tmp_path):
     heif = pytest.importorskip("pillow_heif")
     heif.register_heif_opener()
     _photos(tmp_path, 3, ".heic", film_mm=26)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     photos = list(photos_of_capture(judged))
     assert len(photos) == 3 and photos[0].camera is not None and photos[0].camera_guessed
     assert np.abs(photos[0].colour.astype(int) - _picture(0)).mean() < 12
@@ -119,7 +119,7 @@ def test_zips_and_wrapped_folders_are_read_alike(tmp_path):
         for path in sorted((tmp_path / "room" / "photos").iterdir()):
             archive.write(path, f"photos/{path.name}")
     both = [
-        list(photos_of_capture(judge_capture(tmp_path / name, ScanOptions())))
+        list(photos_of_capture(validate_capture(tmp_path / name, ScanOptions())))
         for name in ("room", "room.zip")
     ]
     assert [photo.name for photo in both[0]] == [photo.name for photo in both[1]]
@@ -149,7 +149,9 @@ def test_what_is_no_photo_of_the_room_is_left_out_with_reasons(tmp_path):
     assert reasons["Screenshot_20.png"] == reasons["paint.png"] == "is a screenshot"
     assert "copy it again" in reasons["broken.jpg"]
     assert any("1 live-photo videos" in note for note in capture.notes)
-    assert judge_capture(tmp_path, ScanOptions()).skipped[: len(capture.skipped)] == capture.skipped
+    assert (
+        validate_capture(tmp_path, ScanOptions()).skipped[: len(capture.skipped)] == capture.skipped
+    )
 
 
 def test_a_folder_is_thinned_evenly(tmp_path):
@@ -167,7 +169,7 @@ def test_colour_and_depth_without_poses_are_listed_together(tmp_path):
         for kind, pixels in (("rgb", _picture(n)), ("depth", np.full((300, 400), 1500, "u2"))):
             (tmp_path / kind).mkdir(exist_ok=True)
             Image.fromarray(pixels).save(tmp_path / kind / f"{n}.png")
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert [frame.name for frame in judged.frames] == ["0", "20", "100"]
     assert judged.has_depth and not judged.posed
     assert judged.typical_depth_m == pytest.approx(1.5)
@@ -175,7 +177,7 @@ def test_colour_and_depth_without_poses_are_listed_together(tmp_path):
 
 
 def test_the_unposed_samples_are_read(shared_data):
-    judged = judge_capture(shared_data / "aims_realsense_unposed", ScanOptions())
+    judged = validate_capture(shared_data / "aims_realsense_unposed", ScanOptions())
     assert judged.capture.source == "photos" and len(judged.frames) == 10 and judged.has_depth
 
 
@@ -218,7 +220,7 @@ def test_heic_photos_that_are_called_jpg(tmp_path):
     for number in range(3):
         Image.fromarray(_picture(number)).save(tmp_path / f"{number}.heic")
         (tmp_path / f"{number}.heic").rename(tmp_path / f"{number}.jpg")
-    assert len(judge_capture(tmp_path, ScanOptions()).frames) == 3
+    assert len(validate_capture(tmp_path, ScanOptions()).frames) == 3
     cut = tmp_path / "1.jpg"
     cut.write_bytes(cut.read_bytes()[:-50])
     with pytest.raises(InputError, match="is cut short"):
@@ -243,6 +245,6 @@ def test_the_page_of_a_scan_is_no_photo(tmp_path):
     page = Image.fromarray(_picture(9))
     page.save(tmp_path / "capture-scan.png", pnginfo=told)
     page.save(tmp_path / "my-scan.png")
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert [f.name for f in judged.frames] == [f"IMG_{n}" for n in range(1, 5)]
     assert judged.skipped == (("my-scan.png", "is a screenshot"),)

@@ -7,7 +7,7 @@ from world2minecraft.capture import write_plain
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.photo_stream import CapturePhotos, downscale, photos_of_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.types import Camera
 
 
@@ -41,7 +41,7 @@ def test_a_shrunk_picture_is_the_mean_over_each_footprint():
 def test_photos_of_a_posed_capture_keep_names_order_poses_and_look(tmp_path, box_room):
     views = box_room.views(4)
     write_plain(tmp_path, views)
-    photos = photos_of_capture(judge_capture(tmp_path, ScanOptions()), longest_px=80)
+    photos = photos_of_capture(validate_capture(tmp_path, ScanOptions()), longest_px=80)
     for _ in range(2):  # Read again, they are the same.
         read = list(photos)
         assert [photo.name for photo in read] == [view.name for view in views]
@@ -51,7 +51,7 @@ def test_photos_of_a_posed_capture_keep_names_order_poses_and_look(tmp_path, box
             assert (photo.camera.fx_px, photo.camera.cx_px) == (65.0, 40.0)
             assert not photo.camera_guessed
             assert np.allclose(photo.camera_to_scan, view.camera_to_scan)
-    full = next(iter(photos_of_capture(judge_capture(tmp_path, ScanOptions()))))
+    full = next(iter(photos_of_capture(validate_capture(tmp_path, ScanOptions()))))
     assert np.array_equal(full.colour, views[0].colour)
 
 

@@ -20,8 +20,8 @@ from world2minecraft.capture.poster.panels import (
     shade_top_view,
 )
 from world2minecraft.capture.quality.picture_quality import measure_picture
-from world2minecraft.capture.summary import describe
-from world2minecraft.capture.validation import judge
+from world2minecraft.capture.summary import describe_validated
+from world2minecraft.capture.validation import validate
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def photos(box_room, tmp_path_factory):
         path = folder / f"{index:02d}.png"
         Image.fromarray(view.colour if index != 4 else view.colour // 12).save(path)
         frames.append(FrameFiles(path.stem, None, path))
-    return describe(judge(Capture(folder, "photos", tuple(frames)), ScanOptions()))
+    return describe_validated(validate(Capture(folder, "photos", tuple(frames)), ScanOptions()))
 
 
 def test_size_and_bytes(scanned, photos):

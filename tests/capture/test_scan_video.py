@@ -12,7 +12,7 @@ from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.video import analyse_video, select_frames
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError, InputError
 
 av = pytest.importorskip("av")
@@ -98,7 +98,7 @@ def test_pictures_are_those_of_the_video_and_the_same_again(tmp_path):
     path = _film(tmp_path / "walk.mp4", _walk())
     with av.open(str(path)) as container:
         every = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    photos = photos_of_capture(judge_capture(path, ScanOptions(frames=6)))
+    photos = photos_of_capture(validate_capture(path, ScanOptions(frames=6)))
     for _ in range(2):
         for photo in photos:
             assert np.array_equal(photo.colour, every[int(photo.name.removeprefix("frame-"))])
@@ -110,9 +110,9 @@ def test_pictures_are_those_of_the_video_and_the_same_again(tmp_path):
 @pytest.mark.parametrize("degrees", [0, 90, 180, 270])
 def test_rotation_flags_turn_the_pictures_upright(tmp_path, degrees):
     path = _film(tmp_path / "walk.mp4", _walk(24))
-    plain = next(iter(photos_of_capture(judge_capture(path, ScanOptions())))).colour
+    plain = next(iter(photos_of_capture(validate_capture(path, ScanOptions())))).colour
     turned = _turned(_film(tmp_path / "turned.mp4", _walk(24)), degrees)
-    judged = judge_capture(turned, ScanOptions())
+    judged = validate_capture(turned, ScanOptions())
     photo = next(iter(photos_of_capture(judged)))
     assert np.array_equal(photo.colour, np.rot90(plain, -degrees // 90))
     header = judged.frames[0].colour_path.header()
@@ -204,7 +204,7 @@ def test_five_ways_of_damage_are_refused_in_one_line(tmp_path, damage):
     path = _film(tmp_path / "walk.mp4", _walk(24))
     DAMAGES[damage](path)
     with pytest.raises(InputError) as caught:
-        judge_capture(path, ScanOptions())
+        validate_capture(path, ScanOptions())
     assert "\n" not in str(caught.value) and str(path) in str(caught.value)
 
 
@@ -212,7 +212,7 @@ def test_a_promise_of_huge_pictures_takes_no_memory(tmp_path):
     path = _film(tmp_path / "walk.mp4", _walk(24))
     _huge(path)
     try:
-        judged = judge_capture(path, ScanOptions())
+        judged = validate_capture(path, ScanOptions())
     except InputError as error:
         assert "\n" not in str(error)
     else:  # The codec's own header tells the truth.

@@ -92,20 +92,20 @@ def test_a_sheet_shows_pictures_with_their_labels_beside(store, tmp_path, capsys
 def test_wrong_axes_are_seen_in_the_figure(made):
     from dataclasses import replace
 
-    from world2minecraft.minecraftocc.visualization import seen_in_cells
+    from world2minecraft.minecraftocc.visualization import share_of_depth_in_cells
 
     turned = np.ascontiguousarray(made.occ.labels.transpose(1, 0, 2))
     wrong = replace(made, occ=replace(made.occ, labels=turned))
-    assert seen_in_cells(made) > 0.999
-    assert seen_in_cells(wrong) < 0.9
+    assert share_of_depth_in_cells(made) > 0.999
+    assert share_of_depth_in_cells(wrong) < 0.9
 
 
 def test_samples_without_pictures_are_shown_too(made):
     from dataclasses import replace
 
-    from world2minecraft.minecraftocc.visualization import sample_picture
+    from world2minecraft.minecraftocc.visualization import draw_sample
 
-    assert sample_picture(replace(made, colour=None, depth_m=None)).shape[2] == 3
+    assert draw_sample(replace(made, colour=None, depth_m=None)).shape[2] == 3
 
 
 @pytest.mark.parametrize(

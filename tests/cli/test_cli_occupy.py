@@ -14,7 +14,7 @@ from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraftocc.cell_predictions import PredictedCells, resample_to_grid
-from world2minecraft.minecraftocc.formats.cameras import depth_png
+from world2minecraft.minecraftocc.formats.cameras import encode_depth
 from world2minecraft.minecraftocc.frame_completion import GridPlace
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))
@@ -153,7 +153,7 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
 )
 def test_what_cannot_be_is_said(words, code, text, photo, grid, capture, tmp_path, capsys):
     depth_m, _ = BoxRoom((4.4, 4.0, 2.6)).render(POSE)
-    (tmp_path / "depth.png").write_bytes(depth_png(depth_m.astype(np.float32), "mm"))
+    (tmp_path / "depth.png").write_bytes(encode_depth(depth_m.astype(np.float32), "mm"))
     (tmp_path / "EMPTY").mkdir()
     facts = {"NET": FACTS, "SMALL": sized((8, 8, 8), 0.16)}
     named = {"PHOTO": photo, "GRID": grid, "DEPTH": tmp_path / "depth.png", "CAPTURE": capture}

@@ -5,7 +5,7 @@ import pytest
 from build_samples import CHAIR, OBJS, RED, TABLE, WOOD, Sketch, furnished, placement
 
 from world2minecraft.construction import build_volume
-from world2minecraft.construction.lattice_fitting import best_place, best_step
+from world2minecraft.construction.overlap_avoidance import best_place, best_step
 from world2minecraft.furniture.layout_checks import floaters
 
 

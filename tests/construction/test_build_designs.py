@@ -7,10 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.block_designs import body_box, idiom_box
+from world2minecraft.construction.block_designs import body_box, design_box
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.furniture import idiom
-from world2minecraft.furniture import template
+from world2minecraft.furniture import idiom, template
 from world2minecraft.minecraft.rules.stability import unstable
 
 BARE = BuildParameters(ceiling=False, lights=False, expose=False)
@@ -92,7 +91,7 @@ def test_handles_stand_out_to_the_front_and_the_body_stays_at_the_wall(turns):
     one = placement("cabinet", FURN, (2.0, 2.0, 0.45), (0.5, 1.0, 0.9), turns)
     lattice = Lattice((-3, 61, -3), (30, 30, 20), np.array([0.0, 4.0]), 4.0)
     design = idiom(one, 4.0)
-    low, size = idiom_box(design, one, lattice)
+    low, size = design_box(design, one, lattice)
     start, solid = body_box(design, one, lattice, low, size)
     axis = turns % 2
     own = template("cabinet").typical_m

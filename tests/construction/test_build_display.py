@@ -10,13 +10,13 @@ from build_samples import CHAIR, OBJS, RED, TABLE, WOOD, Sketch
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn, write_build
 from world2minecraft.construction.canvas import BARRIER
 from world2minecraft.construction.display.boxes import (
+    DisplayBox,
     Frame,
-    Piece,
     boxes_in_room,
-    entities_of,
-    pieces_of,
+    display_entities,
+    template_boxes,
 )
-from world2minecraft.construction.display.builder import MOST_PIECES, MOST_PIECES_ELSE
+from world2minecraft.construction.display.builder import MAX_PIECES, MAX_PIECES_ELSE
 from world2minecraft.core.coordinates import apply, block_to_room, invert
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import ObjectInstance, Placement
@@ -44,8 +44,8 @@ def placed(name: str, yaw_deg: float, share: float = 0.0, most: int = 1000):
     """The entities of a template that stands turned, its parts and its frame."""
     parts, size = parts_of(name, share)
     frame = Frame(np.array([1.3, 0.7, 0.1]), size, yaw_deg)
-    pieces = pieces_of(parts, ["minecraft:stone"] * len(parts), most, 4.0)
-    return entities_of(pieces, frame, CORNER_M, 4.0, 5, 3), parts, frame
+    pieces = template_boxes(parts, ["minecraft:stone"] * len(parts), most, 4.0)
+    return display_entities(pieces, frame, CORNER_M, 4.0, 5, 3), parts, frame
 
 
 def sampled(parts, entities, frame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -98,12 +98,12 @@ def test_furniture_takes_few_entities(share):
 
 def test_the_smaller_part_shows_where_two_overlap():
     big, small = (
-        Piece(np.array([0, 0, 0, 1, 1, 1.0]), "a"),
-        Piece(np.array([0, 0, 0, 1, 1, 0.2]), "b"),
+        DisplayBox(np.array([0, 0, 0, 1, 1, 1.0]), "a"),
+        DisplayBox(np.array([0, 0, 0, 1, 1, 0.2]), "b"),
     )
     parts = [part for part in template("box").parts(np.ones(3))] * 2
     parts = [parts[0]._replace(box_m=one.box_m) for one in (big, small)]
-    pieces = pieces_of(parts, ["a", "b"], 8, 4.0)
+    pieces = template_boxes(parts, ["a", "b"], 8, 4.0)
     assert sorted((one.state, one.box_m.tolist()) for one in pieces) == [
         ("a", [0, 0, 0.2, 1, 1, 1]),
         ("b", [0, 0, 0, 1, 1, 0.2]),
@@ -115,8 +115,8 @@ def test_too_many_boxes_are_made_fewer_and_stay_nearly_the_shape():
     disc = np.argwhere((across**2).sum(axis=0) <= 100) * 0.02
     sample = template("box").parts(np.ones(3))[0]
     parts = [sample._replace(box_m=np.array([x, y, 0.0, x + 0.02, y + 0.02, 0.4])) for x, y in disc]
-    fine = pieces_of(parts, ["a"] * len(parts), 100, 4.0)
-    few = pieces_of(parts, ["a"] * len(parts), 4, 4.0)
+    fine = template_boxes(parts, ["a"] * len(parts), 100, 4.0)
+    few = template_boxes(parts, ["a"] * len(parts), 4, 4.0)
     assert len(few) < len(fine)
     area = sum(np.prod(one.box_m[3:5] - one.box_m[:2]) for one in few)
     assert area == pytest.approx(len(disc) * 0.0004, rel=0.12)
@@ -259,12 +259,12 @@ def test_an_old_game_is_refused(tmp_path, monkeypatch):
 
 
 def test_the_most_pieces_are_those_of_the_docs():
-    assert MOST_PIECES_ELSE == 8
-    assert MOST_PIECES[10] == 15
+    assert MAX_PIECES_ELSE == 8
+    assert MAX_PIECES[10] == 15
 
 
 def test_boxes_in_the_room_turn_with_their_frame():
-    piece = Piece(np.array([0.0, 0.0, 0.0, 1.0, 0.5, 0.25]), "a")
+    piece = DisplayBox(np.array([0.0, 0.0, 0.0, 1.0, 0.5, 0.25]), "a")
     middles, half = boxes_in_room([piece], Frame(np.zeros(3), np.ones(3), 90.0))
     assert middles[0].tolist() == pytest.approx([-0.25, 0.5, 0.125])
     assert half[0].tolist() == [0.5, 0.25, 0.125]

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.display.block_alignment import Settler
-from world2minecraft.construction.display.boxes import Frame, Piece
+from world2minecraft.construction.display.block_alignment import BlockAligner
+from world2minecraft.construction.display.boxes import DisplayBox, Frame
 from world2minecraft.construction.display.builder import (
+    boxes_of_cells,
     frame_of_cells,
-    pieces_of_cells,
-    without_specks,
+    remove_small_parts,
 )
 from world2minecraft.construction.display.colliders import MARK, cover_of, put_colliders
 from world2minecraft.construction.display.part_materials import role_colours, states_of_parts
@@ -109,7 +109,7 @@ def shell(blocks_per_metre: float = BLOCKS) -> tuple[Canvas, Sketch]:
 def test_nothing_is_sunk_in_a_wall_and_moves_by_little(x, y, half, yaw_deg):
     canvas, sketch = shell()
     frame = Frame(np.array([x, y, 0.05]), np.array([2 * half, half, 0.7]), yaw_deg)
-    moved = Settler(canvas, sketch.grid()).settle(frame, "floor", carried=False)
+    moved = BlockAligner(canvas, sketch.grid()).settle(frame, "floor", carried=False)
     low, high = canvas.lattice.coordinates_of(moved.bounds_m)
     assert np.abs(moved.base_m[:2] - frame.base_m[:2]).max() <= 1.25 / BLOCKS + 1e-9
     assert low[2] == pytest.approx(canvas.lattice.ground)
@@ -123,7 +123,7 @@ def test_nothing_is_sunk_in_a_wall_and_moves_by_little(x, y, half, yaw_deg):
 def test_a_cupboard_at_a_wall_touches_its_blocks():
     canvas, sketch = shell(3.3)
     frame = Frame(np.array([0.2, 1.0, 0.0]), np.array([0.4, 0.8, 0.9]), 0.0)
-    moved = Settler(canvas, sketch.grid()).settle(frame, "floor", carried=False)
+    moved = BlockAligner(canvas, sketch.grid()).settle(frame, "floor", carried=False)
     back = canvas.lattice.coordinates_of(moved.bounds_m)[0, 0]
     wall = int(np.flatnonzero(canvas.states[:, 5, canvas.lattice.ground + 1] == 0)[0])
     assert back == pytest.approx(wall, abs=1e-6)
@@ -131,7 +131,7 @@ def test_a_cupboard_at_a_wall_touches_its_blocks():
 
 def test_what_lies_on_a_thing_goes_where_it_goes():
     canvas, sketch = shell()
-    settler = Settler(canvas, sketch.grid())
+    settler = BlockAligner(canvas, sketch.grid())
     table = Frame(np.array([0.3, 1.0, 0.04]), np.array([0.8, 0.8, 0.7]), 0.0)
     moved = settler.settle(table, "floor", carried=False)
     cup = settler.settle(
@@ -144,7 +144,7 @@ def test_what_lies_on_a_thing_goes_where_it_goes():
 def test_a_lamp_hangs_from_the_blocks_of_the_ceiling():
     canvas, sketch = shell()
     frame = Frame(np.array([2.0, 1.0, 1.5]), np.array([0.3, 0.3, 0.42]), 0.0)
-    moved = Settler(canvas, sketch.grid()).settle(frame, "ceiling", carried=False)
+    moved = BlockAligner(canvas, sketch.grid()).settle(frame, "ceiling", carried=False)
     top = canvas.lattice.coordinates_of(moved.bounds_m)[1, 2]
     assert top == pytest.approx(round(top), abs=1e-6)
     assert canvas.states[8, 8, round(top)] > 0
@@ -153,8 +153,8 @@ def test_a_lamp_hangs_from_the_blocks_of_the_ceiling():
 def test_colliders_are_barriers_where_a_block_is_filled_and_marks_where_it_is_not():
     canvas, _ = shell()
     frame = Frame(np.array([2.0, 1.0, 0.0]), np.array([1.0, 1.0, 1.0]), 0.0)
-    solid = Piece(np.array([-0.5, -0.5, 0.0, 0.5, 0.5, 0.5]), "stone")
-    pole = Piece(np.array([-0.02, -0.02, 0.5, 0.02, 0.02, 1.0]), "stone")
+    solid = DisplayBox(np.array([-0.5, -0.5, 0.0, 0.5, 0.5, 0.5]), "stone")
+    pole = DisplayBox(np.array([-0.02, -0.02, 0.5, 0.02, 0.02, 1.0]), "stone")
     assert cover_of([solid], frame, canvas).volume.sum() == pytest.approx(4 * 4 * 2)
     count = put_colliders(canvas, [solid, pole], frame, FURN, 7)
     mine = canvas.instance == 7
@@ -166,9 +166,9 @@ def test_colliders_are_barriers_where_a_block_is_filled_and_marks_where_it_is_no
 def test_a_rug_stops_nobody_and_a_shining_part_shines():
     canvas, _ = shell()
     frame = Frame(np.array([2.0, 1.0, 0.0]), np.array([1.0, 1.0, 1.0]), 0.0)
-    rug = Piece(np.array([-0.5, -0.5, 0.0, 0.5, 0.5, 0.02]), "stone")
+    rug = DisplayBox(np.array([-0.5, -0.5, 0.0, 0.5, 0.5, 0.02]), "stone")
     assert put_colliders(canvas, [rug], frame, FURN, 8) == 0
-    shade = Piece(np.array([-0.1, -0.1, 0.7, 0.1, 0.1, 1.0]), "minecraft:glowstone")
+    shade = DisplayBox(np.array([-0.1, -0.1, 0.7, 0.1, 0.1, 1.0]), "minecraft:glowstone")
     put_colliders(canvas, [shade], frame, FURN, 9)
     lights = canvas.mask_of("minecraft:light[level=15,waterlogged=false]")
     assert (canvas.instance[lights] == 9).all()
@@ -205,7 +205,7 @@ def test_a_heap_of_two_colours_is_two_boxes_in_its_own_frame():
     cells = np.argwhere(grid.instance == 4)
     colours = srgb_to_oklab(grid.colour[tuple(cells.T)])
     source = (grid, FURN, load_palette("vanilla"), BuildParameters())
-    pieces = pieces_of_cells(cells, colours, np.ones(len(cells), bool), *source)
+    pieces = boxes_of_cells(cells, colours, np.ones(len(cells), bool), *source)
     frame = frame_of_cells(cells, grid)
     assert len(pieces) == 2
     assert len({piece.state for piece in pieces}) == 2
@@ -215,5 +215,5 @@ def test_a_heap_of_two_colours_is_two_boxes_in_its_own_frame():
 
 def test_specks_are_left_out_but_not_all_of_a_thing():
     cells = np.array([[0, 0, 0], [0, 0, 1], [0, 1, 0], [0, 1, 1], [9, 9, 9]])
-    assert len(without_specks(cells, 4)) == 4
-    assert len(without_specks(cells[4:], 4)) == 1
+    assert len(remove_small_parts(cells, 4)) == 4
+    assert len(remove_small_parts(cells[4:], 4)) == 1

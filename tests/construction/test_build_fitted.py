@@ -7,10 +7,10 @@ from build_samples import CHAIR, FURN, RED, TABLE, WOOD, Sketch, placement
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.cell_objects import (
     Solid,
-    inner_cells,
-    kinds_of_sheet,
-    shared_solids,
-    solid_of,
+    enclosed_cells,
+    kinds_for_sheet,
+    make_solid,
+    share_solids,
 )
 from world2minecraft.construction.fitted_objects import design_of_parts
 from world2minecraft.construction.fitting import CALM, Shape, shape_set
@@ -161,9 +161,9 @@ def test_what_lies_within_a_cupboard_belongs_to_it():
     sketch.labels[hidden] = 255
     grid = sketch.grid()
     cells = np.argwhere(grid.instance == 1)
-    inner = inner_cells(cells, grid, FURN)
+    inner = enclosed_cells(cells, grid, FURN)
     assert len(inner) == 5 * 8 * 8
-    assert len(inner_cells(cells, grid, TABLE)) == 0
+    assert len(enclosed_cells(cells, grid, TABLE)) == 0
 
 
 def test_copies_share_what_most_of_them_have():
@@ -171,26 +171,26 @@ def test_copies_share_what_most_of_them_have():
     torn = whole.copy()
     torn[3, 3, :] = False
     solids = {1: Solid(whole, 0), 2: Solid(torn, 1), 3: Solid(whole, 2), 4: Solid(whole[:1], 0)}
-    shared = shared_solids(solids, {1: CHAIR, 2: CHAIR, 3: CHAIR, 4: CHAIR})
+    shared = share_solids(solids, {1: CHAIR, 2: CHAIR, 3: CHAIR, 4: CHAIR})
     assert shared[2].mask.all()
     assert [shared[number].turns for number in (1, 2, 3)] == [0, 1, 2]
     assert shared[4].mask.shape == (1, 4, 6)
-    other = shared_solids(solids, {1: CHAIR, 2: TABLE, 3: CHAIR, 4: CHAIR})
+    other = share_solids(solids, {1: CHAIR, 2: TABLE, 3: CHAIR, 4: CHAIR})
     assert not other[2].mask.all()
 
 
 @pytest.mark.parametrize("turns", range(4))
 def test_a_solid_is_turned_back_to_its_own_frame(turns):
     cells = np.argwhere(np.ones((2, 5, 3), bool))
-    shape = solid_of(cells, np.zeros((0, 3), int), turns).mask.shape
+    shape = make_solid(cells, np.zeros((0, 3), int), turns).mask.shape
     assert shape == ((5, 2, 3) if turns % 2 else (2, 5, 3))
 
 
 def test_a_sheet_takes_no_stairs():
     sheet, block = (Solid(np.ones((n, 12, 20), bool), 0) for n in (1, 6))
-    assert kinds_of_sheet(KINDS, sheet, 0.32) == KINDS - {"stairs"}
-    assert kinds_of_sheet(KINDS - {"trapdoor"}, sheet, 0.32) == {"full", "post"}
-    assert kinds_of_sheet(KINDS, block, 0.32) == KINDS
+    assert kinds_for_sheet(KINDS, sheet, 0.32) == KINDS - {"stairs"}
+    assert kinds_for_sheet(KINDS - {"trapdoor"}, sheet, 0.32) == {"full", "post"}
+    assert kinds_for_sheet(KINDS, block, 0.32) == KINDS
 
 
 @pytest.mark.parametrize("turns", range(4))

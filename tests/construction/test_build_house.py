@@ -11,9 +11,9 @@ from scipy import ndimage
 from world2minecraft.construction import build_volume
 from world2minecraft.construction.doorways import find_gaps
 from world2minecraft.construction.lattice import lattice_over
-from world2minecraft.construction.lighting import LEAST
+from world2minecraft.construction.lighting import MIN_LIGHT
 from world2minecraft.construction.spawn import find_spawn
-from world2minecraft.construction.storeys import upper_floors_m, with_storeys
+from world2minecraft.construction.storeys import add_storeys, upper_floors_m
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.minecraft.rules.light import block_light
 
@@ -45,7 +45,7 @@ def column_of(volume, x_m, y_m):
 def test_storeys_are_told_from_level_floors():
     assert upper_floors_m(house()) == [pytest.approx(UPPER * VOXEL_M)]
     assert upper_floors_m(Sketch().grid()) == []
-    lattice = with_storeys(lattice_over(house(), np.array([0.0, 4.0]), 4.0), house())
+    lattice = add_storeys(lattice_over(house(), np.array([0.0, 4.0]), 4.0), house())
     assert lattice.upper == (lattice.ground + 11,)
     assert lattice.ground_under(lattice.ground + 10.5) == lattice.ground + 11
     assert lattice.ground_under(lattice.ground + 5.0) == lattice.ground
@@ -148,7 +148,7 @@ def test_every_place_on_every_storey_is_lit(scale):
         ground = ground_of(volume, scale, storey)
         stands = plan_of(volume, scale, storey) & free[:, ground] & free[:, ground + 1]
         inner = ndimage.binary_erosion(stands)
-        assert inner.any() and light[:, ground][inner].min() >= LEAST
+        assert inner.any() and light[:, ground][inner].min() >= MIN_LIGHT
 
 
 @pytest.mark.parametrize("scale", SCALES)

@@ -4,9 +4,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction.block_designs import DYES
-from world2minecraft.construction.cell_colours import gains_of, group_medians, spread
+from world2minecraft.construction.cell_colours import exposure_gains, fill_colours, group_medians
 from world2minecraft.construction.palettes import load_palette
-from world2minecraft.construction.surface_painting import calm, choose_few, neighbour_table, paint
+from world2minecraft.construction.surface_painting import (
+    choose_blocks,
+    neighbour_table,
+    paint,
+    smooth_blocks,
+)
 from world2minecraft.geometry.colour import (
     linear_to_oklab,
     linear_to_srgb,
@@ -110,7 +115,7 @@ def test_few_means_few():
     index = paint(srgb_to_oklab(rgb), positions, WOOLS, **TERMS)
     assert 1 < len(set(index.tolist())) <= 3
     costs = np.array([[0.0, 1.0, 1.0], [1.0, 0.0, 0.99]] * 20)
-    assert choose_few(costs, 3, 0.1).tolist() == [0, 1]
+    assert choose_blocks(costs, 3, 0.1).tolist() == [0, 1]
 
 
 @given(st.integers(0, 10_000))
@@ -129,7 +134,7 @@ def test_neighbours_are_those_one_step_away(seed):
 def test_calm_without_a_step_is_the_nearest():
     costs = np.random.default_rng(5).random((50, 4))
     positions = np.argwhere(np.ones((50, 1, 1), bool))
-    assert np.array_equal(calm(costs, positions, 0.0), costs.argmin(1))
+    assert np.array_equal(smooth_blocks(costs, positions, 0.0), costs.argmin(1))
 
 
 def test_medians_are_those_of_each_group():
@@ -149,20 +154,20 @@ def test_unseen_blocks_take_near_colours_or_the_median():
     colours[0], colours[1] = 0.2, 0.6
     known = np.zeros((9, 1, 1), bool)
     known[:2] = True
-    found = spread(colours, known, np.ones_like(known), np.full(3, 0.9))
+    found = fill_colours(colours, known, np.ones_like(known), np.full(3, 0.9))
     assert found[:, 0] == pytest.approx([0.2, 0.6, 0.6, 0.6, *[0.4] * 5])
-    nothing = spread(colours, known & False, np.ones_like(known), np.full(3, 0.9))
+    nothing = fill_colours(colours, known & False, np.ones_like(known), np.full(3, 0.9))
     assert nothing[:, 0] == pytest.approx([0.9] * 9)
 
 
 def test_a_dim_room_is_lifted_and_a_bright_one_left():
     rng = np.random.default_rng(7)
     bright = rng.uniform(0.5, 0.9, (200, 1)) * np.ones(3)
-    assert gains_of(bright) == pytest.approx([1, 1, 1])
-    dim = gains_of(bright * 0.4)
+    assert exposure_gains(bright) == pytest.approx([1, 1, 1])
+    dim = exposure_gains(bright * 0.4)
     assert dim == pytest.approx([dim[0]] * 3)
     assert 1.5 < dim[0] <= 1.8
-    warm = gains_of(bright * [1.0, 0.95, 0.9])
+    warm = exposure_gains(bright * [1.0, 0.95, 0.9])
     assert warm[0] < warm[1] < warm[2]
 
 

@@ -12,10 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.block_meanings import Meaning, labelled, meanings_of
+from world2minecraft.construction.block_meanings import Meaning, label_volume, parse_meanings
 from world2minecraft.construction.finishing import UNSEEN, nearest_allowed
-from world2minecraft.construction.palettes import PALETTE_FILES, load_palette, palette_of, piece_of
-from world2minecraft.construction.user_furniture import furniture_of
+from world2minecraft.construction.mod_furniture import mod_furniture
+from world2minecraft.construction.palettes import (
+    PALETTE_FILES,
+    load_palette,
+    parse_palette,
+    parse_piece,
+)
 from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, Placement
@@ -47,7 +52,7 @@ def placement(name: str, size_m, turns: int = 0) -> Placement:
 
 
 def states_of(name: str, size_m, scale=2.0, turns=0, colour=None) -> dict:
-    found = furniture_of(MOD.furniture, placement(name, size_m, turns), scale, colour)
+    found = mod_furniture(MOD.furniture, placement(name, size_m, turns), scale, colour)
     return (
         {} if found is None else {block.offset: parse_state(block.state) for block in found.blocks}
     )
@@ -135,7 +140,7 @@ def test_a_fridge_stands_on_its_freezer():
 def test_what_is_far_larger_than_a_piece_is_built_otherwise():
     assert not states_of("chair", [0.48, 0.45, 0.88], scale=4.0)
     assert not states_of("dining_table", [1.0, 1.5, 0.75], scale=4.0)
-    assert furniture_of((), placement("chair", [0.5, 0.5, 0.9]), 2.0, None) is None
+    assert mod_furniture((), placement("chair", [0.5, 0.5, 0.9]), 2.0, None) is None
 
 
 def test_a_room_of_a_mod_has_its_furniture_and_vanilla_walls():
@@ -197,12 +202,12 @@ def test_a_world_is_labelled_and_things_that_touch_are_one():
         states, palette, np.zeros(states.shape, np.uint8), np.zeros(states.shape, np.uint16),
         (0, 64, 0), np.eye(4),
     )  # fmt: skip
-    told = labelled(volume, load_palette("tmeo").meanings)
+    told = label_volume(volume, load_palette("tmeo").meanings)
     assert (told.semantic[states == 1] == SemanticClass.SOFA).all()
     assert not told.semantic[states == 2].any()
     assert len(np.unique(told.instance[states == 1])) == 2
     assert len(np.unique(told.instance[told.instance > 0])) == 3
-    again = labelled(told, load_palette("tmeo").meanings)
+    again = label_volume(told, load_palette("tmeo").meanings)
     assert np.array_equal(again.instance, told.instance)
 
 
@@ -210,10 +215,10 @@ def test_meanings_that_are_none_are_told():
     with pytest.raises(
         ValueError, match="'x' must mean a class, such as chair/stool, not 'chairs'"
     ):
-        meanings_of({"namespaces": ["mod"], "words": {"x": "chairs"}})
+        parse_meanings({"namespaces": ["mod"], "words": {"x": "chairs"}})
     with pytest.raises(ValueError, match="reads must have namespaces and words"):
-        meanings_of({"words": {}})
-    assert meanings_of({"namespaces": ["m"], "words": {"x": "bed"}}).of("m:x") == Meaning(6, "")
+        parse_meanings({"words": {}})
+    assert parse_meanings({"namespaces": ["m"], "words": {"x": "bed"}}).of("m:x") == Meaning(6, "")
 
 
 # A user's palette.
@@ -275,7 +280,7 @@ STRANGE = [
 
 @pytest.mark.parametrize("state", STRANGE)
 def test_what_stands_for_a_block_is_named_or_nothing(state):
-    palette = palette_of(
+    palette = parse_palette(
         {"name": "x", "blocks": ["birch_stairs", "birch_planks", "stone", "glass"]}
     )
     found = nearest_allowed(str(parse_state(state)), palette)
@@ -284,20 +289,20 @@ def test_what_stands_for_a_block_is_named_or_nothing(state):
 
 
 def test_a_palette_that_extends_a_mods_has_its_furniture_and_words():
-    palette = palette_of({"name": "x", "extends": "refurbished_furniture"})
+    palette = parse_palette({"name": "x", "extends": "refurbished_furniture"})
     assert palette.furniture == MOD.furniture
     assert palette.meanings.words == MOD.meanings.words
 
 
 def test_shapes_keep_their_way():
-    palette = palette_of({"name": "x", "blocks": ["birch_stairs", "birch_planks", "glass"]})
+    palette = parse_palette({"name": "x", "blocks": ["birch_stairs", "birch_planks", "glass"]})
     found = parse_state(nearest_allowed("minecraft:oak_stairs[facing=west,half=top]", palette))
     assert found.name == "minecraft:birch_stairs"
     assert (found.get("facing"), found.get("half")) == ("west", "top")
 
 
 def test_a_palette_may_give_classes_blocks_of_their_own():
-    palette = palette_of(
+    palette = parse_palette(
         {
             "name": "mine",
             "blocks": ["white_concrete", "oak_planks", "stone", "glass"],
@@ -368,7 +373,7 @@ TREES = st.recursive(
 @given(TREES)
 def test_any_tree_is_a_palette_or_a_typed_error(tree):
     with contextlib.suppress(ValueError, UsageError):
-        palette_of(tree)
+        parse_palette(tree)
 
 
 def test_a_piece_of_several_cells_fills_no_place():
@@ -378,7 +383,7 @@ def test_a_piece_of_several_cells_fills_no_place():
         "fill": "box",
     }
     with pytest.raises(ValueError, match="a piece of several cells cannot fill a place"):
-        piece_of(raw)
+        parse_piece(raw)
 
 
 def test_a_mods_block_has_the_colour_of_the_wood_or_dye_in_its_name():

@@ -10,8 +10,8 @@ from generated_rooms import corner_of, furnished_room, true_grid
 from house_samples import house
 
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn
-from world2minecraft.construction.finishing import settle
-from world2minecraft.construction.lighting import LEAST_CORNER, WALK_BLOCKS
+from world2minecraft.construction.finishing import apply_block_updates
+from world2minecraft.construction.lighting import MIN_CORNER_LIGHT, WALK_BLOCKS
 from world2minecraft.construction.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, invert
@@ -107,7 +107,7 @@ def test_no_corner_is_black(scale, lights):
         volume = build(sketch, scale, lights=lights)
         inside = inside_of(volume)
         light = block_light(volume)
-        assert light[inside].min() >= LEAST_CORNER
+        assert light[inside].min() >= MIN_CORNER_LIGHT
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 7.0])
@@ -243,7 +243,7 @@ def test_what_would_fall_is_taken_away_with_what_it_carries():
         canvas.put((3, 3, z), canvas.id_of(state), 11, 1)
     canvas.put((4, 4, 4), canvas.id_of("lantern"), 11, 2)
     canvas.put((4, 4, 5), canvas.id_of("red_carpet"), 11, 2)
-    assert settle(canvas) == 3
+    assert apply_block_updates(canvas) == 3
     kept = {canvas.palette[i] for i in np.unique(canvas.states)}
     assert {s.partition("[")[0] for s in kept} == {
         "minecraft:air", "minecraft:oak_planks", "minecraft:torch",

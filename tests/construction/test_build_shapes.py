@@ -5,10 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.cell_objects import shape_of_cells
+from world2minecraft.construction.cell_objects import resample_cells
 from world2minecraft.construction.lattice import face_shares, lattice_over, memberships, overlaps
 from world2minecraft.construction.template_blocks import half_block_design
-from world2minecraft.construction.worktops import top_cells
+from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.furniture import TEMPLATES, template
 
 ANY = BuildParameters(lights=False, edge="none", most_contradicted=1.0)
@@ -59,7 +59,7 @@ def lattice(scale):
 
 def shape_of(sketch, number, scale, shift=True):
     grid = sketch.grid()
-    return shape_of_cells(np.argwhere(grid.instance == number), grid, lattice(scale), 0.25, shift)
+    return resample_cells(np.argwhere(grid.instance == number), grid, lattice(scale), 0.25, shift)
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 6.25])
@@ -148,11 +148,11 @@ def test_a_glossy_top_is_closed_where_space_shows_it():
     sketch.labels[sketch.at((0, 8), (2, 20), (0, 10))] = 255
     grid = sketch.grid()
     cells = np.argwhere(grid.instance == 1)
-    added, alike = top_cells(grid, cells)
+    added, alike = missing_top_cells(grid, cells)
     wanted = {(x + 2, y + 2, 10) for x in range(8) for y in range(2, 20)}
     assert {tuple(cell) for cell in added.tolist()} == wanted
     assert (grid.instance[tuple(alike.T)] == 1).all()
-    seen, _ = top_cells(Sketch().put((8, 9), (2, 20), (0, 10), 10, RED, 1).grid(), cells)
+    seen, _ = missing_top_cells(Sketch().put((8, 9), (2, 20), (0, 10), 10, RED, 1).grid(), cells)
     assert len(seen) == 0
 
 

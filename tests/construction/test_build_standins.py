@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from build_samples import placement
 
-from world2minecraft.construction.substitutes import is_green, stand_in
+from world2minecraft.construction.substitutes import is_green, substitute_template
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Alternative
 from world2minecraft.geometry.colour import srgb_to_oklab
@@ -24,7 +24,7 @@ def cells(class_id, size_m, **more):
 
 def test_a_sofa_of_cells_becomes_a_sofa_where_it_stands():
     own = cells(SemanticClass.SOFA, (0.8, 2.08, 1.04), quarter_turns=2)
-    found = stand_in(own, alone=True, colour=None)
+    found = substitute_template(own, alone=True, colour=None)
     assert found.template == "sofa"
     assert found.quarter_turns == 2
     np.testing.assert_array_equal(found.size_m, own.size_m)
@@ -38,13 +38,13 @@ def test_the_best_match_of_the_right_size_is_taken():
         Alternative("chair", 0, 0.3),
     )
     own = cells(SemanticClass.CHAIR, (0.62, 0.6, 0.9), alternatives=tried)
-    assert stand_in(own, alone=True, colour=None).template == "armchair"
+    assert substitute_template(own, alone=True, colour=None).template == "armchair"
 
 
 @pytest.mark.parametrize(("rgb", "name"), [(GREEN, "plant"), (BROWN, "cells"), (RED, "cells")])
 def test_what_is_green_is_a_plant(rgb, name):
     own = cells(SemanticClass.OBJS, (0.64, 0.64, 1.2))
-    assert stand_in(own, alone=True, colour=lab(rgb)).template == name
+    assert substitute_template(own, alone=True, colour=lab(rgb)).template == name
     assert is_green(lab(rgb)) == (name == "plant")
 
 
@@ -57,9 +57,9 @@ def test_what_is_green_is_a_plant(rgb, name):
     ],
 )
 def test_all_else_stays(own):
-    assert stand_in(own, alone=True, colour=lab(GREEN)) is own
+    assert substitute_template(own, alone=True, colour=lab(GREEN)) is own
 
 
 def test_what_was_cut_into_runs_stays():
     own = cells(SemanticClass.SOFA, (0.8, 2.08, 1.04))
-    assert stand_in(own, alone=False, colour=None) is own
+    assert substitute_template(own, alone=False, colour=None) is own

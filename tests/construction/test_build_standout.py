@@ -3,7 +3,7 @@ import pytest
 from build_samples import WALL, WHITE, Sketch
 
 from world2minecraft.construction import build_volume
-from world2minecraft.construction.shell import PICTURE, RUG, standing_out
+from world2minecraft.construction.shell import PICTURE, RUG, find_contrasting_parts
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of
@@ -61,7 +61,7 @@ def test_a_picture_on_a_plain_wall_is_a_patch_and_no_more():
     picture = np.zeros((16, 10), bool)
     picture[5:8, 4:7] = True
     colours[picture] = srgb_to_oklab(np.array(BLUE, np.uint8))
-    parts = standing_out(mask, colours.reshape(-1, 3), 0.25, PICTURE)
+    parts = find_contrasting_parts(mask, colours.reshape(-1, 3), 0.25, PICTURE)
     assert np.array_equal(parts.reshape(16, 10) > 0, picture)
 
 
@@ -70,15 +70,15 @@ def test_shade_on_a_floor_is_no_rug():
     shares = np.ones((16, 20))
     shares[4:12, 5:14] = 0.4
     colours = lit((186, 142, 92), shares.ravel())
-    assert not standing_out(mask, colours, 0.25, RUG).any()
+    assert not find_contrasting_parts(mask, colours, 0.25, RUG).any()
     shaded = colours.reshape(16, 20, 3)
     shaded[4:12, 5:14] = lit(PURPLE, [0.4])
-    assert (standing_out(mask, shaded.reshape(-1, 3), 0.25, RUG) > 0).sum() == 72
+    assert (find_contrasting_parts(mask, shaded.reshape(-1, 3), 0.25, RUG) > 0).sum() == 72
 
 
 @pytest.mark.parametrize("shape", [(0, 0, 0), (1, 1, 1), (1, 1, 30), (3, 1, 3), (4, 4, 4)])
 def test_what_is_no_flat_surface_has_no_parts(shape):
     mask = np.ones(shape, bool)
     colours = np.random.default_rng(0).random((mask.sum(), 3))
-    assert standing_out(mask, colours, 0.25, PICTURE).shape == (mask.sum(),)
-    assert not standing_out(mask, colours, 0.25, PICTURE).any()
+    assert find_contrasting_parts(mask, colours, 0.25, PICTURE).shape == (mask.sum(),)
+    assert not find_contrasting_parts(mask, colours, 0.25, PICTURE).any()

@@ -5,13 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.block_designs import Hue, filled_by, tinted
+from world2minecraft.construction.block_designs import ObjectColours, filled_blocks, recolour_design
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import idiom
-from world2minecraft.furniture import template
+from world2minecraft.furniture import idiom, template
 from world2minecraft.geometry.colour import srgb_to_oklab
 
 RED, BLUE, WHITE, OAK, DARK = (
@@ -39,10 +38,10 @@ def _states(name, rgb, *, scale=4.0, paint=None, known=True):
     shape = (east, south, up)
     cells = np.array([block.offset for block in design.blocks])[:, [0, 2, 1]]
     colours = np.broadcast_to(_lab(rgb), (*shape, 3)).astype(np.float32)
-    hue = Hue(colours, np.full(shape, known), None if paint is None else _lab(paint))
+    hue = ObjectColours(colours, np.full(shape, known), None if paint is None else _lab(paint))
     kind = template(name).class_id
     palette, how = load_palette("vanilla"), BuildParameters()
-    states = tinted(design.blocks, cells, design.materials, hue, kind, palette, how)
+    states = recolour_design(design.blocks, cells, design.materials, hue, kind, palette, how)
     return design, states
 
 
@@ -108,13 +107,14 @@ def test_a_tinted_block_keeps_its_shape_and_its_way(name, rgb, scale):
 def test_the_cells_of_a_turned_design_are_in_room_axes():
     straight, turned = _design("sofa"), _design("sofa", quarter_turns=1)
     assert (
-        filled_by(turned).shape == filled_by(straight).shape[1::-1] + filled_by(straight).shape[2:]
+        filled_blocks(turned).shape
+        == filled_blocks(straight).shape[1::-1] + filled_blocks(straight).shape[2:]
     )
-    assert filled_by(turned).sum() == len(turned.blocks)
+    assert filled_blocks(turned).sum() == len(turned.blocks)
     # Its back lies at the low end of room x, and of room y once it is turned counter-clockwise.
-    top = filled_by(straight)[:, :, -1]
+    top = filled_blocks(straight)[:, :, -1]
     assert top[0].all() and not top[-1].all()
-    top = filled_by(turned)[:, :, -1]
+    top = filled_blocks(turned)[:, :, -1]
     assert top[:, 0].all() and not top[:, -1].all()
 
 

@@ -3,11 +3,11 @@ from build_samples import DARK, FURN, RED, WHITE, Sketch
 
 from world2minecraft.construction import build_volume
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.cell_colours import one_paint
+from world2minecraft.construction.cell_colours import unify_paints
 from world2minecraft.construction.fitted_objects import LOWER
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.construction.palettes import palette_of
-from world2minecraft.construction.worktops import Plates, Worktop, joined
+from world2minecraft.construction.palettes import parse_palette
+from world2minecraft.construction.worktops import PlateBuilder, Worktop, join_worktops
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_to_oklab, srgb_to_linear, srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colour_of
@@ -57,7 +57,7 @@ def test_a_glossy_counter_is_one_dark_plate_over_a_red_front():
 def plates_over(numbers, scale, names):
     """Red counters side by side with a dark worktop each, and the palette of some blocks."""
     canvas = Canvas(Lattice((0, 63, 0), (12, 4, 5), np.zeros(2), scale))
-    plates = Plates(canvas, palette_of({"name": "few", "blocks": names}))
+    plates = PlateBuilder(canvas, parse_palette({"name": "few", "blocks": names}))
     for place, number in enumerate(numbers):
         columns = np.zeros((12, 4), bool)
         columns[1 + 3 * place : 3 + 3 * place, 1:3] = True
@@ -100,10 +100,10 @@ def test_the_shades_and_hazes_of_a_strong_paint_are_one_colour():
     reds = linear_to_oklab(np.clip(light * (1 - haze) + 0.4 * haze, 0, 1))
     wood = np.tile(srgb_to_oklab(np.array([162, 131, 79], np.uint8)), (300, 1))
     grey = np.tile(srgb_to_oklab(np.array([120, 120, 124], np.uint8)), (300, 1))
-    found = one_paint(np.concatenate([reds, wood, grey]).astype(np.float32))
+    found = unify_paints(np.concatenate([reds, wood, grey]).astype(np.float32))
     assert np.array_equal(found[400:], np.concatenate([wood, grey]).astype(np.float32))
     assert len(np.unique(found[:400], axis=0)) < 0.2 * 400
-    few = one_paint(reds[:100])
+    few = unify_paints(reds[:100])
     assert np.array_equal(few, reds[:100].astype(np.float32))
 
 
@@ -115,7 +115,7 @@ def plate(x, layer, colour):
 
 def test_the_arms_of_an_l_wear_one_plate_as_the_larger_says():
     arms = {3: plate(slice(0, 2), 4, (0.2, 0, 0)), 8: plate(slice(2, 8), 3, (0.1, 0, 0))}
-    found = joined(arms)
+    found = join_worktops(arms)
     assert set(found) == {3, 8}
     assert found[3].layer == found[8].layer == 3
     np.testing.assert_array_equal(found[3].colour, arms[8].colour)
@@ -126,5 +126,5 @@ def test_plates_apart_or_at_other_heights_stay_as_they_are():
     tops = {1: plate(slice(0, 2), 3, (0.2, 0, 0)), 2: plate(slice(4, 8), 3, (0.1, 0, 0))}
     higher = {1: tops[1], 2: plate(slice(2, 8), 5, (0.1, 0, 0))}
     for given in (tops, higher):
-        found = joined(given)
+        found = join_worktops(given)
         assert all(found[number] is given[number] for number in given)

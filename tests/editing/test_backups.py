@@ -15,9 +15,9 @@ from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputE
 from world2minecraft.editing import backups
 from world2minecraft.editing.backups import (
     changed_since,
-    commit,
-    recover,
+    commit_step,
     list_steps,
+    recover,
     revert_step,
 )
 from world2minecraft.editing.world_build import build_into_world
@@ -53,7 +53,7 @@ def world(tmp_path):
 
 def test_files_are_exchanged_and_brought_back_with_mode_and_time(world):
     before = tree(world)
-    step = commit(world, FILES, "a test")
+    step = commit_step(world, FILES, "a test")
     assert [entry.path for entry in step.files] == sorted(
         set(FILES) - {"datapacks/player_size.zip"}
     )
@@ -70,7 +70,7 @@ def test_files_are_exchanged_and_brought_back_with_mode_and_time(world):
 
 def test_nothing_to_change_leaves_nothing_behind(world):
     before = tree(world)
-    assert commit(world, {"region/r.0.0.mca": b"old ground"}, "a test") is None
+    assert commit_step(world, {"region/r.0.0.mca": b"old ground"}, "a test") is None
     assert tree(world) == before
 
 
@@ -102,13 +102,13 @@ def every_moment(monkeypatch, act):
 
 def test_a_kill_at_any_moment_of_a_step_is_brought_back(tmp_path, world, monkeypatch):
     before = tree(world)
-    moments = every_moment(monkeypatch, lambda: commit(world, FILES, "a test"))
+    moments = every_moment(monkeypatch, lambda: commit_step(world, FILES, "a test"))
     revert_step(list_steps(world)[-1])
     assert len(moments) > 8
     for moment in moments:
         with monkeypatch.context() as patch, contextlib.suppress(Killed):
             calls(patch, moment, Killed)
-            commit(world, FILES, "a test")
+            commit_step(world, FILES, "a test")
         recover(world)
         assert tree(world) == before
 
@@ -117,11 +117,11 @@ def test_a_kill_at_any_moment_of_an_undo_is_gone_on_with(world, monkeypatch):
     before = tree(world)
 
     def undo():
-        commit(world, FILES, "a test")
+        commit_step(world, FILES, "a test")
         revert_step(list_steps(world)[-1])
 
     for moment in every_moment(monkeypatch, undo):
-        commit(world, FILES, "a test")
+        commit_step(world, FILES, "a test")
         with monkeypatch.context() as patch, contextlib.suppress(Killed):
             calls(patch, moment, Killed)
             revert_step(list_steps(world)[-1])
@@ -137,7 +137,7 @@ def test_a_kill_while_bringing_back_is_brought_back(world, monkeypatch):
         for second in range(1, 9):
             with monkeypatch.context() as patch, contextlib.suppress(Killed):
                 calls(patch, first, Killed)
-                commit(world, FILES, "a test")
+                commit_step(world, FILES, "a test")
             with monkeypatch.context() as patch, contextlib.suppress(Killed):
                 calls(patch, second, Killed)
                 recover(world)
@@ -149,13 +149,13 @@ def test_a_kill_while_bringing_back_is_brought_back(world, monkeypatch):
 
 def test_a_full_disk_leaves_the_world_as_it_was(world, monkeypatch):
     before = tree(world)
-    for moment in every_moment(monkeypatch, lambda: commit(world, FILES, "a test"))[:-1]:
+    for moment in every_moment(monkeypatch, lambda: commit_step(world, FILES, "a test"))[:-1]:
         for step in list_steps(world):
             revert_step(step)
         with monkeypatch.context() as patch:
             calls(patch, moment, OSError(28, "No space left on device"))
             with contextlib.suppress(OutputError):
-                commit(world, FILES, "a test")
+                commit_step(world, FILES, "a test")
         recover(world)
         for step in list_steps(world):
             revert_step(step)
@@ -166,13 +166,13 @@ def test_too_little_space_is_told_before(world, monkeypatch):
     before = tree(world)
     monkeypatch.setattr(backups.shutil, "disk_usage", lambda _: type("", (), {"free": 5 << 20})())
     with pytest.raises(OutputError) as raised:
-        commit(world, FILES, "a test")
+        commit_step(world, FILES, "a test")
     assert str(raised.value) == (f"{world}: its disk has 5 MB free; 16 are needed with the backup")
     assert tree(world) == before
 
 
 def test_a_file_that_was_saved_since_is_seen(world):
-    step = commit(world, FILES, "a test")
+    step = commit_step(world, FILES, "a test")
     assert changed_since(step) == []
     (world / "region/r.0.1.mca").write_bytes(b"the game saved")
     assert changed_since(step) == ["region/r.0.1.mca"]
@@ -181,7 +181,7 @@ def test_a_file_that_was_saved_since_is_seen(world):
 def test_what_was_changed_after_a_cut_off_step_is_not_overwritten(world, monkeypatch):
     with monkeypatch.context() as patch, contextlib.suppress(Killed):
         calls(patch, 9, Killed)
-        commit(world, FILES, "a test")
+        commit_step(world, FILES, "a test")
     assert list_steps(world)[-1].state == "prepared"
     (world / "region/r.0.0.mca").write_bytes(b"the game saved")
     with pytest.raises(ConflictError, match="was changed after a step on it was cut off"):
@@ -190,7 +190,7 @@ def test_what_was_changed_after_a_cut_off_step_is_not_overwritten(world, monkeyp
 
 
 def test_a_damaged_backup_changes_nothing(world):
-    step = commit(world, FILES, "a test")
+    step = commit_step(world, FILES, "a test")
     after = tree(world)
     (step.folder / "old" / "1").write_bytes(b"rotten")
     number = [entry.path for entry in step.files].index("region/c.5.5.mcc")
@@ -217,7 +217,7 @@ def test_a_damaged_backup_changes_nothing(world):
     ],
 )
 def test_a_manifest_from_elsewhere_names_no_other_file(world, name):
-    commit(world, FILES, "a test")
+    commit_step(world, FILES, "a test")
     path = world / "w2m_undo/0001/manifest.json"
     raw = backups.read_json(path)
     raw["files"][0]["path"] = name
@@ -230,13 +230,13 @@ def test_a_link_out_of_the_world_is_not_followed(world, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (world / "entities").symlink_to(tmp_path / "elsewhere")
     with pytest.raises(DamagedFileError, match="is a link out of the world"):
-        commit(world, FILES, "a test")
+        commit_step(world, FILES, "a test")
     assert not list((tmp_path / "elsewhere").iterdir())
 
 
 @pytest.mark.parametrize("content", ["[]", "{}", '{"files": [{"path": 3}]}', "no json"])
 def test_a_broken_manifest_is_one_line(world, content):
-    commit(world, FILES, "a test")
+    commit_step(world, FILES, "a test")
     (world / "w2m_undo/0001/manifest.json").write_text(content)
     with pytest.raises(DamagedFileError):
         list_steps(world)

@@ -239,8 +239,8 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
             random = np.random.default_rng([9, number])
             for _ in range(6):
                 env.step(int(random.choice([1, 1, 1, 1, 2, 3])))
-            gaps.append(apart(env.acting.stance.feet, walked(world, ours, held).position))
-            assert apart(env.acting.stance.feet, server.ask(where=body.name)) < 1e-6
+            gaps.append(apart(env.controller.stance.feet, walked(world, ours, held).position))
+            assert apart(env.controller.stance.feet, server.ask(where=body.name)) < 1e-6
         info = env.step(int(Move.STOP))[4]
         assert info["score"]["steps"] == 7
     say(f"{version}, moves: {told(gaps)}")

@@ -26,10 +26,10 @@ from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.building import scene_survey as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
 from world2minecraft.minecraftocc.building.shard_rendering import shard_tasks
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.plan import (
     DatasetPlan,
     GivenViews,
@@ -69,7 +69,7 @@ def plan_of(worlds, images=7, recipe=RECIPE, **words) -> DatasetPlan:
 
 
 def build(folder, plan, jobs=1, engine="pool", progress=lambda *_: None):
-    with opened_engine(engine, jobs) as workers:
+    with open_engine(engine, jobs) as workers:
         return build_dataset(folder, plan, workers, progress)
 
 
@@ -122,7 +122,7 @@ def test_a_sample_is_what_the_renderer_and_the_labeller_say(made, worlds):
     Image.fromarray(picture.colour).save(packed, "JPEG", quality=95, subsampling=0)
     np.testing.assert_array_equal(sample.colour, np.asarray(Image.open(packed)))
     assert np.abs(sample.depth_m - picture.depth_m).max() <= 0.0005 + 1e-6
-    voxels = scene_voxels(volume, source.designs(), voxel_m=0.25)
+    voxels = voxelize_scene(volume, source.designs(), voxel_m=0.25)
     region = region_in(voxels, sample.camera_to_room, REGION)
     occ = label_image(voxels, region, sample.camera, sample.camera_to_room, picture.depth_m)
     for name in ("labels", "instance", "in_frustum", "hits", "free"):

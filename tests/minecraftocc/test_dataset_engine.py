@@ -10,7 +10,7 @@ import engine_tasks as tasks
 import pytest
 
 from world2minecraft.core.errors import OutputError, UnknownNameError, UsageError, WorkerError
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 
 HERE = str(Path(__file__).parent)
 
@@ -25,7 +25,7 @@ def findable(monkeypatch):
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_each_item_is_done_once(jobs):
     ticks = []
-    with opened_engine("pool", jobs) as engine:
+    with open_engine("pool", jobs) as engine:
         found = dict(engine.run(tasks.square, list(range(9)), ticks.append))
         again = dict(engine.run(tasks.square, [5], ticks.append))
     assert found == {n: n * n for n in range(9)}
@@ -36,25 +36,25 @@ def test_each_item_is_done_once(jobs):
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_an_error_comes_out_as_it_is(jobs):
-    with opened_engine("pool", jobs) as engine, pytest.raises(OutputError) as caught:
+    with open_engine("pool", jobs) as engine, pytest.raises(OutputError) as caught:
         list(engine.run(tasks.fail, list(range(5)), print))
     assert str(caught.value) == "DATA: the disk is full"
 
 
 def test_an_error_that_cannot_be_sent_is_told():
-    with opened_engine("pool", 2) as engine, pytest.raises(WorkerError, match="Local: odd"):
+    with open_engine("pool", 2) as engine, pytest.raises(WorkerError, match="Local: odd"):
         list(engine.run(tasks.fail_strangely, [1], print))
 
 
 def test_a_killed_worker_is_replaced_and_told(tmp_path):
-    with opened_engine("pool", 2) as engine:
+    with open_engine("pool", 2) as engine:
         found = dict(engine.run(tasks.die_once, [tmp_path / "mark"], lambda _: None))
     assert found == {0: "went on"}
     assert engine.notes == ["A worker ended by signal 9; another went on where it was."]
 
 
 def test_an_item_that_kills_every_worker_is_told_in_one_line():
-    with opened_engine("pool", 2) as engine, pytest.raises(WorkerError) as caught:
+    with open_engine("pool", 2) as engine, pytest.raises(WorkerError) as caught:
         list(engine.run(tasks.die, [1], print))
     assert str(caught.value) == (
         "3 workers in turn have ended with code 7 over part 1 of 1; is memory short? "
@@ -100,6 +100,6 @@ def is_alive(pid):
 
 def test_wrong_words():
     with pytest.raises(UnknownNameError, match="did you mean 'pool'"):
-        opened_engine("poll", 2)
+        open_engine("poll", 2)
     with pytest.raises(UsageError, match="jobs may be 1 to 1024, not 0"):
-        opened_engine("pool", 0)
+        open_engine("pool", 0)

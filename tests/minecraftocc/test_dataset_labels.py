@@ -14,14 +14,14 @@ from world2minecraft.minecraftocc.labels.image_labels import (
     cells_of_pixels,
     label_image,
     label_view,
-    occluded,
-    resized,
-    unknown,
+    occluded_cells,
+    resize_camera,
+    unknown_cells,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import OccSample
-from world2minecraft.minecraftocc.visualization import label_image_of
+from world2minecraft.minecraftocc.visualization import project_labels
 from world2minecraft.rendering import prepare_scene, render_volume
 
 RULE = RegionRule(shape=(24, 22, 20))
@@ -31,7 +31,7 @@ RULE = RegionRule(shape=(24, 22, 20))
 def world():
     volume = room_of_things(seed=5)
     scene = prepare_scene(volume)
-    return volume, scene, scene_voxels(volume, scene=scene)
+    return volume, scene, voxelize_scene(volume, scene=scene)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -61,7 +61,7 @@ def test_every_pixel_lies_in_a_solid_cell(world):
 
 def test_a_cell_a_block_says_what_the_ids_of_its_pixels_say(world):
     volume, scene, _ = world
-    voxels = scene_voxels(volume, voxel_m=None, scene=scene)
+    voxels = voxelize_scene(volume, voxel_m=None, scene=scene)
     rule = RegionRule(shape=(20, 20, 12), voxel_m=voxels.voxel_m)
     wrong = pixels = 0
     for pose in poses_in(volume, 20, 60):
@@ -83,7 +83,7 @@ def test_masks_are_laws(world, kind):
         occ = label_view(voxels, scene, CAMERA, pose, RegionRule(kind, (24, 22, 20)))
         assert not (occ.free & (occ.fine > 0)).any()
         assert not (occ.visible & (occ.fine == 0)).any()
-        parts = [occ.visible & occ.in_frustum, occluded(occ), unknown(occ)]
+        parts = [occ.visible & occ.in_frustum, occluded_cells(occ), unknown_cells(occ)]
         parts.append(occ.free & occ.in_frustum)
         assert np.array_equal(np.sum(parts, axis=0) == 1, occ.in_frustum)
 
@@ -136,7 +136,7 @@ def test_more_pixels_see_no_less_free_space(world):
 
 
 def test_a_resized_camera_sees_the_same():
-    camera = resized(Camera(1920, 1129, 806.2, 806.2, 960.0, 564.5), 640)
+    camera = resize_camera(Camera(1920, 1129, 806.2, 806.2, 960.0, 564.5), 640)
     assert (camera.width_px, camera.height_px) == (640, 376)
     assert camera.fx_px / camera.width_px == pytest.approx(806.2 / 1920)
     assert camera.cy_px / camera.height_px == pytest.approx(0.5)
@@ -161,10 +161,10 @@ def test_the_image_of_a_samples_labels_is_that_of_the_cells_its_pixels_see(world
     told = occ.labels.reshape(-1)[np.maximum(cells, 0)]
     sample = OccSample("a-b-0", "a", "b", 0, CAMERA, pose, occ, voxels.fine_classes)
     for depth_m, share in ((picture.depth_m, 0.98), (None, 0.85)):
-        image = label_image_of(replace(sample, depth_m=depth_m))
+        image = project_labels(replace(sample, depth_m=depth_m))
         assert (image == told)[cells >= 0].mean() > share
     x, y, z = (invert_rigid(region.region_to_room) @ pose)[:3, 3] / region.voxel_m
     labels = np.array(occ.labels)
     labels[int(x), int(y), int(z)] = 11  # The camera stands in a cell that holds something.
     inside = replace(sample, occ=replace(occ, labels=labels))
-    assert np.array_equal(label_image_of(inside), label_image_of(sample))
+    assert np.array_equal(project_labels(inside), project_labels(sample))

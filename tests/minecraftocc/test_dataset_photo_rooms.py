@@ -7,9 +7,9 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc import photo_rooms
-from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples, room_voxels
+from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples, voxelize_room
 from world2minecraft.minecraftocc.store import open_store
-from world2minecraft.minecraftocc.visualization import seen_in_cells
+from world2minecraft.minecraftocc.visualization import share_of_depth_in_cells
 from world2minecraft.procgen import generate_room
 
 CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
@@ -22,7 +22,7 @@ def samples():
 
 def test_cells_are_occupied_where_four_of_64_voxels_are():
     room = generate_room(7, kind="bed")
-    voxels = room_voxels(room)
+    voxels = voxelize_room(room)
     assert np.allclose(voxels.origin_m / 0.08, np.round(voxels.origin_m / 0.08))
     offset = np.round((room.origin_m - voxels.origin_m) / 0.02).astype(int)
     rng = np.random.default_rng(0)
@@ -42,13 +42,13 @@ def test_cells_are_occupied_where_four_of_64_voxels_are():
 
 def test_cells_are_whole_voxels():
     with pytest.raises(UsageError, match="whole multiples of 0.02 m, not 0.05"):
-        room_voxels(generate_room(7, kind="bed"), 0.05)
+        voxelize_room(generate_room(7, kind="bed"), 0.05)
 
 
 def test_labels_fit_the_pictures(samples):
     for sample in samples:
         # A cell that less than a sixteenth of a surface reaches into is empty by the rule.
-        assert seen_in_cells(sample) > 0.95
+        assert share_of_depth_in_cells(sample) > 0.95
         assert sample.colour.std() > 10
         assert {2, 3} & set(np.unique(sample.occ.labels[sample.occ.visible]))
         assert sample.occ.free.any() and not (sample.occ.free & sample.occ.occupied).any()

@@ -13,7 +13,7 @@ from world2minecraft.minecraftocc.building.build import allocate_views
 from world2minecraft.minecraftocc.building.recorded_views import MAX_TOUR_NAME as LONGEST_TOUR
 from world2minecraft.minecraftocc.building.shard_rendering import shard_tasks
 from world2minecraft.minecraftocc.plan import (
-    MOST_SCENES,
+    MAX_SCENES,
     PRESETS,
     Recipe,
     SceneSpec,
@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.plan import (
     plan_dataset,
     source_scenes,
 )
-from world2minecraft.minecraftocc.store.shard import LONGEST_KEY
+from world2minecraft.minecraftocc.store.shard import MAX_KEY_LENGTH
 
 
 @pytest.mark.parametrize(
@@ -113,8 +113,8 @@ def test_a_world_that_is_given_twice_is_refused():
 def test_the_keys_of_any_scene_can_be_stored():
     """The longest name, its number, the longest tour of one's own and a frame."""
     (spec,) = source_scenes([Path("x" * 200)])
-    key = f"{spec.scene_id}_{MOST_SCENES - 1}-{'t' * LONGEST_TOUR}-999999"
-    assert len(key) <= LONGEST_KEY
+    key = f"{spec.scene_id}_{MAX_SCENES - 1}-{'t' * LONGEST_TOUR}-999999"
+    assert len(key) <= MAX_KEY_LENGTH
     assert len(f"{key}.depth.png") <= 100  # As long as a name in a ustar may be.
 
 

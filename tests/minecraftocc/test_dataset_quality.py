@@ -15,14 +15,14 @@ from world2minecraft.evaluation.metrics.image_quality import (
 )
 from world2minecraft.minecraftocc.image_quality import (
     CAVEATS,
-    choose,
     measure_quality,
+    open_pictures,
+    parse_size,
     picture_quality,
-    pictures_at,
     quality_json,
     quality_text,
-    resized,
-    size_of,
+    resize_and_crop,
+    sample_keys,
 )
 from world2minecraft.minecraftocc.store import SampleFiles, write_store
 
@@ -53,7 +53,7 @@ def test_means_are_over_pictures_and_each_size_has_a_row():
     native, small = report.rows
     assert (native.size, small.size, native.pictures) == ("native", "150x100", 3)
     assert native.piqe == pytest.approx(np.mean([piqe(one) for one in pictures.values()]))
-    shrunk = [laplacian_variance(resized(one, (150, 100)), 5) for one in pictures.values()]
+    shrunk = [laplacian_variance(resize_and_crop(one, (150, 100)), 5) for one in pictures.values()]
     assert small.laplacian[5] == pytest.approx(np.mean(shrunk))
     assert small.niqe["own"] is None and small.without_niqe == 3  # One patch of 96 is too few.
     assert "note: 3 pictures are too small or too flat for NIQE." in quality_text(report)
@@ -79,30 +79,30 @@ def test_the_papers_niqe_stands_under_the_variant_that_it_is_like():
 
 def test_a_sample_is_the_same_for_its_seed_in_any_order_of_keys():
     keys = [f"k{n:02d}" for n in range(40)]
-    assert choose(keys, 10, 3) == choose(keys[::-1], 10, 3)
-    assert choose(keys, 10, 3) != choose(keys, 10, 4)
-    assert choose(keys, 99, 0) == keys
-    assert set(choose(keys, 10, 3, lambda key: key < "k20")) <= set(keys[:20])
-    assert len(choose(keys, 10, 3, lambda key: key < "k20")) == 10
+    assert sample_keys(keys, 10, 3) == sample_keys(keys[::-1], 10, 3)
+    assert sample_keys(keys, 10, 3) != sample_keys(keys, 10, 4)
+    assert sample_keys(keys, 99, 0) == keys
+    assert set(sample_keys(keys, 10, 3, lambda key: key < "k20")) <= set(keys[:20])
+    assert len(sample_keys(keys, 10, 3, lambda key: key < "k20")) == 10
     with pytest.raises(UsageError, match="--sample must be 1 or more, not 0"):
-        choose(keys, 0, 0)
+        sample_keys(keys, 0, 0)
 
 
 @pytest.mark.parametrize("text", ["640", "x480", "640x0", "axb", "640x480x2", "99999x1", ""])
 def test_a_size_that_is_none_is_told(text):
     with pytest.raises(UsageError, match="--resize is WIDTHxHEIGHT, such as 640x480, or none"):
-        size_of(text)
+        parse_size(text)
 
 
 def test_resizing_keeps_the_middle_and_the_mean():
     picture = np.zeros((100, 300, 3), np.uint8)
     picture[:, 100:200] = 200
-    assert (resized(picture, (50, 50)) == 200).all()
+    assert (resize_and_crop(picture, (50, 50)) == 200).all()
     photo = noise(2, 240, 320)
-    half = resized(photo, (160, 120))
+    half = resize_and_crop(photo, (160, 120))
     exact = photo.reshape(120, 2, 160, 2, 3).mean(axis=(1, 3))
     assert np.abs(half - exact).max() <= 1
-    assert resized(half, (320, 240)).shape == (240, 320, 3)
+    assert resize_and_crop(half, (320, 240)).shape == (240, 320, 3)
 
 
 def test_a_folder_gives_its_pictures_and_leaves_out_depth(tmp_path):
@@ -111,9 +111,9 @@ def test_a_folder_gives_its_pictures_and_leaves_out_depth(tmp_path):
     Image.fromarray(noise(2)).save(tmp_path / "b.png")
     Image.fromarray(np.full((9, 9), 5000, np.uint16)).save(tmp_path / "depth.png")
     (tmp_path / "notes.txt").write_text("no picture")
-    source = pictures_at(tmp_path)
+    source = open_pictures(tmp_path)
     assert source.keys == ("b.png", "depth.png", "in/a.jpg")
-    assert choose(source.keys, 9, 0, source.is_picture) == ["b.png", "in/a.jpg"]
+    assert sample_keys(source.keys, 9, 0, source.is_picture) == ["b.png", "in/a.jpg"]
     assert np.array_equal(source.read("b.png"), noise(2))
 
 
@@ -121,18 +121,18 @@ def test_a_store_gives_its_pictures(tmp_path):
     camera = Camera(300, 200, 200.0, 200.0, 150.0, 100.0)
     samples = [sample(n, occ=occ_labels(), colour=noise(n), camera=camera) for n in range(2)]
     write_store(tmp_path / "data", samples, files=SampleFiles("png"))
-    source = pictures_at(tmp_path / "data")
+    source = open_pictures(tmp_path / "data")
     assert source.name == "data"
     assert np.array_equal(source.read(source.keys[1]), noise(1))
 
 
 def test_what_has_no_pictures_is_told(tmp_path):
     with pytest.raises(InputError, match="holds no pictures"):
-        pictures_at(tmp_path)
+        open_pictures(tmp_path)
     with pytest.raises(InputError, match="is no folder of pictures and no data set"):
-        pictures_at(tmp_path / "none")
+        open_pictures(tmp_path / "none")
     write_store(tmp_path / "data", [sample(occ=occ_labels())])
-    source = pictures_at(tmp_path / "data")
+    source = open_pictures(tmp_path / "data")
     with pytest.raises(InputError, match="has labels alone, no picture"):
         source.read(source.keys[0])
 

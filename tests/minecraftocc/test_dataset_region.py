@@ -8,9 +8,9 @@ from label_worlds import poses_in, room_of_things
 
 from world2minecraft.core.coordinates import apply, invert, look_at, rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraftocc.labels.image_labels import gathered, is_on_cells
+from world2minecraft.minecraftocc.labels.image_labels import gather_region, is_on_cells
 from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, region_of
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import FineClass, SceneVoxels
 
 PLAIN = RegionRule(axis_offset_cells=0, diagonal_offset_cells=0)
@@ -91,11 +91,11 @@ def test_a_paper_region_falls_on_the_cells_of_its_scene(yaw_deg, x, y):
 
 @pytest.mark.parametrize("yaw_deg", range(0, 360, 45))
 def test_a_copy_is_what_slices_and_quarter_turns_give(yaw_deg):
-    voxels = scene_voxels(room_of_things())
+    voxels = voxelize_scene(room_of_things())
     pose = looking(yaw_deg, eye=np.array([1.0, 0.9, 1.0]))
     region = region_in(voxels, pose, RegionRule(shape=(12, 12, 9)))
     assert is_on_cells(region, voxels)
-    own, to_room = gathered(voxels, region)[0], region.region_to_room
+    own, to_room = gather_region(voxels, region)[0], region.region_to_room
     ends = apply(region.region_to_room, np.array([np.zeros(3), region.shape]) * region.voxel_m)
     first = np.round((ends.min(axis=0) - voxels.origin_m) / voxels.voxel_m).astype(int)
     wide = np.pad(voxels.labels, 40, constant_values=255)
@@ -113,7 +113,7 @@ def test_a_free_region_turns_with_the_view():
 
 def test_the_floor_under_a_camera_is_found():
     volume = room_of_things()
-    voxels = scene_voxels(volume)
+    voxels = voxelize_scene(volume)
     for pose in poses_in(volume, 8, 1):
         assert floor_under(voxels, pose) == pytest.approx(0.0)
     assert floor_under(voxels, look_at([50.0, 50.0, 1.0], [51.0, 50.0, 1.0])) == pytest.approx(0)

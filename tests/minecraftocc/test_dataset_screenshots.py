@@ -13,7 +13,7 @@ from PIL.PngImagePlugin import PngInfo
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraftocc.screenshots import (
-    MOST_TEXT,
+    MAX_TEXT,
     NamePattern,
     read_png_facts,
     read_screenshots,
@@ -261,9 +261,9 @@ def test_texts_are_bounded(tmp_path):
     bomb = zlib.compress(b"0" * (1 << 24))
     for kind, body in ((b"zTXt", b"k\0\0" + bomb), (b"iTXt", b"k\0\1\0\0\0" + bomb)):
         raw(path, chunk(kind, body))
-        with pytest.raises(LimitError, match=f"a text of more than {MOST_TEXT} bytes"):
+        with pytest.raises(LimitError, match=f"a text of more than {MAX_TEXT} bytes"):
             read_png_facts(path)
-    raw(path, chunk(b"tEXt", b"k\0" + b"0" * (MOST_TEXT + 1)))
+    raw(path, chunk(b"tEXt", b"k\0" + b"0" * (MAX_TEXT + 1)))
     with pytest.raises(LimitError, match="holds more than"):
         read_png_facts(path)
     raw(path, *[chunk(b"tEXt", b"k\0v")] * 65)

@@ -14,7 +14,7 @@ from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.scene_sources import (
-    built_box,
+    find_built_box,
     is_built,
     open_scene_source,
     scene_id_of,
@@ -155,7 +155,7 @@ def test_the_build_near_the_spawn_is_meant_before_a_larger_one(tmp_path):
     made.put(np.s_[150:220, 2, 0:5], "minecraft:white_wool")
     for spawn, low, high in (((2, 70, 2), -2, 18), ((900, 70, 900), 142, 226)):
         write_blocks(made.volume(), tmp_path / f"at{low}", WriteOptions(spawn=spawn))
-        box, _ = built_box(tmp_path / f"at{low}")
+        box, _ = find_built_box(tmp_path / f"at{low}")
         assert (box[0], box[3]) == (low, high)
 
 
@@ -163,7 +163,7 @@ def test_a_world_where_nothing_is_built_is_read_around_its_spawn(tmp_path):
     made = Blocks(20, 4, 20)
     made.put(np.s_[:, :3], "minecraft:dirt")
     write_blocks(made.volume(), tmp_path / "wild", WriteOptions(spawn=(8, 70, 8)))
-    box, told = built_box(tmp_path / "wild")
+    box, told = find_built_box(tmp_path / "wild")
     assert box == (-56, 38, -56, 72, 166, 72)
     assert told.startswith("nothing in this world looks built, so the blocks around its spawn")
 

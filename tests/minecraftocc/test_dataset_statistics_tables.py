@@ -27,7 +27,12 @@ from world2minecraft.minecraftocc.statistics.dataset_statistics import (
 )
 from world2minecraft.minecraftocc.statistics.plots import write_plots
 from world2minecraft.minecraftocc.statistics.published_figures import PUBLISHED_SETS
-from world2minecraft.minecraftocc.statistics.tables import class_shares, columns, escape, short
+from world2minecraft.minecraftocc.statistics.tables import (
+    align_columns,
+    class_shares,
+    escape_latex,
+    format_count,
+)
 from world2minecraft.minecraftocc.statistics.types import FineCount, SceneCount
 from world2minecraft.minecraftocc.store import write_store
 
@@ -85,7 +90,7 @@ def test_the_text_is_the_papers_table_and_what_it_cannot_say():
 
 
 def test_the_papers_rows_are_consistent_in_themselves():
-    per_scene = [short(row.voxels_per_scene) for row in PUBLISHED_SETS]
+    per_scene = [format_count(row.voxels_per_scene) for row in PUBLISHED_SETS]
     assert per_scene == ["23.2K", "298.5K", "4.7M"]  # As printed there.
 
 
@@ -103,7 +108,7 @@ def test_latex_has_a_row_of_eight_cells_for_each_set_and_escapes_names():
     assert [len(re.findall(r"(?<!\\)&", row)) for row in rows] == [7] * 5
     assert rows[-1].startswith(r"houses \& more & 8 & 2 & 11 & 2 & 61,234 & 30.6K & $1920 \times")
     assert lines[1] == r"\toprule" and lines[-2] == r"\bottomrule"
-    assert escape(r"a_b\c%") == r"a\_b\textbackslash{}c\%"
+    assert escape_latex(r"a_b\c%") == r"a\_b\textbackslash{}c\%"
 
 
 def test_a_set_without_fine_classes_rooms_and_cells_says_so():
@@ -127,7 +132,7 @@ def test_many_fine_classes_are_told_from_both_ends():
 
 def test_shares_of_nothing_are_nothing_and_columns_line_up():
     assert class_shares([7] + [0] * 11) == [0.0] * 11
-    assert columns([("a", "bb"), ("ccc", "d")]) == ["a    bb", "ccc   d"]
+    assert align_columns([("a", "bb"), ("ccc", "d")]) == ["a    bb", "ccc   d"]
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.tours import (
     write_views,
 )
 from world2minecraft.minecraftocc.tours.planning import GAP_DEG, GAP_M
-from world2minecraft.minecraftocc.tours.rooms import find_rooms, shared
+from world2minecraft.minecraftocc.tours.rooms import find_rooms, share_views
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import render_batch
@@ -176,7 +176,7 @@ def test_the_rooms_of_a_house_are_told_apart(seed):
 def test_views_are_shared_by_worth(volume):
     graph = walk_graph(volume)
     rooms = find_rooms(volume, graph, solid_of(volume), TourRule())
-    parts = shared(rooms, 100)
+    parts = share_views(rooms, 100)
     assert sum(parts) == 100
     order = np.argsort([room.worth for room in rooms], kind="stable")
     assert parts[order[-1]] >= parts[order[0]]

@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import block_axes_to_grid, block_to_room
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.labels import voxelization as module
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.rendering.block_models import BuiltinModels
 
@@ -19,7 +19,7 @@ MARGIN = 2e-4
 @pytest.mark.parametrize(("scale", "voxel_m"), [(4.0, 0.08), (2.0, 0.11), (12.5, 0.08), (4, None)])
 def test_cells_are_those_of_the_slow_reference(scale, voxel_m):
     volume = room_of_things(scale, share=0.04 if scale == 2.0 else 0.1)
-    voxels = scene_voxels(volume, designs_of(volume), voxel_m=voxel_m)
+    voxels = voxelize_scene(volume, designs_of(volume), voxel_m=voxel_m)
     assert voxels.voxel_m == (voxel_m or 1 / scale)
     parts = reference.solid_parts(volume, BuiltinModels(16))
     shares = reference.filled(parts, voxels.origin_m, voxels.voxel_m)
@@ -41,7 +41,7 @@ def test_cells_are_those_of_the_slow_reference(scale, voxel_m):
 def test_a_fine_class_is_a_block_and_its_design():
     volume = room_of_things()
     codes, names = designs_of(volume)
-    voxels = scene_voxels(volume, (codes, names), voxel_m=None)
+    voxels = voxelize_scene(volume, (codes, names), voxel_m=None)
     assert voxels.fine_classes[0] == FineClass("minecraft:air")
     assert list(voxels.fine_classes[1:]) == sorted(voxels.fine_classes[1:])
     states, codes = block_axes_to_grid(volume.states), block_axes_to_grid(codes)
@@ -58,22 +58,22 @@ def test_what_is_not_drawn_is_not_there():
     states = np.zeros((3, 3, 3), np.uint16)
     states[1, 1, 1] = 1
     volume = _plain(states, ("minecraft:air", "minecraft:barrier"))
-    assert not scene_voxels(volume).labels.any()
+    assert not voxelize_scene(volume).labels.any()
 
 
 def test_a_block_without_a_class_is_unknown_and_there():
     states = np.zeros((3, 3, 3), np.uint16)
     states[1, 1, 1] = 1
     volume = _plain(states, ("minecraft:air", "minecraft:stone"))
-    voxels = scene_voxels(volume, voxel_m=None)
+    voxels = voxelize_scene(volume, voxel_m=None)
     assert np.unique(voxels.labels).tolist() == [0, 255]
     assert (voxels.fine > 0).sum() == 1
 
 
 def test_a_part_of_a_world_is_the_same_part_of_the_whole():
     volume = room_of_things()
-    whole = scene_voxels(volume)
-    part = scene_voxels(volume, within_m=((0.3, 0.2, -0.1), (1.2, 1.1, 0.9)))
+    whole = voxelize_scene(volume)
+    part = voxelize_scene(volume, within_m=((0.3, 0.2, -0.1), (1.2, 1.1, 0.9)))
     first = np.round((part.origin_m - whole.origin_m) / 0.08).astype(int)
     here = tuple(slice(a, a + n) for a, n in zip(first, part.labels.shape, strict=True))
     assert np.array_equal(part.labels, whole.labels[here])
@@ -83,15 +83,15 @@ def test_a_part_of_a_world_is_the_same_part_of_the_whole():
 
 def test_slabs_do_not_show(monkeypatch):
     volume = room_of_things(seed=3)
-    whole = scene_voxels(volume)
+    whole = voxelize_scene(volume)
     monkeypatch.setattr(module, "SLAB_CELLS", 5000)
-    slabs = scene_voxels(volume)
+    slabs = voxelize_scene(volume)
     assert np.array_equal(whole.labels, slabs.labels)
     assert np.array_equal(whole.instance, slabs.instance)
 
 
 def test_cells_lie_on_whole_multiples_of_their_size():
-    voxels = scene_voxels(room_of_things())
+    voxels = voxelize_scene(room_of_things())
     assert np.abs(voxels.origin_m / 0.08 - np.round(voxels.origin_m / 0.08)).max() < 1e-9
 
 
@@ -106,17 +106,17 @@ def test_quarter_turns_of_a_world_turn_its_cells():
         corner=volume.corner,
         block_to_room=volume.block_to_room,
     )  # fmt: skip
-    here, there = (scene_voxels(one, voxel_m=None).labels for one in (volume, turned))
+    here, there = (voxelize_scene(one, voxel_m=None).labels for one in (volume, turned))
     assert np.array_equal(np.rot90(here, 2), there)
 
 
 def test_errors_teach(monkeypatch):
     volume = room_of_things()
     with pytest.raises(UsageError, match=r"a cell is 0.01 m or more, not 0.001"):
-        scene_voxels(volume, voxel_m=0.001)
-    monkeypatch.setattr(module, "MOST_CELLS", 1000)
+        voxelize_scene(volume, voxel_m=0.001)
+    monkeypatch.setattr(module, "MAX_CELLS", 1000)
     with pytest.raises(UsageError, match=r"cells of 0.08 m take 0 GB; 1,000 cells are allowed"):
-        scene_voxels(volume)
+        voxelize_scene(volume)
 
 
 def _plain(states, palette):

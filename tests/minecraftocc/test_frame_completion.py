@@ -7,7 +7,7 @@ from PIL import Image
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.types import View
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, depth_png
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, encode_depth
 from world2minecraft.minecraftocc.frame_completion import (
     FILE_AXES,
     GridPlace,
@@ -135,7 +135,7 @@ def test_what_is_no_depth_is_refused(depth_m, tmp_path):
 
 def test_the_verb_writes_the_files_own_axes(depth_m, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(CompletionModel, "chances", Empty.chances)
-    (tmp_path / "depth.png").write_bytes(depth_png(depth_m, "nyu"))
+    (tmp_path / "depth.png").write_bytes(encode_depth(depth_m, "nyu"))
     Image.fromarray(np.full((480, 640, 3), 90, np.uint8)).save(tmp_path / "colour.png")
     out = tmp_path / "pred.npz"
     words = ["occupy", str(tmp_path / "depth.png"), "--grid", str(header(tmp_path))]

@@ -24,7 +24,7 @@ class OpenField:
         shade = int(abs(stance.x) * 40 + abs(stance.yaw_deg)) % 256
         return np.full((30, 40, 3), shade, np.uint8)
 
-    def after(self, stance, move):
+    def step(self, stance, move):
         if move in (Move.LEFT, Move.RIGHT):
             turn = 15.0 if move == Move.RIGHT else -15.0
             yaw = (stance.yaw_deg + turn + 180) % 360 - 180
@@ -46,11 +46,11 @@ class OpenField:
             off = (wanted - stance.yaw_deg + 180) % 360 - 180
             move = Move.FORWARD if abs(off) <= 7.6 else Move.RIGHT if off > 0 else Move.LEFT
             moves.append(move)
-            stance, _ = self.after(stance, move)
+            stance, _ = self.step(stance, move)
         return (*moves, Move.STOP)
 
     @property
-    def imagined(self):
+    def offline(self):
         return self
 
     def plan(self, stances):

@@ -95,7 +95,7 @@ def test_an_item_is_asked_by_the_words_of_the_exports(folder):
     text = "".join("<image>" if "image_url" in part else part["text"] for part in parts)
     assert text == question_of(item).text + "\nAnswer with its letter alone."
     assert (answer.letter, answer.outcome) == (item.answer, "answered")
-    assert answer.told["raw"] == item.answer and len(answer.told["tries"]) == 1
+    assert answer.details["raw"] == item.answer and len(answer.details["tries"]) == 1
     assert "response_format" not in sent
 
 

@@ -153,10 +153,10 @@ def test_r2r_paths_are_ways_in_their_graph(tmp_path):
 
 def test_turns_on_the_spot_and_ways_that_cross_share_viewpoints(tmp_path):
     one = a_trajectory(frames=4)
-    stood = [one.keyframes[0], *one.keyframes]
-    stood[1] = replace(stood[1], stance=replace(stood[1].stance, yaw_deg=90.0))
+    standing = [one.keyframes[0], *one.keyframes]
+    standing[1] = replace(standing[1], stance=replace(standing[1].stance, yaw_deg=90.0))
     back = replace(one, trajectory_id="back", keyframes=tuple(reversed(one.keyframes)))
-    write_r2r(tmp_path, [replace(one, keyframes=tuple(stood)), back])
+    write_r2r(tmp_path, [replace(one, keyframes=tuple(standing)), back])
     rows = json.loads((tmp_path / "R2R_train.json").read_text())
     assert rows[0]["path"] == list(reversed(rows[1]["path"]))
     assert len(rows[0]["path"]) == 4

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.navigation.scores import (
-    Walked,
+    WalkedPath,
     cls,
     dtw_m,
     ndtw,
@@ -58,7 +58,7 @@ def test_a_thousand_random_paths_score_as_the_slow_versions_say():
         assert cls(path, reference) == pytest.approx(slow_cls(path, reference))
         distance = np.linalg.norm(path - reference[-1], axis=1)
         stopped = bool(rng.integers(2))
-        got = score_episode(Walked(path, distance, stopped, len(path)), reference, radius_m=1.0)
+        got = score_episode(WalkedPath(path, distance, stopped, len(path)), reference, radius_m=1.0)
         length = sum(math.dist(a, b) for a, b in pairwise(path))
         won = stopped and distance[-1] < 1
         assert got.spl == pytest.approx(won * distance[0] / max(distance[0], length))
@@ -76,9 +76,9 @@ def test_turns_on_the_spot_do_not_count_as_a_way():
 
 
 def test_success_needs_a_stop_and_lies_strictly_under_the_radius():
-    at_edge = Walked(LINE[:2], np.array([9.0, 3.0]), True, 3)
-    within = Walked(LINE[:2], np.array([9.0, 2.999]), True, 3)
-    silent = Walked(LINE[:2], np.array([9.0, 0.1]), False, 3)
+    at_edge = WalkedPath(LINE[:2], np.array([9.0, 3.0]), True, 3)
+    within = WalkedPath(LINE[:2], np.array([9.0, 2.999]), True, 3)
+    silent = WalkedPath(LINE[:2], np.array([9.0, 0.1]), False, 3)
     assert score_episode(at_edge, LINE).success[-1] is False
     assert score_episode(within, LINE).success == (False, False, False, True)
     assert not any(score_episode(silent, LINE).success)
@@ -99,8 +99,8 @@ def test_dtw_does_not_know_which_path_is_which(one, other):
 
 
 def test_means_leave_out_ends_that_no_way_leads_from():
-    good = score_episode(Walked(LINE, 9.75 - LINE[:, 0], True, 41), LINE)
-    lost = score_episode(Walked(LINE[:2], np.array([9.75, np.inf]), True, 2), LINE)
+    good = score_episode(WalkedPath(LINE, 9.75 - LINE[:, 0], True, 41), LINE)
+    lost = score_episode(WalkedPath(LINE[:2], np.array([9.75, np.inf]), True, 2), LINE)
     told = summarise([good, good, lost])
     assert told["ne_m"] == 0 and told["unreachable_ends"] == 1
     assert told["success_3m"]["share"] == pytest.approx(2 / 3)
@@ -129,9 +129,9 @@ def test_agents_are_compared_item_by_item():
         (lambda: ndtw(np.zeros((0, 3)), LINE), r"one point or more, \[N, 3\], not \(0, 3\)"),
         (lambda: rate(3, 2), "hits must be 0 to 2, not 3"),
         (lambda: paired_p(np.ones(2), np.ones(3)), "answers must be of the same items"),
-        (lambda: Walked(LINE, np.zeros(3), True, 1), "distance_m must be 40 numbers"),
+        (lambda: WalkedPath(LINE, np.zeros(3), True, 1), "distance_m must be 40 numbers"),
         (
-            lambda: score_episode(Walked(LINE[:1], np.array([np.inf]), True, 1), LINE),
+            lambda: score_episode(WalkedPath(LINE[:1], np.array([np.inf]), True, 1), LINE),
             "no way leads",
         ),
         (lambda: summarise([]), "scores of no episode"),

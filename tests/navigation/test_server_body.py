@@ -199,11 +199,11 @@ def test_keys_are_held_on_the_server(flat_path):
     body, env = an_env(flat_path, actions="continuous")
     with body:
         env.reset(seed=0)
-        start = np.array(env.acting.stance.feet)
+        start = np.array(env.controller.stance.feet)
         keys = np.array([1, 0, 0, 0, 0, 0, 0], np.int8)
         action = {"keys": keys, "camera": np.zeros(2, np.float32), "stop": 0}
         env.step(action)
-        assert np.linalg.norm(np.array(env.acting.stance.feet) - start) == pytest.approx(0.098)
+        assert np.linalg.norm(np.array(env.controller.stance.feet) - start) == pytest.approx(0.098)
         assert env.step({**action, "stop": 1})[2]
 
 

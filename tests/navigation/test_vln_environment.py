@@ -105,11 +105,11 @@ def test_a_goal_is_walked_to_and_collisions_are_counted(flat):
 def test_a_run_of_moves_is_one_action(flat):
     env = env_of(flat, move_set="macro", observations=["pose"])
     env.reset(seed=3)
-    before = env.acting.stance
+    before = env.controller.stance
     seen = env.step(np.array([Move.RIGHT, 5]))[0]  # Six turns of 15 degrees.
-    turned = (env.acting.stance.yaw_deg - before.yaw_deg) % 360
+    turned = (env.controller.stance.yaw_deg - before.yaw_deg) % 360
     assert turned == pytest.approx(90) and seen["pose"][3] == pytest.approx(
-        env.acting.stance.yaw_deg
+        env.controller.stance.yaw_deg
     )
 
 
@@ -117,7 +117,7 @@ def test_the_games_keys_walk_at_the_games_speed(flat):
     env = env_of(flat, actions="continuous", observations=["pose"])
     env.reset(seed=0)
 
-    env.acting.begin(Stance(3.0, 65.0, 3.0, -90.0))  # Looks east, along the room.
+    env.controller.begin(Stance(3.0, 65.0, 3.0, -90.0))  # Looks east, along the room.
     ahead = {**STAND, "keys": np.array([1, 0, 0, 0, 0, 0, 0], np.int8)}
     places = [env.step(ahead)[0]["pose"][0] for _ in range(10)]
     # 4.317 m/s of a person is so many metres of the room, whatever its blocks are.

@@ -70,7 +70,7 @@ def test_goals_are_before_the_thing_and_in_its_room(flat):
 
 def test_the_field_is_dijkstra_over_all_places_that_see_each_other(flat):
     goals = flat.goals_at(flat.landmark("upright piano"))
-    graph, lattice = flat.ways, lattice_of(flat.ways)
+    graph, lattice = flat.corner_graph, lattice_of(flat.corner_graph)
     low = np.flatnonzero(graph.feet[:, 1] == 65)
     links = np.zeros((len(low), len(low)))
     for (a, here), (b, there) in combinations(enumerate(low.tolist()), 2):
@@ -78,9 +78,9 @@ def test_the_field_is_dijkstra_over_all_places_that_see_each_other(flat):
         links[a, b] = links[b, a] = way if np.isfinite(way) else 0
     places = [low.tolist().index(graph.nearest(goal)) for goal in goals]
     slow = dijkstra(links, indices=places).min(axis=0)
-    np.testing.assert_allclose(flat.way_field_m(goals)[low], slow, rtol=0.005)
-    own = flat.way_field_m(goals)[[graph.nearest(feet) for feet in flat.graph.feet]]
-    np.testing.assert_array_equal(flat.field_m(goals), own)
+    np.testing.assert_allclose(flat.corner_distances_m(goals)[low], slow, rtol=0.005)
+    own = flat.corner_distances_m(goals)[[graph.nearest(feet) for feet in flat.graph.feet]]
+    np.testing.assert_array_equal(flat.distances_m(goals), own)
 
 
 def test_distances_between_places_join_the_field(flat):
@@ -93,10 +93,12 @@ def test_distances_between_places_join_the_field(flat):
 
 @given(x=st.floats(-1, 20), y=st.sampled_from([64.0, 65.0, 65.25, 66.0]), z=st.floats(-1, 11))
 def test_the_table_of_the_floor_finds_what_a_look_at_all_places_does(flat, x, y, z):
-    field = flat.way_field_m(flat.goals_at(flat.landmark("table")))
-    apart = flat.ways.feet - [x, y, z]
+    field = flat.corner_distances_m(flat.goals_at(flat.landmark("table")))
+    apart = flat.corner_graph.feet - [x, y, z]
     level = np.abs(apart[:, 1]) <= LEVEL_SIZES * flat.scale
-    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH_SPACINGS * flat.ways.spacing)
+    near = level & (
+        np.hypot(apart[:, 0], apart[:, 2]) <= REACH_SPACINGS * flat.corner_graph.spacing
+    )
     ways = np.linalg.norm(apart, axis=1) * flat.metres_per_block + field
     slow = ways[near].min(initial=np.inf)
     assert distance_from_field(flat.floor, field, x, y, z) == pytest.approx(slow)

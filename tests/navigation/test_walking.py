@@ -115,7 +115,7 @@ def test_a_trace_of_anyone_is_checked(tmp_path):
         read_trace(tmp_path / "trace.jsonl")
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
-        TraceWriter(tmp_path / "file").began(an_episode(), "stop")
+        TraceWriter(tmp_path / "file").on_begin(an_episode(), "stop")
 
 
 def test_a_course_is_told_beside_stop_random_and_oracle(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from world2minecraft.core.errors import InputError
-from world2minecraft.networks.completion.export import export_completion, halved
+from world2minecraft.networks.completion.export import export_completion, to_half_precision
 from world2minecraft.networks.completion.network import TINY, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import Sample, write_samples
@@ -133,7 +133,7 @@ def test_folded_norms_change_nothing_but_rounding(pool):
     trainer.train(10)
     cells = torch.rand(1, CHANNELS, 16, 16, 16)
     with torch.no_grad():
-        one, other = trainer.mean.eval()(cells), halved(trainer.mean)(cells)
+        one, other = trainer.mean.eval()(cells), to_half_precision(trainer.mean)(cells)
     assert torch.allclose(one, other, atol=0.05)
 
 

@@ -5,14 +5,22 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
-from world2minecraft.networks.completion.augmentation import augmented, cropped, turned
+from world2minecraft.networks.completion.augmentation import (
+    augment_sample,
+    crop_sample,
+    rotate_sample,
+)
 from world2minecraft.networks.completion.samples import (
-    cut,
+    crop_input,
     make_samples,
     read_samples,
     write_samples,
 )
-from world2minecraft.networks.completion.sensor_noise import draw_noise, lost_pixels, wrong_labels
+from world2minecraft.networks.completion.sensor_noise import (
+    corrupt_labels,
+    draw_lost_pixels,
+    draw_noise,
+)
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 SEED = 9_500  # Held out.
@@ -65,9 +73,9 @@ def test_a_file_that_is_no_samples_is_told(tmp_path):
 def test_four_turns_and_two_mirrors_are_none(samples):
     one = samples[0]
     for other in (
-        turned(turned(one, 1, False), 3, False),
-        turned(turned(one, 0, True), 0, True),
-        turned(turned(turned(one, 1, True), 1, True), 0, False),
+        rotate_sample(rotate_sample(one, 1, False), 3, False),
+        rotate_sample(rotate_sample(one, 0, True), 0, True),
+        rotate_sample(rotate_sample(rotate_sample(one, 1, True), 1, True), 0, False),
     ):
         assert np.array_equal(one.truth, other.truth)
         assert np.array_equal(channels(one), channels(other))
@@ -75,7 +83,7 @@ def test_four_turns_and_two_mirrors_are_none(samples):
 
 def test_a_turn_moves_truth_and_sight_alike(samples):
     one = samples[0]
-    other = turned(one, 1, False)
+    other = rotate_sample(one, 1, False)
     assert np.array_equal(other.truth, np.rot90(one.truth, 1, (0, 1)))
     wanted, told = np.rot90(channels(one), 1, (1, 2)), channels(other)
     x, y = 10, 11  # The channels of the offset along x and y.
@@ -87,16 +95,18 @@ def test_a_turn_moves_truth_and_sight_alike(samples):
 
 def test_a_window_holds_what_lay_there(samples):
     one, start, shape = samples[0], np.array([-3, 5, -2]), (20, 24, 16)
-    part = cropped(one, start, shape)
+    part = crop_sample(one, start, shape)
     whole = channels(one)
     assert np.array_equal(channels(part)[:, 3:, :, 2:], whole[:, :17, 5:29, :14])
     assert (part.truth[:3] == 255).all()
     assert part.sight.bottom_m == pytest.approx(one.sight.bottom_m - 2 * 0.08)
-    assert not cut(one.sight, np.array([500, 0, 0]), shape).log_odds.any()
+    assert not crop_input(one.sight, np.array([500, 0, 0]), shape).log_odds.any()
 
 
 def test_a_seed_augments_as_a_seed(samples):
-    one, other = (augmented(samples[0], np.random.default_rng(3), (32, 32, 24)) for _ in range(2))
+    one, other = (
+        augment_sample(samples[0], np.random.default_rng(3), (32, 32, 24)) for _ in range(2)
+    )
     assert one.truth.shape == (32, 32, 24)
     assert np.array_equal(channels(one), channels(other))
     assert np.array_equal(one.truth, other.truth)
@@ -109,8 +119,8 @@ def test_glass_has_no_depth_and_wrong_labels_come_by_their_share():
     )
     labels = np.full((48, 64), 3, np.uint8)
     labels[10:20, 10:20] = 4
-    assert lost_pixels(noise, labels, np.ones(labels.shape), rng)[10:20, 10:20].all()
-    wrong = wrong_labels(np.full((480, 640), 3, np.uint8), 0.25, rng)
+    assert draw_lost_pixels(noise, labels, np.ones(labels.shape), rng)[10:20, 10:20].all()
+    wrong = corrupt_labels(np.full((480, 640), 3, np.uint8), 0.25, rng)
     assert (wrong != 3).mean() == pytest.approx(0.25, abs=0.03)
     assert wrong.min() >= 1
     assert wrong.max() <= 11

@@ -10,7 +10,7 @@ pytest.importorskip("onnx")
 from world2minecraft import cli
 from world2minecraft.networks.checkpoints import write_weights
 from world2minecraft.networks.config import DataSource, RunConfig
-from world2minecraft.networks.training import network_of
+from world2minecraft.networks.training import build_network
 from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 
 
@@ -18,7 +18,7 @@ from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 def run(tmp_path):
     config = RunConfig("monoscene", (DataSource(str(tmp_path)),), size="tiny", image=(64, 48))
     (tmp_path / "RUN").mkdir()
-    write_weights(tmp_path / "RUN" / "weights.safetensors", network_of(config), config)
+    write_weights(tmp_path / "RUN" / "weights.safetensors", build_network(config), config)
     return tmp_path / "RUN"
 
 

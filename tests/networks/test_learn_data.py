@@ -10,16 +10,16 @@ from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.config import GRIDS, DataSource
 from world2minecraft.networks.data.batches import (
-    TrainingPart,
-    drawn_batches,
-    ordered_batches,
+    TrainingSet,
+    ordered_loader,
     plan_draws,
+    training_loader,
 )
-from world2minecraft.networks.data.cache import StreamedFrames, cached_frames, frames_bytes
+from world2minecraft.networks.data.cache import StreamedFrames, cache_bytes, open_cached_frames
 from world2minecraft.networks.data.class_weights import class_counts, class_weights
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CachePlace, open_run_data
-from world2minecraft.networks.data.splits import evenly, split_rows
+from world2minecraft.networks.data.run_data import CacheLocation, open_run_data
+from world2minecraft.networks.data.splits import split_rows, take_evenly
 
 RULE = FrameRule(GRIDS["0.16"], 40, 30)
 ARRAYS = (
@@ -47,7 +47,7 @@ def store(tmp_path_factory):
 
 def test_cached_frames_are_the_frames(tmp_path):
     source = toy_set(placed(tmp_path), 4)
-    cached, made = cached_frames(source, RULE, tmp_path / "c"), StreamedFrames(source, RULE)
+    cached, made = open_cached_frames(source, RULE, tmp_path / "c"), StreamedFrames(source, RULE)
     assert cached.keys == made.keys and cached.scenes == made.scenes
     for row in range(4):
         one, other = cached[row], made[row]
@@ -56,17 +56,17 @@ def test_cached_frames_are_the_frames(tmp_path):
         np.testing.assert_allclose(one.depth_m, other.depth_m, atol=6e-4)
         assert one.has_depth == other.has_depth
     stored = sum(file.stat().st_size - 128 for file in (tmp_path / "c").rglob("*.npy"))
-    assert stored == frames_bytes(4, RULE)
+    assert stored == cache_bytes(4, RULE)
 
 
 def test_a_filled_cache_reads_no_sample_and_another_size_is_another_cache(tmp_path):
     source, told = toy_set(placed(tmp_path), 3), []
-    cached_frames(source, RULE, tmp_path / "c", lambda *step: told.append(step))
+    open_cached_frames(source, RULE, tmp_path / "c", lambda *step: told.append(step))
     assert told[-1][:3] == ("frames", 3, 3)
     silent = toy_set(placed(tmp_path), 3)
     object.__setattr__(silent, "read", lambda key: pytest.fail("it was read again"))
-    assert len(cached_frames(silent, RULE, tmp_path / "c")) == 3
-    cached_frames(source, FrameRule(GRIDS["0.16"], 20, 16), tmp_path / "c")
+    assert len(open_cached_frames(silent, RULE, tmp_path / "c")) == 3
+    open_cached_frames(source, FrameRule(GRIDS["0.16"], 20, 16), tmp_path / "c")
     assert len([one for one in (tmp_path / "c").iterdir() if one.is_dir()]) == 2
 
 
@@ -78,8 +78,8 @@ def test_a_cache_that_was_stopped_is_filled_anew(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        cached_frames(source, RULE, tmp_path / "c", stop)
-    assert cached_frames(source, RULE, tmp_path / "c")[2].image.any()
+        open_cached_frames(source, RULE, tmp_path / "c", stop)
+    assert open_cached_frames(source, RULE, tmp_path / "c")[2].image.any()
 
 
 def test_scenes_are_in_one_part_alone_and_the_test_split_is_kept():
@@ -101,7 +101,7 @@ def test_a_split_that_cannot_be_says_why():
         split_rows(["a", "b"], ["", "test"], 0.1, "set")
     with pytest.raises(UsageError, match="has no frame to train on, only 1 of its test split"):
         split_rows(["b"], ["test"], 0.1, "set")
-    assert evenly(list(range(10)), 3) == [0, 3, 6]
+    assert take_evenly(list(range(10)), 3) == [0, 3, 6]
 
 
 def test_each_frame_is_drawn_once_before_any_again_whatever_the_mix():
@@ -123,9 +123,9 @@ def test_a_run_that_goes_on_draws_what_it_would_have_drawn(tmp_path):
     frames = StreamedFrames(toy_set(placed(tmp_path), 6), RULE)
     config = toy_config(tmp_path)
     draws = plan_draws([6], [1.0], config.steps * config.batch, config.seed)
-    parts = [TrainingPart(frames, list(range(6)))]
-    whole = list(drawn_batches(parts, draws, config))
-    rest = list(drawn_batches(parts, draws, config, 4))
+    parts = [TrainingSet(frames, list(range(6)))]
+    whole = list(training_loader(parts, draws, config))
+    rest = list(training_loader(parts, draws, config, 4))
     assert len(whole) == config.steps and len(rest) == 2
     for one, other in zip(whole[4:], rest, strict=True):
         assert torch.equal(one.inputs.image, other.inputs.image)
@@ -134,7 +134,7 @@ def test_a_run_that_goes_on_draws_what_it_would_have_drawn(tmp_path):
 
 def test_a_batch_holds_what_networks_take(tmp_path):
     frames = StreamedFrames(toy_set(placed(tmp_path), 3), RULE)
-    batches = list(ordered_batches(frames, [2, 0, 1], toy_config(tmp_path)))
+    batches = list(ordered_loader(frames, [2, 0, 1], toy_config(tmp_path)))
     inputs, target, more = batches[0]
     assert not more  # Validation is of single frames.
     assert inputs.image.shape == (2, 3, 30, 40) and inputs.image.dtype == torch.float32
@@ -142,9 +142,9 @@ def test_a_batch_holds_what_networks_take(tmp_path):
     assert inputs.grid_shape == (30, 30, 18) and inputs.voxel_m == 0.16
     assert inputs.depth_m is None  # A monocular network is taught depth, and sees none.
     assert target.depth_m is not None and target.depth_m.shape == (2, 30, 40)
-    given = next(iter(ordered_batches(frames, [2], toy_config(tmp_path, depth="given"))))
+    given = next(iter(ordered_loader(frames, [2], toy_config(tmp_path, depth="given"))))
     assert torch.equal(given.inputs.depth_m[0], target.depth_m[0])
-    without = next(iter(ordered_batches(frames, [2], toy_config(tmp_path, depth="none"))))
+    without = next(iter(ordered_loader(frames, [2], toy_config(tmp_path, depth="none"))))
     assert without.inputs.depth_m is None and without.target.depth_m is None
     assert target.labels.shape == (2, 30, 30, 18) and target.labels.dtype == torch.int64
     assert target.in_frustum.dtype == torch.bool
@@ -153,7 +153,7 @@ def test_a_batch_holds_what_networks_take(tmp_path):
 
 
 def test_frames_are_handed_to_processes_by_their_folder(store, tmp_path):
-    frames = open_run_data(toy_config(store, steps=2), CachePlace(root=tmp_path)).target
+    frames = open_run_data(toy_config(store, steps=2), CacheLocation(root=tmp_path)).target
     data = pickle.dumps(frames)
     assert len(data) < 1000
     np.testing.assert_array_equal(pickle.loads(data)[0].image, frames[0].image)
@@ -161,10 +161,10 @@ def test_frames_are_handed_to_processes_by_their_folder(store, tmp_path):
 
 def test_worker_processes_make_the_same_batches(store, tmp_path):
     config = toy_config(store, steps=2)
-    data = open_run_data(config, CachePlace(root=tmp_path))
+    data = open_run_data(config, CacheLocation(root=tmp_path))
     draws = plan_draws([len(data.parts[0].rows)], [1.0], 4, 0)
-    alone = list(drawn_batches(data.parts, draws, config))
-    helped = list(drawn_batches(data.parts, draws, toy_config(store, steps=2, workers=1)))
+    alone = list(training_loader(data.parts, draws, config))
+    helped = list(training_loader(data.parts, draws, toy_config(store, steps=2, workers=1)))
     for one, other in zip(alone, helped, strict=True):
         assert torch.equal(one.inputs.image, other.inputs.image)
 
@@ -174,7 +174,7 @@ def test_the_first_set_is_the_target_and_test_frames_train_nowhere(store, tmp_pa
     config = toy_config(store)
     sources = (DataSource(str(store)), DataSource(str(other), 3.0))
     data = open_run_data(
-        type(config)(**{**vars(config), "data": sources}), CachePlace(root=tmp_path / "c")
+        type(config)(**{**vars(config), "data": sources}), CacheLocation(root=tmp_path / "c")
     )
     assert len(data.target) == 8 and data.weights == (1.0, 3.0)
     first, second = data.parts
@@ -182,7 +182,7 @@ def test_the_first_set_is_the_target_and_test_frames_train_nowhere(store, tmp_pa
     assert {second.frames.scenes[row] for row in second.rows} == {"room_0", "room_1"}
     assert data.described[1].endswith("store, 4 train")
     assert data.counts[0] > data.counts[3] > 0
-    assert open_run_data(config, CachePlace.named("off")).counts.shape == (12,)
+    assert open_run_data(config, CacheLocation.named("off")).counts.shape == (12,)
 
 
 def test_rare_classes_weigh_more_and_absent_ones_are_bounded():

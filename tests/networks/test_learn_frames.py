@@ -11,10 +11,10 @@ from tests.networks.toy_sets import CAMERA, WIDE
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.networks.config import GRIDS
-from world2minecraft.networks.data.batches import augmented, flipped, jittered
-from world2minecraft.networks.data.frames import FrameRule, frame_of
+from world2minecraft.networks.data.batches import augment_frame, flip_frame, jitter_colour
+from world2minecraft.networks.data.frames import FrameRule, make_frame
 
 LARGE = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 COARSE, FINE = GRIDS["0.16"], GRIDS["0.08"]
@@ -46,7 +46,7 @@ def agreement(frame, voxel_m):
 @pytest.mark.parametrize("size", [(160, 120), (80, 60), (120, 120), (160, 60)])
 @pytest.mark.parametrize("camera", [LARGE, WIDE])
 def test_cells_fall_on_the_pixels_that_see_them_after_crop_and_resampling(size, camera):
-    frame = frame_of(sample(camera=camera), FrameRule(FINE, *size))
+    frame = make_frame(sample(camera=camera), FrameRule(FINE, *size))
     assert frame.image.shape == (size[1], size[0], 3)
     assert agreement(frame, 0.08) > 0.95
     pixels, depth_m = projected(frame, 0.08)
@@ -55,7 +55,7 @@ def test_cells_fall_on_the_pixels_that_see_them_after_crop_and_resampling(size, 
 
 
 def test_wrong_intrinsics_would_be_seen():
-    frame = frame_of(SAMPLE, FrameRule(FINE, 40, 30))
+    frame = make_frame(SAMPLE, FrameRule(FINE, 40, 30))
     wrong = replace(frame, intrinsics=SAMPLE.camera.matrix.astype(np.float32))
     assert agreement(wrong, 0.08) < 0.7
 
@@ -64,12 +64,12 @@ def test_depth_is_never_mixed_across_an_edge():
     near_and_far = SAMPLE.depth_m.copy()
     near_and_far[:, ::2], near_and_far[::3] = 1.0, 3.0
     near_and_far[5] = 0
-    frame = frame_of(replace(SAMPLE, depth_m=near_and_far), FrameRule(FINE, 40, 30))
+    frame = make_frame(replace(SAMPLE, depth_m=near_and_far), FrameRule(FINE, 40, 30))
     assert set(np.unique(frame.depth_m)) <= set(np.unique(near_and_far))
 
 
 def test_a_picture_of_the_same_size_is_the_same():
-    frame = frame_of(SAMPLE, FrameRule(FINE, 80, 60))
+    frame = make_frame(SAMPLE, FrameRule(FINE, 80, 60))
     np.testing.assert_array_equal(frame.image, SAMPLE.colour)
     np.testing.assert_array_equal(frame.depth_m, SAMPLE.depth_m)
     np.testing.assert_array_equal(frame.labels, SAMPLE.occ.labels)
@@ -78,8 +78,8 @@ def test_a_picture_of_the_same_size_is_the_same():
 
 
 def test_coarse_cells_follow_the_published_rule_and_masks_any_of_their_cells():
-    frame, occ = frame_of(SAMPLE, FrameRule(COARSE, 40, 30)), SAMPLE.occ
-    np.testing.assert_array_equal(frame.labels, downsampled(occ.labels, 2))
+    frame, occ = make_frame(SAMPLE, FrameRule(COARSE, 40, 30)), SAMPLE.occ
+    np.testing.assert_array_equal(frame.labels, downsample_labels(occ.labels, 2))
     for i, j, k in ((3, 4, 5), (0, 0, 0), (29, 29, 17), (15, 20, 1)):
         block = np.s_[2 * i : 2 * i + 2, 2 * j : 2 * j + 2, 2 * k : 2 * k + 2]
         assert frame.seen[i, j, k] == occ.visible[block].any()
@@ -92,21 +92,21 @@ def test_coarse_cells_follow_the_published_rule_and_masks_any_of_their_cells():
 def test_what_cannot_be_a_frame_says_why():
     rule = FrameRule(COARSE, 40, 30)
     with pytest.raises(InputError, match="has no picture"):
-        frame_of(replace(SAMPLE, colour=None), rule)
+        make_frame(replace(SAMPLE, colour=None), rule)
     bent = replace(SAMPLE.camera, distortion=(0.1, 0.0, 0.0, 0.0, 0.0))
     with pytest.raises(InputError, match="its lens distorts"):
-        frame_of(replace(SAMPLE, camera=bent), rule)
+        make_frame(replace(SAMPLE, camera=bent), rule)
     odd = replace(SAMPLE.occ.region, voxel_m=0.1)
     with pytest.raises(InputError, match="60x60x36 cells of 0.1 m, of which no 30x30x18 of 0.16"):
-        frame_of(replace(SAMPLE, occ=replace(SAMPLE.occ, region=odd)), rule)
+        make_frame(replace(SAMPLE, occ=replace(SAMPLE.occ, region=odd)), rule)
 
 
-FRAME = frame_of(SAMPLE, FrameRule(FINE, 80, 60))
+FRAME = make_frame(SAMPLE, FrameRule(FINE, 80, 60))
 GRIDDED = ("labels", "in_frustum", "seen", "free", "image", "depth_m")
 
 
 def test_to_flip_twice_is_to_flip_never():
-    twice = flipped(flipped(FRAME, 0.08), 0.08)
+    twice = flip_frame(flip_frame(FRAME, 0.08), 0.08)
     for name in GRIDDED:
         np.testing.assert_array_equal(getattr(twice, name), getattr(FRAME, name))
     np.testing.assert_allclose(twice.intrinsics, FRAME.intrinsics, atol=1e-5)
@@ -114,7 +114,7 @@ def test_to_flip_twice_is_to_flip_never():
 
 
 def test_a_flipped_frame_is_of_a_mirrored_room():
-    mirrored = flipped(FRAME, 0.08)
+    mirrored = flip_frame(FRAME, 0.08)
     assert agreement(mirrored, 0.08) == pytest.approx(agreement(FRAME, 0.08), abs=0.003)
     before, depth_before = projected(FRAME, 0.08)
     after, depth_after = projected(mirrored, 0.08)
@@ -131,24 +131,24 @@ def test_a_flipped_frame_is_of_a_mirrored_room():
 @given(st.floats(0, 1), st.integers(0, 2**20))
 def test_jitter_keeps_the_size_and_its_seed(strength, seed):
     picture = FRAME.image[::8, ::8]
-    one = jittered(picture, strength, np.random.default_rng(seed))
-    again = jittered(picture, strength, np.random.default_rng(seed))
+    one = jitter_colour(picture, strength, np.random.default_rng(seed))
+    again = jitter_colour(picture, strength, np.random.default_rng(seed))
     assert one.dtype == np.uint8 and one.shape == picture.shape
     np.testing.assert_array_equal(one, again)
 
 
 def test_jitter_of_nothing_changes_nothing_and_of_more_within_its_bounds():
     rng = np.random.default_rng(0)
-    assert jittered(FRAME.image, 0.0, rng) is FRAME.image
+    assert jitter_colour(FRAME.image, 0.0, rng) is FRAME.image
     grey = np.full((4, 4, 3), 100, np.uint8)
-    values = [jittered(grey, 0.4, np.random.default_rng(n)) for n in range(50)]
+    values = [jitter_colour(grey, 0.4, np.random.default_rng(n)) for n in range(50)]
     assert min(v.min() for v in values) >= 60 and max(v.max() for v in values) <= 140
     assert len({v[0, 0, 0] for v in values}) > 20
 
 
 def test_augmentation_flips_about_as_often_as_said():
     flips = [
-        augmented(FRAME, 0.08, 0.25, 0.0, np.random.default_rng(n)).labels is not FRAME.labels
+        augment_frame(FRAME, 0.08, 0.25, 0.0, np.random.default_rng(n)).labels is not FRAME.labels
         for n in range(200)
     ]
     assert 30 <= sum(flips) <= 70

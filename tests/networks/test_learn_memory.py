@@ -9,14 +9,14 @@ import torch
 from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.networks import scene_memory as memory
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CachePlace
+from world2minecraft.networks.data.run_data import CacheLocation
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.scene_memory import add_memory_scores, memory_scores, true_scene
+from world2minecraft.networks.scene_memory import add_memory_scores, assemble_truth, memory_scores
 from world2minecraft.networks.scoring import MEMORY
 from world2minecraft.networks.training import score_run, train_run
 
@@ -37,7 +37,7 @@ def cells_of(sample, truth, voxel_m):
 
 def test_each_frame_agrees_with_the_truth_of_its_scene(found):
     keys = [key for key in found.splits if found[key].scene_id == "room_0"]
-    truth, reason = true_scene(found, keys, toy_config("d", grid="0.08"))
+    truth, reason = assemble_truth(found, keys, toy_config("d", grid="0.08"))
     assert truth is not None and not reason
     seen = np.zeros(truth.labels.shape, bool)
     for key in keys:
@@ -47,10 +47,10 @@ def test_each_frame_agrees_with_the_truth_of_its_scene(found):
         np.testing.assert_array_equal(truth.labels[at][known], sample.occ.labels[known])
         seen[tuple(axis[sample.occ.in_frustum] for axis in at)] = True
     np.testing.assert_array_equal(truth.seen, seen)
-    coarse, _ = true_scene(found, keys, toy_config("d", grid="0.16"))
+    coarse, _ = assemble_truth(found, keys, toy_config("d", grid="0.16"))
     assert coarse is not None
     x, y, z = (side // 2 * 2 for side in truth.labels.shape)
-    wanted = downsampled(truth.labels[:x, :y, :z], 2)
+    wanted = downsample_labels(truth.labels[:x, :y, :z], 2)
     inner = tuple(slice(0, side) for side in wanted.shape)
     np.testing.assert_array_equal(coarse.labels[inner], wanted)
     np.testing.assert_array_equal(coarse.origin_m, truth.origin_m)
@@ -79,7 +79,7 @@ class KnowsAll:
 def test_who_knows_all_scores_full_and_is_told_where_frames_were_taken(grid, found, monkeypatch):
     config = toy_config("d", grid=grid)
     keys = [key for key in found.splits if found[key].scene_id == "room_1"]
-    KnowsAll.truth, _ = true_scene(found, keys, config)
+    KnowsAll.truth, _ = assemble_truth(found, keys, config)
     monkeypatch.setattr(memory, "SceneStream", KnowsAll)
     frames = StreamedFrames(found, FrameRule(GRIDS[grid], 40, 30))
     rows = [frames.keys.index(key) for key in keys]
@@ -97,7 +97,7 @@ def test_who_knows_all_scores_full_and_is_told_where_frames_were_taken(grid, fou
 
 def test_a_run_is_scored_on_scenes_by_its_own_memory(tmp_path):
     store = write_toy_store(tmp_path / "toy", count=6, scenes=3)
-    cache = CachePlace(root=tmp_path / "frames")
+    cache = CacheLocation(root=tmp_path / "frames")
     config = toy_config(store, network="embodied", steps=1)
     trained = train_run(config, tmp_path / "run", device="cpu", cache=cache)
     scores = score_run(trained, config, "cpu")

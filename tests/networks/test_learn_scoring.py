@@ -12,22 +12,22 @@ from tests.reconstruction.occupancy.tiny_network import write_network
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import write_npz
-from world2minecraft.minecraftocc.formats.sscnet import bin_bytes
+from world2minecraft.minecraftocc.formats.sscnet import encode_bin
 from world2minecraft.networks import training
 from world2minecraft.networks.config import GRIDS
-from world2minecraft.networks.data.frames import known_cells
+from world2minecraft.networks.data.frames import cells_with_masks
 from world2minecraft.networks.saved_predictions import SavedPredictions
 from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
-from world2minecraft.networks.scoring import SCENES, SaidOfFrame, keys_to_score, protocol_scores
+from world2minecraft.networks.scoring import SCENES, PredictedFrame, keys_to_score, protocol_scores
 
 FINE = GRIDS["0.08"]
 SAMPLES = list(toy_samples(6, 3))
 
 
 def said_of(sample, said=None):
-    known = known_cells(sample, FINE)
+    known = cells_with_masks(sample, FINE)
     labels = np.where(known.labels == 255, 0, known.labels) if said is None else said
-    return SaidOfFrame(
+    return PredictedFrame(
         sample.scene_id, labels.astype(np.uint8), known, sample.occ.region.region_to_room
     )
 
@@ -206,7 +206,7 @@ def test_one_frame_s_file_is_scored_against_one_bin_and_folders_of_them(tmp_path
     for sample in SAMPLES[:2]:
         region, turned = sample.occ.region, sample.occ.labels.transpose(0, 2, 1)
         pose = np.linalg.inv(region.region_to_room) @ sample.camera_to_room
-        (folder / f"{sample.key}.bin").write_bytes(bin_bytes(turned, np.zeros(3), pose))
+        (folder / f"{sample.key}.bin").write_bytes(encode_bin(turned, np.zeros(3), pose))
         write_npz(tmp_path / "said" / f"{sample.key}.npz", {"labels": turned, "confidence": turned})
     one, found = SAMPLES[0].key, tmp_path / "s.json"
     words = ["evaluate", "occupancy", tmp_path / "said" / f"{one}.npz", folder / f"{one}.bin"]

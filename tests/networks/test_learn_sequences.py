@@ -11,20 +11,25 @@ from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.config import GRIDS, read_config
-from world2minecraft.networks.csv_logger import read_rows
+from world2minecraft.networks.csv_logger import read_metrics
 from world2minecraft.networks.data.batches import (
-    DrawnFrames,
+    DrawnDataset,
     Draws,
-    Stacked,
-    TrainingPart,
-    augmented,
-    augmented_together,
+    FrameCollator,
+    TrainingSet,
+    augment_frame,
+    augment_sequence,
     draw_rng,
 )
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CachePlace
-from world2minecraft.networks.data.sequences import Companions, count_of, looks_into, seen_from
+from world2minecraft.networks.data.run_data import CacheLocation
+from world2minecraft.networks.data.sequences import (
+    SequenceSampler,
+    move_to_grid,
+    sequence_length,
+    views_grid,
+)
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.training import train_run
 
@@ -53,7 +58,7 @@ def moved(frame, shift_m, turn_deg):
 def test_a_frame_of_another_box_sees_the_same_places(frames):
     """A place of the room falls on the same pixel, whichever box the camera is told in."""
     anchor, other = frames[0], moved(frames[3], [1.1, -0.7, -0.08], 90)
-    carried = seen_from(anchor, other)
+    carried = move_to_grid(anchor, other)
     places_m = np.random.default_rng(0).uniform([0, 0, 0], [4, 4, 2.5], (20, 3))
     in_anchor = apply(invert_rigid(anchor.grid_to_room), places_m)
     in_other = apply(invert_rigid(other.grid_to_room), places_m)
@@ -65,8 +70,8 @@ def test_a_frame_of_another_box_sees_the_same_places(frames):
 
 
 def test_frames_of_a_sample_are_mirrored_together(frames):
-    pair = [frames[0], seen_from(frames[0], frames[3])]
-    over = augmented_together(pair, GRID.voxel_m, 1.0, 0.0, np.random.default_rng(0))
+    pair = [frames[0], move_to_grid(frames[0], frames[3])]
+    over = augment_sequence(pair, GRID.voxel_m, 1.0, 0.0, np.random.default_rng(0))
     width_m = GRID.shape[0] * GRID.voxel_m
     places_m = np.random.default_rng(1).uniform(0, 2.8, (20, 3))
     mirrored_m = places_m * [-1, 1, 1] + [width_m, 0, 0]
@@ -75,8 +80,8 @@ def test_frames_of_a_sample_are_mirrored_together(frames):
         again = apply(np.linalg.inv(after.camera_to_grid.astype(float)), mirrored_m)
         np.testing.assert_allclose(again, seen * [-1, 1, 1], atol=1e-5)
         np.testing.assert_array_equal(after.image, before.image[:, ::-1])
-    one = augmented(pair[0], GRID.voxel_m, 0.5, 0.4, np.random.default_rng(4))
-    same = augmented_together(pair, GRID.voxel_m, 0.5, 0.4, np.random.default_rng(4))[0]
+    one = augment_frame(pair[0], GRID.voxel_m, 0.5, 0.4, np.random.default_rng(4))
+    same = augment_sequence(pair, GRID.voxel_m, 0.5, 0.4, np.random.default_rng(4))[0]
     np.testing.assert_array_equal(one.image, same.image)
 
 
@@ -94,12 +99,12 @@ def test_those_that_look_into_the_box_come_first(frames):
             return replace(frame, camera_to_grid=away.astype(np.float32))
 
     anchor = frames[rows[0]]
-    assert looks_into(anchor, GRID.voxel_m)
-    found = Companions(Held(), rows, GRID.voxel_m)  # type: ignore[arg-type]
+    assert views_grid(anchor, GRID.voxel_m)
+    found = SequenceSampler(Held(), rows, GRID.voxel_m)  # type: ignore[arg-type]
     for seed in range(5):
         both = found.beside(rows[0], anchor, 2, np.random.default_rng(seed))
         assert [one.key for one in both] == [frames.keys[rows[2]], frames.keys[rows[1]]]
-    alone = Companions(Held(), rows[:1], GRID.voxel_m)  # type: ignore[arg-type]
+    alone = SequenceSampler(Held(), rows[:1], GRID.voxel_m)  # type: ignore[arg-type]
     again = alone.beside(rows[0], anchor, 2, np.random.default_rng(0))
     assert [one.key for one in again] == [anchor.key] * 2
 
@@ -110,29 +115,29 @@ def test_samples_are_drawn_alike_and_only_of_what_trains(frames):
     assert replace(config, frames=1).fused == 1
     rows = [row for row, scene in enumerate(frames.scenes) if scene != "room_2"]
     draws = Draws(np.zeros(8, np.int32), np.arange(8) % len(rows))
-    drawn = DrawnFrames([TrainingPart(frames, rows)], draws, config)
+    drawn = DrawnDataset([TrainingSet(frames, rows)], draws, config)
     samples = [drawn[n] for n in range(8)]
     counts = [len(one) for one in samples]
-    assert counts == [count_of(3, n // 2, 3) for n in range(8)] and max(counts) > 1
-    assert {count_of(0, step, 3) for step in range(20)} == {1, 2, 3}
+    assert counts == [sequence_length(3, n // 2, 3) for n in range(8)] and max(counts) > 1
+    assert {sequence_length(0, step, 3) for step in range(20)} == {1, 2, 3}
     for sample in samples:
         assert len({one.scene_id for one in sample}) == 1
         assert sample[0].scene_id != "room_2"
         for other in sample[1:]:
             np.testing.assert_array_equal(other.grid_to_room, sample[0].grid_to_room)
     # A stopped run goes on with the same samples; of one frame they are what they always were.
-    later = DrawnFrames([TrainingPart(frames, rows)], draws, config, 4)
+    later = DrawnDataset([TrainingSet(frames, rows)], draws, config, 4)
     np.testing.assert_array_equal(later[1][-1].image, samples[5][-1].image)
-    single = DrawnFrames([TrainingPart(frames, rows)], draws, replace(config, frames=1))
-    wanted = augmented(frames[rows[5]], GRID.voxel_m, 0.5, 0.4, draw_rng(3, 5))
+    single = DrawnDataset([TrainingSet(frames, rows)], draws, replace(config, frames=1))
+    wanted = augment_frame(frames[rows[5]], GRID.voxel_m, 0.5, 0.4, draw_rng(3, 5))
     assert len(single[5]) == 1
     np.testing.assert_array_equal(single[5][0].image, wanted.image)
 
 
 def test_a_sample_is_the_sum_of_what_its_frames_say(frames):
     anchor = frames[0]
-    sample = [anchor, seen_from(anchor, frames[3]), seen_from(anchor, frames[6])]
-    batch = Stacked(GRID, "taught")([sample])
+    sample = [anchor, move_to_grid(anchor, frames[3]), move_to_grid(anchor, frames[6])]
+    batch = FrameCollator(GRID, "taught")([sample])
     assert len(batch.more) == 2 and batch.more[0].image.shape == batch.inputs.image.shape
     network: Any = make_network("embodied", "tiny", grid_shape=GRID.shape, voxel_m=GRID.voxel_m)
     network.eval()
@@ -149,11 +154,11 @@ def test_a_sample_is_the_sum_of_what_its_frames_say(frames):
 
 def test_the_embodied_network_trains_on_sequences_by_itself(tmp_path):
     store = write_toy_store(tmp_path / "toy")
-    cache = CachePlace(root=tmp_path / "frames")
+    cache = CacheLocation(root=tmp_path / "frames")
     config = toy_config(store, network="embodied", steps=3, seed=1)
-    assert max(count_of(1, step, 3) for step in range(3)) > 1
+    assert max(sequence_length(1, step, 3) for step in range(3)) > 1
     train_run(config, tmp_path / "run", device="cpu", cache=cache)
-    losses = [float(value) for _, name, value in read_rows(tmp_path / "run" / "metrics.csv")
+    losses = [float(value) for _, name, value in read_metrics(tmp_path / "run" / "metrics.csv")
               if name == "train_loss"]  # fmt: skip
     assert losses and np.isfinite(losses).all()
     assert read_config(tmp_path / "run" / "run.yaml").frames == 0

@@ -18,14 +18,14 @@ from world2minecraft.networks.batch import OccOutput
 from world2minecraft.networks.checkpoints import (
     load_weights,
     read_facts,
-    weights_config,
+    read_weights_config,
     write_checkpoint,
 )
 from world2minecraft.networks.config import RunConfig, read_config
-from world2minecraft.networks.csv_logger import read_rows
-from world2minecraft.networks.data.run_data import CachePlace
-from world2minecraft.networks.lightning_module import rate_of
-from world2minecraft.networks.training import train_run, trained_network
+from world2minecraft.networks.csv_logger import read_metrics
+from world2minecraft.networks.data.run_data import CacheLocation
+from world2minecraft.networks.lightning_module import learning_rate_at
+from world2minecraft.networks.training import load_trained_network, train_run
 
 torch.set_num_threads(1)
 
@@ -37,7 +37,7 @@ def store(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
-    return CachePlace(root=tmp_path_factory.mktemp("frames"))
+    return CacheLocation(root=tmp_path_factory.mktemp("frames"))
 
 
 @pytest.fixture(autouse=True)
@@ -50,7 +50,7 @@ def trained(config, folder, cache, **words):
 
 
 def figures(folder, name):
-    return [value for _, kind, value in read_rows(folder / "metrics.csv") if kind == name]
+    return [value for _, kind, value in read_metrics(folder / "metrics.csv") if kind == name]
 
 
 @pytest.fixture(scope="module")
@@ -70,10 +70,10 @@ def test_a_run_leaves_its_files(whole, store):
         "metrics.csv", "tensorboard", "run.json",
     }  # fmt: skip
     assert read_config(whole / "run.yaml") == toy_config(store)
-    assert weights_config(whole / "weights.safetensors") == toy_config(store)
+    assert read_weights_config(whole / "weights.safetensors") == toy_config(store)
     facts = json.loads((whole / "run.json").read_text())
     assert facts["steps"] == 6 and facts["seconds"] > 0 and facts["parameters"] > 100
-    assert [row[0] for row in read_rows(whole / "metrics.csv") if row[1] == "val_miou"] == [3, 6]
+    assert [row[0] for row in read_metrics(whole / "metrics.csv") if row[1] == "val_miou"] == [3, 6]
     assert any((whole / "tensorboard").glob("events*"))
 
 
@@ -130,7 +130,7 @@ def test_what_lies_in_a_run_s_folder_and_is_not_of_it_is_told(whole, store, cach
     shutil.copytree(whole, tmp_path / "run")
     (tmp_path / "run/metrics.csv").write_text("step;name;value\n1;train_loss;2.0\n")
     with pytest.raises(DamagedFileError, match=r"metrics.csv: holds no rows .*; remove it"):
-        read_rows(tmp_path / "run/metrics.csv")
+        read_metrics(tmp_path / "run/metrics.csv")
     write_checkpoint(
         tmp_path / "run/checkpoint.safetensors",
         network := toy_network.Toy(),
@@ -196,7 +196,7 @@ def test_the_last_step_s_weights_are_scored_apart_from_the_best(store, cache, tm
              for name in ("scores", "scores_last")}  # fmt: skip
     assert (files["scores"]["step"], files["scores_last"]["step"]) == (found.state.best_step, 9)
     for said, kept, is_last in ((best, "scores", False), (last, "scores_last", True)):
-        network = trained_network(tmp_path / "run", config, "cpu", last=is_last)
+        network = load_trained_network(tmp_path / "run", config, "cpu", last=is_last)
         weights = load_file(tmp_path / "run" / f"{'last' if is_last else 'weights'}.safetensors")
         assert all((network.state_dict()[name] == one).all() for name, one in weights.items())
         assert said["step"] == files[kept]["step"]
@@ -204,7 +204,7 @@ def test_the_last_step_s_weights_are_scored_apart_from_the_best(store, cache, tm
 
 def test_best_weights_make_the_network_again(whole, store):
     config = read_config(whole / "run.yaml")
-    network = trained_network(whole, config, "cpu")
+    network = load_trained_network(whole, config, "cpu")
     assert not network.training
     other = toy_network.Toy(width=5)
     with pytest.raises(DamagedFileError, match="is of another network"):
@@ -238,7 +238,7 @@ def test_two_processes_do_not_train_in_one_folder(store, cache, tmp_path):
 @pytest.mark.parametrize("schedule", ["cosine", "step", "constant"])
 def test_rates_rise_first_and_never_after(schedule):
     config = RunConfig("x", ("d",), steps=90, warmup_steps=10, schedule=schedule)
-    rates = [rate_of(config, step) for step in range(90)]
+    rates = [learning_rate_at(config, step) for step in range(90)]
     assert rates[9] == max(rates) == config.learning_rate
     assert rates[:10] == sorted(rates[:10])
     assert rates[10:] == sorted(rates[10:], reverse=True)

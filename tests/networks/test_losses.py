@@ -9,7 +9,7 @@ import torch
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.batch import OccInput, OccOutput, OccTarget
-from world2minecraft.networks.layers.depth_bins import least_depth
+from world2minecraft.networks.layers.depth_bins import min_pool_depth
 from world2minecraft.networks.losses import (
     LossWeights,
     coarse_labels,
@@ -100,7 +100,7 @@ def test_depth(seed):
 
 def test_a_pixel_of_the_branch_says_what_is_nearest():
     depth_m = torch.tensor([[[0.0, 3.0, 0.0, 0.0], [2.0, 9.0, 0.0, 0.0]]])
-    assert least_depth(depth_m, 2).tolist() == [[[2.0, 0.0]]]
+    assert min_pool_depth(depth_m, 2).tolist() == [[[2.0, 0.0]]]
 
 
 def test_by_hand():

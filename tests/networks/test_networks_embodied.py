@@ -8,7 +8,7 @@ from room_frames import SHAPE, VOXEL_M, room_batch
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.networks.batch import OccInput
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.models.embodied import SceneStream, window_before
+from world2minecraft.networks.models.embodied import SceneStream, window_in_front
 
 SCENE = (40, 36, 18)
 EYES = [(3.0, 0.6, 1.6), (3.4, 5.6, 1.6), (0.7, 3.0, 1.5)]
@@ -65,7 +65,7 @@ def test_a_scene_as_large_as_a_box_is_what_the_frame_says(network):
     image, lens, _, depth_m = next(frames())
     pose = look_at(np.array([2.4, 0.02, 1.6]), np.array([2.4, 2.0, 1.4]))
     camera_to_scene = torch.from_numpy(pose).float()
-    assert window_before(camera_to_scene, SHAPE, VOXEL_M).low == (0, 0, 0)
+    assert window_in_front(camera_to_scene, SHAPE, VOXEL_M).low == (0, 0, 0)
     stream = SceneStream(network, SHAPE, SHAPE, VOXEL_M)
     stream.add(image, lens, camera_to_scene, depth_m)
     inputs = OccInput(image[None], lens[None], camera_to_scene[None], SHAPE, VOXEL_M, depth_m[None])
@@ -81,7 +81,7 @@ def test_boxes_lie_before_the_camera_on_the_scenes_cells(quarters, shape):
     eye = np.array([5.03, 4.41, 1.62])
     turn = np.deg2rad(90 * quarters + rng.uniform(-40, 40))
     ahead = np.array([-np.sin(turn), np.cos(turn), -0.2])
-    window = window_before(torch.from_numpy(look_at(eye, eye + ahead)), shape, VOXEL_M)
+    window = window_in_front(torch.from_numpy(look_at(eye, eye + ahead)), shape, VOXEL_M)
     assert window.quarters == quarters
     to_scene = window.box_to_scene(VOXEL_M).numpy()
     # The box's forward axis is the camera's, its cells are the scene's.

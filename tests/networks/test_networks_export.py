@@ -7,7 +7,7 @@ from room_frames import SHAPE, VOXEL_M, room_batch
 
 from world2minecraft.core.errors import OutputError
 from world2minecraft.networks.models import NETWORKS, make_network
-from world2minecraft.networks.onnx_export import MOST_DIFFERENCE, export_network
+from world2minecraft.networks.onnx_export import MAX_DIFFERENCE, export_network
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 USING_DEPTH = ("iso", "symphonies", "embodied")
@@ -21,7 +21,7 @@ def test_onnx_says_the_same(name, wants_depth, tmp_path):
     size = inputs.image.shape[:1:-1]
     facts = NetworkFacts(name, SHAPE, VOXEL_M, tuple(size), wants_depth)
     written = export_network(network, tmp_path / "net.onnx", facts)
-    assert written.difference <= MOST_DIFFERENCE
+    assert written.difference <= MAX_DIFFERENCE
     assert written.moved == written.renamed == 0
     assert written.size == (tmp_path / "net.onnx").stat().st_size
     assert network.training
@@ -39,7 +39,7 @@ def test_onnx_says_the_same(name, wants_depth, tmp_path):
             inputs.image[n].numpy(), inputs.intrinsics[n].numpy(),
             inputs.camera_to_grid[n].numpy(), None if depth_m is None else depth_m[n].numpy(),
         )  # fmt: skip
-        assert np.abs(found - said[n]).max() < MOST_DIFFERENCE
+        assert np.abs(found - said[n]).max() < MAX_DIFFERENCE
 
 
 def test_a_file_that_would_say_something_else_is_not_written(tmp_path):

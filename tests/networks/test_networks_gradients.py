@@ -6,7 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import nn
 
-from world2minecraft.networks.layers.normalization import DilatedConv3d, GroupNorm, families, joined
+from world2minecraft.networks.layers.normalization import (
+    DilatedConv3d,
+    GroupNorm,
+    merge_phases,
+    split_phases,
+)
 
 SIDES = st.tuples(*[st.integers(1, 7)] * 3)
 STEPS = st.tuples(*[st.integers(1, 3)] * 3)
@@ -16,8 +21,8 @@ STEPS = st.tuples(*[st.integers(1, 3)] * 3)
 @given(SIDES, STEPS)
 def test_families_joined_are_the_grid(sides, steps):
     cells = torch.arange(2 * 3 * torch.tensor(sides).prod()).float().reshape(2, 3, *sides)
-    apart = families(cells, steps)
-    assert torch.equal(joined(apart, steps, sides), cells)
+    apart = split_phases(cells, steps)
+    assert torch.equal(merge_phases(apart, steps, sides), cells)
     x, y, z = (-(-side // step) for side, step in zip(sides, steps, strict=True))
     assert apart.shape == (2 * steps[0] * steps[1] * steps[2], 3, x, y, z)
     assert torch.equal(apart[0, :, 0, 0, 0], cells[0, :, 0, 0, 0])

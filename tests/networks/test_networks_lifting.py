@@ -10,7 +10,7 @@ from room_frames import SHAPE, VOXEL_M, room_batch
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.minecraftocc.labels.label_kernels import mark_in_frustum
 from world2minecraft.networks.batch import OccInput
-from world2minecraft.networks.layers.projection import lift, sight_of
+from world2minecraft.networks.layers.projection import lift_features, project_cells
 
 
 def seen(seed, shape=(7, 9, 5), voxel_m=0.3, size=(13, 18)):
@@ -34,8 +34,8 @@ def test_lifting_is_that_of_a_loop(seed):
     rng = np.random.default_rng(seed)
     sides = {1: (13, 18), 2: (7, 9), 4: (4, 5), 8: (2, 3)}
     maps = {scale: rng.normal(size=(1, 3, *side)) for scale, side in sides.items()}
-    found = lift(
-        {scale: torch.tensor(one) for scale, one in maps.items()}, sight_of(inputs), (7, 9, 5)
+    found = lift_features(
+        {scale: torch.tensor(one) for scale, one in maps.items()}, project_cells(inputs), (7, 9, 5)
     )
     to_camera = np.linalg.inv(inputs.camera_to_grid[0].numpy())
     lens = inputs.intrinsics[0].numpy()
@@ -65,7 +65,7 @@ def test_what_is_lifted_is_what_the_data_set_calls_in_view(seed):
     marked = np.empty(inputs.grid_shape, bool)
     flat = np.array([lens[0, 0], lens[1, 1], lens[0, 2], lens[1, 2]])
     mark_in_frustum(np.ascontiguousarray(cells_to_camera[:3]), flat, 18, 13, marked)
-    assert np.array_equal(sight_of(inputs).inside[0].numpy().reshape(marked.shape), marked)
+    assert np.array_equal(project_cells(inputs).inside[0].numpy().reshape(marked.shape), marked)
 
 
 def test_a_pixels_feature_lands_where_its_depth_says():
@@ -73,7 +73,9 @@ def test_a_pixels_feature_lands_where_its_depth_says():
     inputs, target = room_batch()
     height, width = inputs.image.shape[-2:]
     numbers = torch.arange(height * width).reshape(1, 1, height, width).double() + 1
-    lifted = lift({1: numbers.expand(2, -1, -1, -1)}, sight_of(inputs), SHAPE)[:, 0].numpy()
+    lifted = lift_features({1: numbers.expand(2, -1, -1, -1)}, project_cells(inputs), SHAPE)[
+        :, 0
+    ].numpy()
     rng = np.random.default_rng(0)
     near = hits = 0
     for _ in range(600):
@@ -101,8 +103,8 @@ def test_a_pixels_feature_lands_where_its_depth_says():
 def test_mixed_precision_moves_no_cell():
     inputs, _ = room_batch()
     with torch.autocast("cpu", torch.bfloat16):
-        mixed = sight_of(inputs)
-    assert torch.equal(mixed.pixels, sight_of(inputs).pixels)
+        mixed = project_cells(inputs)
+    assert torch.equal(mixed.pixels, project_cells(inputs).pixels)
     assert mixed.pixels.dtype == torch.float32
 
 
@@ -111,6 +113,6 @@ def test_cells_behind_the_camera_get_nothing():
     behind = torch.eye(4, dtype=torch.float64)[None]
     behind[0, 2, 3] = 99.0  # Looks along z, away from a grid that is all below.
     inputs = OccInput(inputs.image, inputs.intrinsics, behind, inputs.grid_shape, inputs.voxel_m)
-    sight = sight_of(inputs)
+    sight = project_cells(inputs)
     assert not sight.inside.any()
-    assert (lift({1: torch.ones(1, 2, 13, 18)}, sight, (7, 9, 5)) == 0).all()
+    assert (lift_features({1: torch.ones(1, 2, 13, 18)}, sight, (7, 9, 5)) == 0).all()

@@ -13,15 +13,15 @@ from world2minecraft.networks.layers.attention import DeformableAttention
 from world2minecraft.networks.layers.backbones import WIDTHS, make_backbone
 from world2minecraft.networks.layers.depth_bins import (
     DepthBranch,
-    along_rays,
+    bin_coordinate,
     bin_edges_m,
     bin_of,
-    bin_place,
     known_depth,
-    least_depth,
+    min_pool_depth,
+    weight_by_depth,
 )
-from world2minecraft.networks.layers.projection import Sight, sample, sample_by_corners
-from world2minecraft.networks.layers.residual_3d import AxisBlock, Double
+from world2minecraft.networks.layers.projection import CellProjection, sample_corners, sample_grid
+from world2minecraft.networks.layers.residual_3d import DDRBlock, Upsample3d
 
 
 def mixed(values, place):
@@ -41,11 +41,11 @@ def test_sampling_is_that_of_a_loop(shape):
     rng = np.random.default_rng(1)
     values = rng.normal(size=(2, 3, *shape))
     places = rng.uniform(-1, np.array(shape) + 1, (2, 40, len(shape)))
-    found = sample(torch.tensor(values), torch.tensor(places)).numpy()
+    found = sample_grid(torch.tensor(values), torch.tensor(places)).numpy()
     for b, n in product(range(2), range(40)):
         np.testing.assert_allclose(found[b, :, n], mixed(values[b], places[b, n]), atol=1e-9)
     if len(shape) == 3:
-        by_corners = sample_by_corners(torch.tensor(values), torch.tensor(places)).numpy()
+        by_corners = sample_corners(torch.tensor(values), torch.tensor(places)).numpy()
         np.testing.assert_allclose(by_corners, found, atol=1e-9)
 
 
@@ -76,9 +76,9 @@ def test_deformable_attention_is_that_of_a_loop(shape):
 @pytest.mark.parametrize("shape", [(8, 8, 8), (9, 7, 5), (15, 15, 9), (2, 3, 1)])
 def test_half_and_double_give_back_the_sides(shape):
     cells = torch.randn(1, 8, *shape)
-    half = AxisBlock(8, "group", halve=True)(cells)
+    half = DDRBlock(8, "group", halve=True)(cells)
     assert half.shape == (1, 16, *(-(-side // 2) for side in shape))
-    assert Double(16, 8, "group")(half, shape).shape == cells.shape
+    assert Upsample3d(16, 8, "group")(half, shape).shape == cells.shape
 
 
 def test_depths_lie_in_their_bins():
@@ -90,7 +90,7 @@ def test_depths_lie_in_their_bins():
     found, known = bin_of(depth_m, 64)
     assert known.all()
     assert np.array_equal(found, np.searchsorted(edges, depth_m.numpy(), side="right") - 1)
-    np.testing.assert_allclose(bin_place(torch.tensor(edges), 64), np.arange(65), atol=1e-9)
+    np.testing.assert_allclose(bin_coordinate(torch.tensor(edges), 64), np.arange(65), atol=1e-9)
     assert not bin_of(torch.tensor([0.0, 10.0, -1.0]), 64)[1].any()
 
 
@@ -101,8 +101,8 @@ def test_a_cell_reads_its_own_depth():
     edges = bin_edges_m(16)
     middles = torch.tensor([[(a + b) / 2 for a, b in pairwise(edges)]])
     pixels = torch.tensor([[[2.0 * 4, 1.5 * 4]]]).expand(1, 16, 2)
-    sight = Sight(pixels, middles, torch.ones(1, 16, dtype=torch.bool), (12, 16))
-    found = along_rays(shares, sight, 4)[0, 0]
+    sight = CellProjection(pixels, middles, torch.ones(1, 16, dtype=torch.bool), (12, 16))
+    found = weight_by_depth(shares, sight, 4)[0, 0]
     assert found[5] > 0.9
     assert (found[[0, 1, 2, 3, 7, 8, 9, 10]] == 0).all()
 
@@ -110,7 +110,7 @@ def test_a_cell_reads_its_own_depth():
 def test_given_depth_comes_before_expected_depth():
     depth_m = torch.zeros(1, 8, 8)
     depth_m[0, 1, 2], depth_m[0, 3, 3] = 2.0, 1.5
-    assert least_depth(depth_m, 4)[0].tolist() == [[1.5, 0.0], [0.0, 0.0]]
+    assert min_pool_depth(depth_m, 4)[0].tolist() == [[1.5, 0.0], [0.0, 0.0]]
     lens = torch.tensor([[[6.0, 0, 4], [0, 6, 4], [0, 0, 1]]])
     inputs = OccInput(torch.zeros(1, 3, 8, 8), lens, torch.eye(4)[None], (8, 8, 8), 0.1, depth_m)
     logits = torch.zeros(1, 16, 2, 2)

@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
+from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
 from world2minecraft.minecraftocc.importers.embodied import open_scenes
 from world2minecraft.networks.saved_predictions import SavedPredictions
 from world2minecraft.networks.scoring import SCENES, saved_scene_scores, scenes_to_score
@@ -45,12 +45,12 @@ def truth(tmp_path):
             "global_mask": np.ones(SHAPE, bool),
             "valid_img_paths": [f"posed_images/{name}/{n:05d}.jpg" for n in range(2)],
         }
-        (packages / "global_occ_package" / f"{name}.pkl").write_bytes(pickle_bytes(package))
+        (packages / "global_occ_package" / f"{name}.pkl").write_bytes(dump_pickle(package))
         for n in range(2):
             mask = np.zeros(SHAPE, bool)
             mask[n : n + 2] = True
             frame = {"local_label": np.zeros((60, 60, 36), np.uint8), "mask_in_global": mask}
-            (folder / f"{name}_{n:05d}_new.pkl").write_bytes(pickle_bytes(frame))
+            (folder / f"{name}_{n:05d}_new.pkl").write_bytes(dump_pickle(frame))
     return tmp_path / "data", labels
 
 
@@ -66,7 +66,7 @@ def forms(labels):
     return {
         "labels": (".npy", npy(labels), ""),
         "labels of theirs": (".npy", npy(theirs(labels).astype(np.int64)), "embodied"),
-        "pickled": (".pkl", pickle_bytes({"pred": labels}), ""),
+        "pickled": (".pkl", dump_pickle({"pred": labels}), ""),
         "a list of cells": (".npy", npy(labels.reshape(-1)), ""),
         "a batch of lists": (".npy", npy(labels.reshape(1, -1)), ""),
         "scores, last": (".npy", npy(scores), ""),

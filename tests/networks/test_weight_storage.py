@@ -15,12 +15,12 @@ from room_frames import SHAPE, VOXEL_M
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.onnx_export import (
-    _asked,
-    _question,
-    _traced,
+    _export_traced,
+    _random_inputs,
+    _run_onnx,
+    compress_weights,
     export_network,
-    rounded,
-    with_stored_weights,
+    quantize_weights,
 )
 from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
@@ -35,7 +35,7 @@ def test_a_rounded_weight_is_off_by_half_a_step_of_its_channel(seed, axis, power
     shape[axis] = 4
     spans = 10.0 ** rng.uniform(-3, 3, shape) * 10**power
     values = (rng.standard_normal((4, 4, 4)) * spans).astype(np.float32)
-    whole, scales = rounded(values, axis)
+    whole, scales = quantize_weights(values, axis)
     for n in range(4):
         channel, kept = np.take(values, n, axis), np.take(whole, n, axis)
         assert np.abs(kept).max() == 127  # The largest of a channel uses its last step.
@@ -44,15 +44,15 @@ def test_a_rounded_weight_is_off_by_half_a_step_of_its_channel(seed, axis, power
 
 
 def test_a_channel_of_zeros_stays_so():
-    whole, scales = rounded(np.zeros((2, 5), np.float32), 0)
+    whole, scales = quantize_weights(np.zeros((2, 5), np.float32), 0)
     assert not whole.any() and np.isfinite(scales).all() and (scales > 0).all()
 
 
 @pytest.fixture(scope="module")
 def traced():
     network = make_network("iso", "tiny", grid_shape=SHAPE, voxel_m=VOXEL_M, seed=1).eval()
-    example = _question(FACTS, np.random.default_rng(0))
-    return _traced(network, example, FACTS), example
+    example = _random_inputs(FACTS, np.random.default_rng(0))
+    return _export_traced(network, example, FACTS), example
 
 
 def _weights_of(model):
@@ -81,15 +81,15 @@ def _slowly_rounded(model):
 
 def test_bytes_say_what_a_network_of_rounded_weights_says(traced):
     model, example = traced
-    found = _asked(with_stored_weights(model, "int8").SerializeToString(), example)
-    wanted = _asked(_slowly_rounded(model).SerializeToString(), example)
-    whole = _asked(model.SerializeToString(), example)
+    found = _run_onnx(compress_weights(model, "int8").SerializeToString(), example)
+    wanted = _run_onnx(_slowly_rounded(model).SerializeToString(), example)
+    whole = _run_onnx(model.SerializeToString(), example)
     assert np.abs(found - wanted).max() < 1e-4 < np.abs(found - whole).max()
 
 
 def test_only_what_multiplies_is_stored_small(traced):
     model, _ = traced
-    before, after = _weights_of(model), _weights_of(with_stored_weights(model, "int8"))
+    before, after = _weights_of(model), _weights_of(compress_weights(model, "int8"))
     whole = {name for name in after if name in before}
     for name in whole:
         np.testing.assert_array_equal(after[name], before[name])
@@ -109,12 +109,12 @@ def test_a_weight_that_is_read_elsewhere_stays_whole():
     ends = [onnx.helper.make_tensor_value_info(n, 1, [16, 16]) for n in "xz"]
     graph = onnx.helper.make_graph(nodes, "g", ends[:1], ends[1:], [weight])
     model = onnx.helper.make_model(graph, opset_imports=[onnx.helper.make_opsetid("", 17)])
-    assert with_stored_weights(model, "int8") == model
+    assert compress_weights(model, "int8") == model
 
 
 def test_nothing_moves_where_weights_are_stored_as_they_are(traced):
     model, _ = traced
-    assert with_stored_weights(model, "float") == model
+    assert compress_weights(model, "float") == model
 
 
 @pytest.mark.parametrize(("kind", "mean", "most"), [("half", 0.003, 0.05), ("int8", 0.03, 0.4)])
@@ -133,4 +133,4 @@ def test_how_far_logits_move(kind, mean, most, tmp_path):
 
 def test_another_way_is_refused_with_the_nearest(traced):
     with pytest.raises(UnknownNameError, match="int8"):
-        with_stored_weights(traced[0], "int4")
+        compress_weights(traced[0], "int4")

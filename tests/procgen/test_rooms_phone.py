@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.procgen.sensors.phone import TURN, plan_film
 from world2minecraft.procgen.sensors.photo import prepare_photos
@@ -23,7 +23,7 @@ def room():
 
 def test_posed_photos_state_true_poses_and_no_depth(tmp_path, room):
     scan_room(room, tmp_path, sensor="photo", frames=4, **SMALL)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.posed and not judged.has_depth
     with np.load(tmp_path / "truth.npz") as truth:
         to_scan = truth["truth_room_to_scan"]
@@ -35,7 +35,7 @@ def test_photos_are_jpegs_and_nothing_else_tells_of_them(tmp_path, room):
     scan_room(room, tmp_path, sensor="photos", frames=4, width=320, height=240, seed=3)
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == [f"frame-{n:06d}.jpg" for n in range(4)] + ["truth.json", "truth.npz"]
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.capture.source == "photos"
     assert not judged.posed and not judged.has_depth
     with np.load(tmp_path / "truth.npz") as truth:
@@ -44,7 +44,7 @@ def test_photos_are_jpegs_and_nothing_else_tells_of_them(tmp_path, room):
 
 def test_a_video_has_a_picture_for_each_moment_of_its_truth(tmp_path, room):
     scan_room(room, tmp_path, sensor="video", frames=20, **SMALL)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.capture.source == "video"
     with np.load(tmp_path / "truth.npz") as truth:
         assert len(truth["frame_names"]) == 20

@@ -13,8 +13,8 @@ from world2minecraft.rendering import LightSettings, prepare_scene, render_volum
 from world2minecraft.rendering.batch import BATCH_OUTPUTS, batch_arrays, render_batch
 from world2minecraft.rendering.batch import drawing as draw_module
 from world2minecraft.rendering.editable_scene import EditableScene
-from world2minecraft.rendering.light_parameters import DAY, exposure_of
 from world2minecraft.rendering.picture import OUTPUTS
+from world2minecraft.rendering.shading_parameters import DAY, exposure_of
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 FIXED = LightSettings(exposure=1.2)

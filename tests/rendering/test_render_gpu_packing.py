@@ -30,8 +30,8 @@ from world2minecraft.rendering.gpu.uniforms import (
     tone_words,
     view_of,
 )
-from world2minecraft.rendering.light_parameters import DAY, shading_parameters
 from world2minecraft.rendering.scene_tables import ABSOLUTE, BOXES, FLAGS, FULL, TURN
+from world2minecraft.rendering.shading_parameters import DAY, shading_parameters
 
 
 def scene_of(seed=0):

@@ -17,7 +17,7 @@ from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.gpu import GpuRenderer
 from world2minecraft.rendering.gpu import readback_buffers as slots
-from world2minecraft.rendering.light_parameters import NEUTRAL
+from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 LIGHTS = {
     "day": LightSettings(),

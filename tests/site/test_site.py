@@ -61,5 +61,5 @@ def test_a_site_without_a_warning_holds_all_of_it(tmp_path):
     verbs = (tmp_path / "verbs.html").read_text()
     assert all(f'id="{verb.replace(" ", "-")}"' in verbs for verb in VERBS)
     api = (tmp_path / "api" / "fuse.html").read_text()
-    assert 'id="world2minecraft.reconstruction.fusion.extract_grid.read_out"' in api
+    assert 'id="world2minecraft.reconstruction.fusion.extract_grid.extract_grid"' in api
     assert (tmp_path / "api" / "vln.environment.html").is_file()

@@ -9,6 +9,13 @@ from world2minecraft.capture.alignment.room_frame import realign
 from world2minecraft.capture.open_scan import open_scan
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.summary import CaptureSummary, describe_capture
-from world2minecraft.capture.view_stream import settled
+from world2minecraft.capture.view_stream import skip_damaged_frames
 
-__all__ = ["CaptureSummary", "describe_capture", "open_scan", "realign", "settled", "write_plain"]
+__all__ = [
+    "CaptureSummary",
+    "describe_capture",
+    "open_scan",
+    "realign",
+    "skip_damaged_frames",
+    "write_plain",
+]

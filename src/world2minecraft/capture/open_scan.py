@@ -8,7 +8,7 @@ from pathlib import Path
 from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
 from world2minecraft.capture.calibration import estimate_colour_camera
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over
+from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced, validate_capture
 from world2minecraft.capture.view_stream import CaptureViews, without_colour
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent
@@ -46,8 +46,11 @@ def open_scan(
     chosen = parse_options(options or {})
     if not voxel_m > 0:
         raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
-    judged = judge_capture(
-        path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, PROGRESS_STEPS)
+    judged = validate_capture(
+        path,
+        chosen,
+        labels,
+        lambda done, total: progress(STAGE, 40 * done // total, PROGRESS_STEPS),
     )
     if not judged.complete and judged.capture.room is None:
         lacks = "depth images" if judged.posed else "poses"
@@ -83,7 +86,7 @@ def open_scan(
 def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     """Return the stream with the estimated colour camera where it is clear, and what to tell."""
     both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
-    estimate = estimate_colour_camera(stream.read(spread_over(both, CALIBRATION_FRAMES)))
+    estimate = estimate_colour_camera(stream.read(evenly_spaced(both, CALIBRATION_FRAMES)))
     if estimate is None:
         return stream, "too few depth edges to check the colour camera; it is taken as stated"
     if not estimate.clear:
@@ -103,12 +106,12 @@ def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     return CaptureViews(frames, stream.encoding, stream.full_trust), note
 
 
-def _align(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
+def _align(judged: ValidatedCapture, stream: CaptureViews) -> Alignment:
     if judged.capture.room is not None:
         return Alignment(*judged.capture.room, ())
     with_depth = without_colour(stream.frames)
     try:
-        views = stream.read(spread_over(with_depth, ALIGNMENT_FRAMES))
+        views = stream.read(evenly_spaced(with_depth, ALIGNMENT_FRAMES))
         return align(views, judged.capture.world_up)
     except ImplausibleRoomError as error:
         raise CaptureError(judged.capture.folder, str(error)) from error

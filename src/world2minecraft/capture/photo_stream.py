@@ -13,7 +13,7 @@ from PIL import Image
 
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_colour
-from world2minecraft.capture.validation import JudgedCapture
+from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Photo
 
@@ -51,7 +51,7 @@ class CapturePhotos:
             yield photo
 
 
-def photos_of_capture(judged: JudgedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
+def photos_of_capture(judged: ValidatedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
     """Return the photos of a judged capture: its usable frames that have a colour image."""
     frames = tuple(frame for frame in judged.frames if frame.colour_path is not None)
     return CapturePhotos(frames, judged.capture.lens, longest_px)

@@ -42,11 +42,11 @@ SOURCES = Registry(
         "photo": "world2minecraft.capture.readers.single_photo:SinglePhotoSource",
     },
 )
-TAKES_ANY = ("photos", "photo")  # Asked last, after those of other packages too.
+FALLBACK_SOURCES = ("photos", "photo")  # Asked last, after those of other packages too.
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
-MAX_LOOKED_INTO = 50  # Folders of a wrong folder that are tried, for a hint.
+MAX_HINT_FOLDERS = 50  # Folders of a wrong folder that are tried, for a hint.
 INDEX_FILES = ("capture.json", "transforms.json")
-PACKED_SUFFIXES = (".tar", ".tgz", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar")
+UNREAD_ARCHIVE_SUFFIXES = (".tar", ".tgz", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar")
 
 
 def find_capture(path: str | Path, options: ScanOptions | None = None) -> Capture:
@@ -68,34 +68,38 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
         empty = place.is_dir() and next(place.iterdir(), None) is None
     except OSError as error:
         raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
-    if place.is_file() and place.suffix.lower() in PACKED_SUFFIXES:
+    if place.is_file() and place.suffix.lower() in UNREAD_ARCHIVE_SUFFIXES:
         reason = f"is packed as {place.suffix}; of packed files zips alone are read: unpack it"
         raise CaptureError(place, f"{reason}, and give its folder")
-    names = sorted(SOURCES.names(), key=lambda name: name in TAKES_ANY)
+    names = sorted(SOURCES.names(), key=lambda name: name in FALLBACK_SOURCES)
     sources: list[Source] = [SOURCES.load(name)() for name in names]
-    choosy = sources[: -len(TAKES_ANY)]
-    for inner in _places(place):
+    choosy = sources[: -len(FALLBACK_SOURCES)]
+    for inner in _candidate_places(place):
         for source in sources:
             if source.recognise(inner):
-                return replace(_read(source, inner, options), folder=place)
-    kind = "is empty" if empty else f"is a {_kind(place)} of another kind{_held(place)}"
-    within = _within(place, choosy)
+                return replace(_read_source(source, inner, options), folder=place)
+    kind = (
+        "is empty"
+        if empty
+        else f"is a {_describe_kind(place)} of another kind{_describe_contents(place)}"
+    )
+    within = _capture_one_level_down(place, choosy)
     if within is not None:
         raise CaptureError(place, f"{kind}; a capture lies one folder deeper: give {within}")
-    known = ", ".join(_called(source.layout) for source in sources)
+    known = ", ".join(_layout_name(source.layout) for source in sources)
     raise CaptureError(
         place,
         f"{kind}; a capture is one of these: {known}; docs/captures.md shows the files of each",
     )
 
 
-def _read(source: Source, place: AnyPath, options: ScanOptions | None) -> Capture:
+def _read_source(source: Source, place: AnyPath, options: ScanOptions | None) -> Capture:
     if isinstance(source, ConfigurableSource):
         return source.read_with(place, options or ScanOptions())
     return source.read(place)
 
 
-def _places(place: Path) -> Iterator[AnyPath]:
+def _candidate_places(place: Path) -> Iterator[AnyPath]:
     """Yield where a capture may lie: there, inside its zip, or in the one folder that it holds."""
     yield place
     inner: AnyPath = ArchivePath(place) if place.is_file() and is_zip(place) else place
@@ -110,13 +114,13 @@ def _places(place: Path) -> Iterator[AnyPath]:
         inner = held[0]
 
 
-def _kind(place: Path) -> str:
+def _describe_kind(place: Path) -> str:
     if place.is_dir():
         return "folder"
     return "zip" if is_zip(place) else f"file ({place.suffix or 'no suffix'})"
 
 
-def _held(place: Path) -> str:
+def _describe_contents(place: Path) -> str:
     """Return what a folder holds, in words: that tells which part of an export is missing."""
     if not place.is_dir():
         return ""
@@ -126,34 +130,34 @@ def _held(place: Path) -> str:
         for entry in entries
     )
     most = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))[:4]
-    return ", which holds " + ", ".join(_counted(count, kind) for kind, count in most)
+    return ", which holds " + ", ".join(_count_phrase(count, kind) for kind, count in most)
 
 
-def _counted(count: int, kind: str) -> str:
+def _count_phrase(count: int, kind: str) -> str:
     """Return how many there are, in words.
 
     Example:
-        >>> [_counted(count, "file without suffix") for count in (1, 2)] + [_counted(2, ".png")]
+        >>> [_counted(count, "file without suffix") for count in (1, 2)] + [_count_phrase(2, ".png")]
         ['1 file without suffix', '2 files without suffix', '2 .png']
     """
     first, *rest = kind.split()
     return " ".join([str(count), first + "s" * (count > 1 and not first.startswith(".")), *rest])
 
 
-def _within(place: Path, sources: Sequence[Source]) -> Path | None:
+def _capture_one_level_down(place: Path, sources: Sequence[Source]) -> Path | None:
     """Return the folder in a folder that is a capture; None where none or several are."""
     if not place.is_dir():
         return None
-    folders = sorted(entry for entry in place.iterdir() if entry.is_dir())[:MAX_LOOKED_INTO]
+    folders = sorted(entry for entry in place.iterdir() if entry.is_dir())[:MAX_HINT_FOLDERS]
     known = [one for one in folders if any(source.recognise(one) for source in sources)]
     return known[0] if len(known) == 1 else None
 
 
-def _called(layout: str) -> str:
+def _layout_name(layout: str) -> str:
     """Return the name of a layout: in brackets at its end, or all of it.
 
     Example:
-        >>> _called("rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)")
+        >>> _layout_name("rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)")
         'TUM RGB-D'
     """
     front, _, name = layout.partition(" (")

@@ -16,7 +16,7 @@ from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.quality import Survey, survey_capture
 from world2minecraft.capture.quality.diagnostics import Diagnostic, diagnose_capture
 from world2minecraft.capture.quality.processing_route import Route, choose_route
-from world2minecraft.capture.validation import JudgedCapture, judge_capture
+from world2minecraft.capture.validation import ValidatedCapture, validate_capture
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.types import Camera
 
@@ -25,28 +25,28 @@ if TYPE_CHECKING:
 
 # What a capture holds, in words for people and as values for programs.
 
-SHOWN_SKIPPED = 8
+MAX_SKIPPED_LINES = 8
 
 
-def reconstructing(capture: AnyPath, options: Mapping[str, str]) -> str:
+def reconstruct_command(capture: AnyPath, options: Mapping[str, str]) -> str:
     """Return the command that reconstructs a capture read with some options, to be typed as it is.
 
     Example:
-        >>> reconstructing(Path("my room"), {"unit": "cm"})
+        >>> reconstruct_command(Path("my room"), {"unit": "cm"})
         "w2m reconstruct 'my room' --out OUT --set capture.unit=cm"
     """
     words = ["w2m", "reconstruct", str(capture), "--out", "OUT"]
     for name, value in options.items():
         words += ["--set", f"capture.{name}={value}"]
-    return typed(words)
+    return shell_command(words)
 
 
-def typed(words: Sequence[str]) -> str:
+def shell_command(words: Sequence[str]) -> str:
     """Return words as one line for this system's shell, in quotes where they need them."""
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
-def as_data(summary: "CaptureSummary") -> dict[str, Any]:
+def summary_to_json(summary: "CaptureSummary") -> dict[str, Any]:
     """Return a summary as JSON values: its fields without the pictures."""
     data = {
         field.name: getattr(summary, field.name)
@@ -65,9 +65,9 @@ def summary_lines(summary: "CaptureSummary") -> list[str]:
     lines = [
         f"{summary.folder}: {route.called} ({summary.source}), {usable}",
         f"  route     {route.words}: {route.about}",
-        f"  colour    {_colour(summary)}",
-        f"  depth     {_depth(summary)}",
-        f"  poses     {_poses(summary)}",
+        f"  colour    {_colour_text(summary)}",
+        f"  depth     {_depth_text(summary)}",
+        f"  poses     {_poses_text(summary)}",
     ]
     if summary.room_size_m:
         size = " x ".join(f"{side:.1f}" for side in summary.room_size_m)
@@ -75,9 +75,11 @@ def summary_lines(summary: "CaptureSummary") -> list[str]:
     if summary.labelled:
         lines.append(f"  labels    {summary.labelled} frames")
     lines += [f"  note      {note}" for note in summary.notes]
-    lines += [f"  skipped   {name}: {reason}" for name, reason in summary.skipped[:SHOWN_SKIPPED]]
-    if len(summary.skipped) > SHOWN_SKIPPED:
-        lines.append(f"  skipped   and {len(summary.skipped) - SHOWN_SKIPPED} more")
+    lines += [
+        f"  skipped   {name}: {reason}" for name, reason in summary.skipped[:MAX_SKIPPED_LINES]
+    ]
+    if len(summary.skipped) > MAX_SKIPPED_LINES:
+        lines.append(f"  skipped   and {len(summary.skipped) - MAX_SKIPPED_LINES} more")
     words = {"ok": "ok", "warn": "warning", "stop": "stop"}
     for doubt in summary.doubts:
         advice = f": {doubt.advice}" if doubt.advice else ""
@@ -85,7 +87,7 @@ def summary_lines(summary: "CaptureSummary") -> list[str]:
     return [*lines, f"next: {summary.next_command}"]
 
 
-def _colour(summary: "CaptureSummary") -> str:
+def _colour_text(summary: "CaptureSummary") -> str:
     if summary.colour_size_px is None:
         return "none"
     text = f"{summary.colour_size_px[0]}x{summary.colour_size_px[1]}"
@@ -95,7 +97,7 @@ def _colour(summary: "CaptureSummary") -> str:
     return f"{text}, focal length {summary.colour_focal_px:.0f} px{guessed}"
 
 
-def _depth(summary: "CaptureSummary") -> str:
+def _depth_text(summary: "CaptureSummary") -> str:
     size, focal = summary.depth_size_px, summary.depth_focal_px
     if not summary.survey.judged.has_depth:
         return "none; it is computed from the pictures"
@@ -104,7 +106,7 @@ def _depth(summary: "CaptureSummary") -> str:
     return f"{lens}{summary.depth_unit}{guessed}, typically {summary.typical_depth_m:.1f} m away"
 
 
-def _poses(summary: "CaptureSummary") -> str:
+def _poses_text(summary: "CaptureSummary") -> str:
     if not summary.posed:
         return "none; they are found from the pictures"
     unit = "" if summary.survey.judged.capture.scale == "unknown" else " m"
@@ -114,7 +116,7 @@ def _poses(summary: "CaptureSummary") -> str:
     )
 
 
-def plan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
+def roomplan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
     """Return what is printed of a RoomPlan, the next command last."""
     rooms = plan.rooms
     kinds = ("walls", "openings", "objects")
@@ -128,8 +130,8 @@ def plan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
         "  route     walls and furniture are built as they were measured: about 10 s",
         *(f"  note      {note}" for note in plan.notes),
         "  hint      with a scan of the same room: w2m reconstruct SCAN --plan "
-        f"{typed([str(capture)])} --out OUT",
-        f"next: {reconstructing(capture, {})}",
+        f"{shell_command([str(capture)])} --out OUT",
+        f"next: {reconstruct_command(capture, {})}",
     ]
 
 
@@ -178,12 +180,14 @@ def describe_capture(
 ) -> CaptureSummary:
     """Describe a capture from its headers and some decoded images.
 
-    Raises what ``judge_capture`` raises for captures that cannot be read.
+    Raises what ``validate_capture`` raises for captures that cannot be read.
     """
-    return describe(judge_capture(path, parse_options(options or {})), options)
+    return describe_validated(validate_capture(path, parse_options(options or {})), options)
 
 
-def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) -> CaptureSummary:
+def describe_validated(
+    judged: ValidatedCapture, options: Mapping[str, str] | None = None
+) -> CaptureSummary:
     """Describe a capture that is judged; ``options`` are named again in the next command."""
     frames = judged.frames
     survey = survey_capture(judged)
@@ -199,7 +203,7 @@ def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) ->
         usable=len(frames),
         lost_poses=sum("pose" in reason or "tracking" in reason for _, reason in judged.skipped),
         posed=judged.posed,
-        colour_size_px=_size(judged, colour),
+        colour_size_px=_colour_size(judged, colour),
         depth_size_px=_camera_size(depth),
         colour_focal_px=colour.fx_px if colour else None,
         depth_focal_px=depth.fx_px if depth else None,
@@ -207,18 +211,18 @@ def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) ->
         depth_unit=judged.encoding.said,
         depth_unit_guessed=judged.encoding.guessed,
         typical_depth_m=judged.typical_depth_m,
-        cameras_apart_m=_apart_m(survey),
+        cameras_apart_m=_camera_extent_m(survey),
         room_size_m=None if room is None else (float(room[0]), float(room[1]), float(room[2])),
         labelled=sum(frame.labels_path is not None for frame in frames),
         skipped=judged.skipped,
         notes=judged.notes,
         doubts=diagnose_capture(survey, route),
-        next_command=reconstructing(judged.capture.folder, options or {}),
+        next_command=reconstruct_command(judged.capture.folder, options or {}),
         survey=survey,
     )
 
 
-def _apart_m(survey: Survey) -> float:
+def _camera_extent_m(survey: Survey) -> float:
     if survey.plan is None:
         return 0.0
     return float(np.ptp(survey.plan.cameras[:, :3, 3], axis=0).max())
@@ -228,7 +232,7 @@ def _camera_size(camera: Camera | None) -> tuple[int, int] | None:
     return (camera.width_px, camera.height_px) if camera else None
 
 
-def _size(judged: JudgedCapture, camera: Camera | None) -> tuple[int, int] | None:
+def _colour_size(judged: ValidatedCapture, camera: Camera | None) -> tuple[int, int] | None:
     """Return the size of the colour images, from a header where no camera is stated."""
     place = next((frame.colour_path for frame in judged.frames if frame.colour_path), None)
     if camera is None and place is not None:

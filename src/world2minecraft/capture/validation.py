@@ -50,12 +50,12 @@ from world2minecraft.core.types import Camera
 
 MAX_DAMAGED_SHARE = 0.25  # More than one image in four cut short is a broken copy, not a slip.
 MAX_WRONG_POSES_SHARE = 0.1  # More is how the capture was exported, not a slip of tracking.
-Skipped = tuple[tuple[str, str], ...]
+SkippedFrames = tuple[tuple[str, str], ...]
 
 
 def check_frames(
     capture: Capture, step: Callable[[int], None] = lambda done: None
-) -> tuple[tuple[FrameFiles, ...], Skipped]:
+) -> tuple[tuple[FrameFiles, ...], SkippedFrames]:
     """Return the frames that can be used, cameras at their images' sizes and poses rigid.
 
     Args:
@@ -84,7 +84,7 @@ def check_frames(
         reason = frame.problem or (_pose_problem(frame) if posed else "")
         if not reason:
             try:
-                used.append(_sized(_check_images(frame, sizes, posed)))
+                used.append(_fit_cameras(_check_images(frame, sizes, posed)))
             except (CaptureError, LimitError):
                 raise
             except InputError as error:
@@ -94,7 +94,7 @@ def check_frames(
             skipped.append((frame.name, reason))
         step(done)
     _refuse_if_broken(capture, used, skipped, damaged)
-    mended, wrong = _mended(capture, used)
+    mended, wrong = _repair_poses(capture, used)
     return mended, (*skipped, *wrong)
 
 
@@ -141,14 +141,14 @@ def _image_paths(frame: FrameFiles) -> Iterable[tuple[str, ImagePlace]]:
     return [(kind, path) for kind, path in named if path is not None]
 
 
-def _sized(frame: FrameFiles) -> FrameFiles:
+def _fit_cameras(frame: FrameFiles) -> FrameFiles:
     """Return the frame with its stated cameras carried to the sizes that its images have."""
-    colour = _fit(frame.colour_path, frame.colour_camera)
-    depth = _fit(frame.depth_path, frame.depth_camera)
+    colour = _fit_camera(frame.colour_path, frame.colour_camera)
+    depth = _fit_camera(frame.depth_path, frame.depth_camera)
     return replace(frame, colour_camera=colour, depth_camera=depth)
 
 
-def _fit(path: ImagePlace | None, camera: Camera | None) -> Camera | None:
+def _fit_camera(path: ImagePlace | None, camera: Camera | None) -> Camera | None:
     if path is None or camera is None:
         return None
     size = read_header(path).size
@@ -189,7 +189,9 @@ def _refuse_if_broken(
         )
 
 
-def _mended(capture: Capture, frames: list[FrameFiles]) -> tuple[tuple[FrameFiles, ...], Skipped]:
+def _repair_poses(
+    capture: Capture, frames: list[FrameFiles]
+) -> tuple[tuple[FrameFiles, ...], SkippedFrames]:
     """Return the frames with rigid poses, and those whose pose is wrong where they are few.
 
     Frames of a capture without poses stay as they are.
@@ -214,17 +216,17 @@ def _mended(capture: Capture, frames: list[FrameFiles]) -> tuple[tuple[FrameFile
     return tuple(mended), tuple(skipped)
 
 
-SAMPLED_FRAMES = 12
+DEPTH_SAMPLE_FRAMES = 12
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class JudgedCapture:
+class ValidatedCapture:
     """What can be used of a capture; ``typical_depth_m`` is the median over some frames, or 0."""
 
     capture: Capture
     frames: tuple[FrameFiles, ...]
-    skipped: Skipped
+    skipped: SkippedFrames
     encoding: DepthEncoding
     typical_depth_m: float
     notes: tuple[str, ...]
@@ -245,50 +247,50 @@ class JudgedCapture:
         return self.has_depth and self.posed
 
 
-def judge_capture(
+def validate_capture(
     path: str | Path,
     options: ScanOptions,
     labels: Path | None = None,
     step: Callable[[int, int], None] = lambda done, total: None,
-) -> JudgedCapture:
+) -> ValidatedCapture:
     """Find out a capture's layout, check its frames and tell its depth unit.
 
     Raises:
         CaptureError: it cannot be used. LimitError: an image is too large.
     """
-    return judge(find_capture(path, options), options, labels, step)
+    return validate(find_capture(path, options), options, labels, step)
 
 
-def judge(
+def validate(
     capture: Capture,
     options: ScanOptions,
     labels: Path | None = None,
     step: Callable[[int, int], None] = lambda done, total: None,
-) -> JudgedCapture:
-    """Check the frames of a capture that was found. Raises what ``judge_capture`` raises."""
+) -> ValidatedCapture:
+    """Check the frames of a capture that was found. Raises what ``validate_capture`` raises."""
     total = len(capture.frames[:: options.every])
     capture = replace(capture, frames=capture.frames[:: options.every])
     frames, skipped = check_frames(capture, lambda done: step(done, total))
     if labels is not None:
         frames = attach_labels(frames, labels)
-    frames, turned = _upright(frames, capture)
+    frames, turned = _rotate_upright(frames, capture)
     check_labels(frames)
-    looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
-    paths = _decodable([frame.depth_path for frame in looked_at if frame.depth_path])
-    encoding = _encoding(paths, options, capture) if paths else DepthEncoding("mm")
-    typical_m = _typical_depth(paths, encoding)
-    strayed: Skipped = ()
+    looked_at = evenly_spaced([frame for frame in frames if frame.depth_path], DEPTH_SAMPLE_FRAMES)
+    paths = _drop_undecodable([frame.depth_path for frame in looked_at if frame.depth_path])
+    encoding = _find_encoding(paths, options, capture) if paths else DepthEncoding("mm")
+    typical_m = _median_depth(paths, encoding)
+    strayed: SkippedFrames = ()
     if is_posed(frames) and capture.scale != "unknown":
         frames, strayed = check_camera_spread(frames, capture.folder, typical_m)
     notes = [*capture.notes, *turned]
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
-    return JudgedCapture(
+    return ValidatedCapture(
         capture, frames, (*capture.skipped, *skipped, *strayed), encoding, typical_m, tuple(notes)
     )
 
 
-def _upright(
+def _rotate_upright(
     frames: tuple[FrameFiles, ...], capture: Capture
 ) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
     """Return the frames with upright images where the capture knows up, and what to tell."""
@@ -299,7 +301,7 @@ def _upright(
     return tuple(rotate_frame(frame, turns) for frame in frames), (note,)
 
 
-def _decodable(paths: list[ImagePlace]) -> list[ImagePlace]:
+def _drop_undecodable(paths: list[ImagePlace]) -> list[ImagePlace]:
     """Return the images that can be decoded: one that cannot is left out when its turn comes."""
     found = []
     for path in paths:
@@ -311,20 +313,22 @@ def _decodable(paths: list[ImagePlace]) -> list[ImagePlace]:
     return found or paths
 
 
-def _encoding(paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture) -> DepthEncoding:
+def _find_encoding(
+    paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture
+) -> DepthEncoding:
     try:
         return find_encoding(paths, options.depth_unit or capture.depth_unit)
     except UnknownNameError as error:  # The user's own was checked before: the capture states it.
         raise CaptureError(capture.folder, str(error)) from error
 
 
-def spread_over(items: Sequence[T], count: int) -> list[T]:
+def evenly_spaced(items: Sequence[T], count: int) -> list[T]:
     """Return at most ``count`` of the items, evenly spread, the first among them."""
     chosen = np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))
     return [items[index] for index in chosen]
 
 
-def _typical_depth(paths: Sequence[ImagePlace], encoding: DepthEncoding) -> float:
+def _median_depth(paths: Sequence[ImagePlace], encoding: DepthEncoding) -> float:
     """Return the median depth in metres over some images."""
     medians = []
     for path in paths[:4]:

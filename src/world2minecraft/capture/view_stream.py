@@ -57,7 +57,7 @@ def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:
     ]
 
 
-def settled(scan: Scan) -> Scan:
+def skip_damaged_frames(scan: Scan) -> Scan:
     """Return the scan with the frames that could not be decoded among those skipped.
 
     Call it once its views have been read through.
@@ -105,7 +105,7 @@ def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | N
         raise DamagedFileError(
             frame.labels_path, f"must hold one 8-bit class id a pixel, not {given}"
         )
-    return _at_size(labels, colour.shape[:2])
+    return _resize_nearest(labels, colour.shape[:2])
 
 
 def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.ndarray | None:
@@ -117,10 +117,10 @@ def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.
         given = f"{stored.dtype} {stored.shape}"
         raise DamagedFileError(frame.trust_path, f"must hold one confidence a pixel, not {given}")
     share = np.clip(np.nan_to_num(stored.astype(np.float32)) / np.float32(full), 0, 1)
-    return _at_size(np.round(255 * share).astype(np.uint8), depth.shape)
+    return _resize_nearest(np.round(255 * share).astype(np.uint8), depth.shape)
 
 
-def _at_size(image: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def _resize_nearest(image: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """Return an image at another size, by nearest pixels."""
     if image.shape == shape:
         return image

@@ -161,13 +161,13 @@ def with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
     """
     if not palette:
         return volume
-    from world2minecraft.construction.block_meanings import labelled
+    from world2minecraft.construction.block_meanings import label_volume
     from world2minecraft.construction.palettes import load_palette
 
     meanings = load_palette(palette).meanings
     if meanings is None:
         raise UsageError(f"palette {palette} reads no blocks; add reads to it, or try vanilla")
-    return labelled(volume, meanings)
+    return label_volume(volume, meanings)
 
 
 def tell_losses(losses: "Losses", head: str) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.networks.onnx_export import Exported
+    from world2minecraft.networks.onnx_export import ExportReport
 
 EXAMPLES = """\
 w2m export RUN --out net.onnx                              the best weights of a run
@@ -35,13 +35,13 @@ def run(
 
     check_extra()
     from world2minecraft.networks.callbacks import WEIGHTS
-    from world2minecraft.networks.checkpoints import load_weights, weights_config
+    from world2minecraft.networks.checkpoints import load_weights, read_weights_config
     from world2minecraft.networks.onnx_export import export_network
-    from world2minecraft.networks.training import network_of
+    from world2minecraft.networks.training import build_network
 
     path = weights / WEIGHTS if weights.is_dir() else weights
-    config = weights_config(path)
-    network = network_of(config)
+    config = read_weights_config(path)
+    network = build_network(config)
     load_weights(path, network)
     facts = NetworkFacts(
         name or f"{config.network}-{config.size}",
@@ -56,7 +56,7 @@ def run(
         print(line)
 
 
-def told(out: Path, name: str, stored: str, written: "Exported") -> list[str]:
+def told(out: Path, name: str, stored: str, written: "ExportReport") -> list[str]:
     """Return what is printed of a file."""
     lines = [
         f"{out}: {name}, {written.size / 1e6:.1f} MB; "

@@ -50,7 +50,7 @@ def run(
     """
     from world2minecraft.capture import describe_capture
     from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
-    from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
+    from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
@@ -60,11 +60,11 @@ def run(
     options = with_settings(Parameters(), settings or []).capture
     plan = find_lone_roomplan(capture)
     if plan is not None:
-        _print_all(plan_lines(capture, read_roomplan(plan)), as_json)
+        _print_all(roomplan_lines(capture, read_roomplan(plan)), as_json)
         return
     summary = describe_capture(capture, options=options)
     if as_json:
-        print(json.dumps(as_data(summary), indent=1))
+        print(json.dumps(summary_to_json(summary), indent=1))
         return
     lines = summary_lines(summary)
     for line in lines[:-1]:

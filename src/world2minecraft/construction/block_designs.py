@@ -18,7 +18,7 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import FADED, costs_of, painted
+from world2minecraft.construction.surface_painting import FADED, colour_costs, paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import Placement
@@ -50,7 +50,7 @@ TIE = 1e-6
 OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
 
 
-class Window(NamedTuple):
+class CanvasWindow(NamedTuple):
     """The part of a design that lies on the canvas, and what stands there."""
 
     box: tuple[slice, ...]  # of the design
@@ -64,9 +64,9 @@ class Window(NamedTuple):
         return bool((filled & self.wall).sum() > 0.5 * filled.sum())
 
 
-def window_on(
+def canvas_window(
     canvas: Canvas, within: np.ndarray, low: np.ndarray, shape: tuple[int, ...]
-) -> Window:
+) -> CanvasWindow:
     """Return the window of a design of a shape that begins at ``low``.
 
     Args:
@@ -84,10 +84,10 @@ def window_on(
     stands = canvas.states[around] > 0
     free = ~stands[1:-1, 1:-1, 1:-1] & within[inside]
     wall = canvas.semantic[inside] == SemanticClass.WALL
-    return Window(box, start, free, wall, dilate_faces(stands)[1:-1, 1:-1, 1:-1])
+    return CanvasWindow(box, start, free, wall, dilate_faces(stands)[1:-1, 1:-1, 1:-1])
 
 
-class Hue(NamedTuple):
+class ObjectColours(NamedTuple):
     """What is known of an object's colours, in its own box of blocks."""
 
     colours: np.ndarray  # float32 [X, Y, Z, 3], Oklab
@@ -95,11 +95,11 @@ class Hue(NamedTuple):
     paint: np.ndarray | None  # float32 [3], where all of it has one colour
 
 
-def tinted(
+def recolour_design(
     blocks: Sequence[IdiomBlock],
     cells: np.ndarray,
     materials: Mapping[str, Material],
-    hue: Hue,
+    hue: ObjectColours,
     class_id: int,
     palette: Palette,
     parameters: BuildParameters,
@@ -151,7 +151,7 @@ def _cube_of(
     own = _restated([wool], "cloth", colour, parameters)
     offered = [*own, *choices]
     handicaps = np.array([0.0] + [OTHER_CLOTH] * len(choices))
-    costs = costs_of(colour[None], offered, parameters.lightness_weight, handicaps, FADED)
+    costs = colour_costs(colour[None], offered, parameters.lightness_weight, handicaps, FADED)
     return offered[int(costs[0].argmin())]
 
 
@@ -161,7 +161,7 @@ def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> 
     return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
 
 
-def _colour(cells: np.ndarray, hue: Hue) -> np.ndarray:
+def _colour(cells: np.ndarray, hue: ObjectColours) -> np.ndarray:
     """Return the median colour, float32 [3], of cells; that of the whole object where none is."""
     if hue.paint is not None:
         return hue.paint
@@ -175,7 +175,11 @@ def _colour(cells: np.ndarray, hue: Hue) -> np.ndarray:
 
 
 def _painted(
-    cells: np.ndarray, hue: Hue, class_id: int, palette: Palette, parameters: BuildParameters
+    cells: np.ndarray,
+    hue: ObjectColours,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
 ) -> list[str]:
     """Return full blocks of the palette for cells, each as its own colour asks, but calmly."""
     mask = np.zeros(hue.known.shape, bool)
@@ -184,7 +188,7 @@ def _painted(
     most = min(PLAIN_PAINTS, parameters.object_colours)
     renewed = np.empty(mask.shape, object)
     within = mask | known
-    renewed[within] = painted(within, hue.colours, known, class_id, palette, parameters, most)
+    renewed[within] = paint_surface(within, hue.colours, known, class_id, palette, parameters, most)
     return renewed[tuple(cells.T)].tolist()
 
 
@@ -221,18 +225,18 @@ def _nearest(
         return None
     handicaps = np.array([0.0] * len(own) + [OTHER_KIND] * (len(offered) - len(own)))
     samples = [one.sample for one in offered]
-    costs = costs_of(colour[None], samples, parameters.lightness_weight, handicaps, FADED)
+    costs = colour_costs(colour[None], samples, parameters.lightness_weight, handicaps, FADED)
     return offered[int(costs[0].argmin())]
 
 
-class Thing(NamedTuple):
+class ObjectLabel(NamedTuple):
     """Whose blocks are set."""
 
     class_id: int
     instance: int
 
 
-def idiom_box(
+def design_box(
     design: Idiom, placement: Placement, lattice: Lattice
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the first block and the size, int [3] each in room axes, of a design in its place.
@@ -280,7 +284,7 @@ def _standing_out(design: Idiom, placement: Placement, lattice: Lattice) -> int:
     return max(depth - own.depth, 0) if width <= own.width else 0
 
 
-def filled_by(design: Idiom) -> np.ndarray:
+def filled_blocks(design: Idiom) -> np.ndarray:
     """Return the blocks that a design fills, bool [X, Y, Z] in room axes."""
     along, up, across = design.size
     filled = np.zeros((along, across, up), bool)
@@ -295,12 +299,12 @@ def _cells_of(design: Idiom) -> np.ndarray:
     return cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
 
 
-def put_idiom(
+def place_design(
     canvas: Canvas,
     design: Idiom,
     low: np.ndarray,
-    thing: Thing,
-    hue: Hue,
+    thing: ObjectLabel,
+    hue: ObjectColours,
     palette: Palette,
     within: np.ndarray,
     parameters: BuildParameters | None = None,
@@ -331,14 +335,14 @@ def put_idiom(
 def _states(
     design: Idiom,
     cells: np.ndarray,
-    thing: Thing,
-    hue: Hue,
+    thing: ObjectLabel,
+    hue: ObjectColours,
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
     if design.materials:
         blocks, materials = design.blocks, design.materials
-        return tinted(blocks, cells, materials, hue, thing.class_id, palette, parameters)
+        return recolour_design(blocks, cells, materials, hue, thing.class_id, palette, parameters)
     median = np.median(hue.colours[hue.known], axis=0) if hue.known.any() else hue.paint
     states = []
     for cell, block in zip(cells.tolist(), design.blocks, strict=True):
@@ -349,8 +353,8 @@ def _states(
     return states
 
 
-def _in_colour(state: str, colour: np.ndarray, thing: Thing, palette: Palette) -> str:
-    own = recoloured(state, colour)
+def _in_colour(state: str, colour: np.ndarray, thing: ObjectLabel, palette: Palette) -> str:
+    own = recolour_state(state, colour)
     apart = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
     if apart <= OWN_COLOUR or not is_full_cube(own):
         return own
@@ -358,7 +362,7 @@ def _in_colour(state: str, colour: np.ndarray, thing: Thing, palette: Palette) -
     return choices[int(nearest_oklab(colour[None], srgb_to_oklab(colours_of(choices)))[0])]
 
 
-def recoloured(state: str, colour: np.ndarray) -> str:
+def recolour_state(state: str, colour: np.ndarray) -> str:
     """Return a state of the same kind in the wood or dye nearest to an Oklab colour."""
     namespace, _, rest = state.partition(":")
     name, bracket, properties = rest.partition("[")

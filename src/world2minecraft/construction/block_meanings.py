@@ -16,7 +16,7 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.connected_components import label_components
 
 LONGEST_WORD = 60
-MOST_OBJECTS = 65_535
+MAX_OBJECTS = 65_535
 
 
 class Meaning(NamedTuple):
@@ -54,7 +54,7 @@ class Meanings:
         return self.words[max(alike, key=name.rfind)]
 
 
-def meanings_of(raw: Any) -> Meanings:
+def parse_meanings(raw: Any) -> Meanings:
     """Return the meanings that ``reads`` of a palette file holds.
 
     Raises:
@@ -70,7 +70,7 @@ def meanings_of(raw: Any) -> Meanings:
     return Meanings(tuple(spaces), {str(w): _meaning(str(w), said) for w, said in words.items()})
 
 
-def labelled(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
+def label_volume(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
     """Return a volume with the class and the object of every block whose meaning is known.
 
     Blocks of one design that touch by a face are one object; those of structure are none. Labels
@@ -87,7 +87,7 @@ def labelled(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
     keys = here * len(CLASS_NAMES) + semantic
     for key in np.unique(keys[here > 0]).tolist():
         parts, count = label_components((keys == key) & (here > 0), corners=False)
-        if following + count > MOST_OBJECTS:
+        if following + count > MAX_OBJECTS:
             break
         instance[parts > 0] = (parts[parts > 0] + following).astype(np.uint16)
         following += count

@@ -13,19 +13,19 @@ BRIGHT_LIGHT, BRIGHT_QUANTILE = 0.6, 0.95
 GAIN_LIMIT = 1.8
 # White balance: bright cells that are nearly grey are taken for grey.
 GREY_CHROMA, CAST_LIMIT = 0.05, 1.1
-LEAST_CELLS = 50
+MIN_CELLS = 50
 # Chroma under which a colour is a grey with a cast, and from which it is meant.
 FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
 # Wood lies within these degrees of hue; red begins where they fade out.
 WOOD_HUE, WOOD_REACH, WOOD_FADE = 65.0, 20.0, 10.0
 # A paint: so many cells (1 m2 at 8 cm) of a strong chroma within a few degrees of one hue. The
 # reach is that of the kitchen's reds in haze; lightness tells a pink thing from a red one.
-STRONG_CHROMA, PAINT_CELLS, MOST_PAINTS = 0.09, 150, 3
+STRONG_CHROMA, PAINT_CELLS, MAX_PAINTS = 0.09, 150, 3
 HUE_BIN, PAINT_REACH, PAINT_LIGHT = 15.0, 25.0, 0.2
 NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the nearest that was seen.
 
 
-def seen_colours(grid: OccupancyGrid) -> np.ndarray:
+def coloured_cells(grid: OccupancyGrid) -> np.ndarray:
     """Return bool [X, Y, Z]: which cells carry a colour. Black, exactly 0, stands for none."""
     return grid.occupied & grid.colour.any(-1)
 
@@ -38,21 +38,21 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
         expose: whether to light a dim room and take away its colour cast.
         saturation: the factor on the chroma of clear colours; greys stay as they are.
     """
-    seen = seen_colours(grid)
+    seen = coloured_cells(grid)
     result = np.zeros((*grid.shape, 3), np.float32)
     colours = grid.colour[seen]
     if not len(colours):
         return result
     if expose:
         linear = srgb_to_linear(colours)
-        result[seen] = linear_to_oklab(np.clip(linear * gains_of(linear), 0, 1))
+        result[seen] = linear_to_oklab(np.clip(linear * exposure_gains(linear), 0, 1))
     else:
         result[seen] = srgb_to_oklab(colours)
-    result[seen] = strengthened(result[seen], saturation)
+    result[seen] = boost_saturation(result[seen], saturation)
     return result
 
 
-def strengthened(oklab: np.ndarray, saturation: float) -> np.ndarray:
+def boost_saturation(oklab: np.ndarray, saturation: float) -> np.ndarray:
     """Return Oklab colours, float32 [N, 3], with the chroma of clear ones multiplied.
 
     Greys stay as they are, and so do the hues of wood, which a stronger chroma turns into those
@@ -68,7 +68,7 @@ def strengthened(oklab: np.ndarray, saturation: float) -> np.ndarray:
     return result
 
 
-def one_paint(oklab: np.ndarray) -> np.ndarray:
+def unify_paints(oklab: np.ndarray) -> np.ndarray:
     """Return the colours of a room's things, float32 [N, 3], each strong paint made one colour.
 
     Haze, shade and the mixing of neighbours in a cell make purple, brown and pink of one red. Where
@@ -79,7 +79,7 @@ def one_paint(oklab: np.ndarray) -> np.ndarray:
     hue = np.degrees(np.arctan2(oklab[:, 2], oklab[:, 1]))
     off_wood = np.abs(_turn(hue - WOOD_HUE)) > WOOD_REACH + WOOD_FADE
     strong = (chroma >= STRONG_CHROMA) & off_wood
-    for _ in range(MOST_PAINTS):
+    for _ in range(MAX_PAINTS):
         bins = np.bincount((hue[strong] % 360 / HUE_BIN).astype(int), minlength=int(360 / HUE_BIN))
         wide = bins + np.roll(bins, 1)
         best = int(wide.argmax())
@@ -101,13 +101,13 @@ def _turn(degrees: np.ndarray) -> np.ndarray:
     return (degrees + 180) % 360 - 180
 
 
-def gains_of(linear: np.ndarray) -> np.ndarray:
+def exposure_gains(linear: np.ndarray) -> np.ndarray:
     """Return the factors, float64 [3], that light a dim room and take away its colour cast.
 
     Args:
         linear: float64 [N, 3], the linear light of its surfaces.
     """
-    if len(linear) < LEAST_CELLS:
+    if len(linear) < MIN_CELLS:
         return np.ones(3)
     light = linear @ np.array([0.2126, 0.7152, 0.0722])
     bright = np.quantile(light, BRIGHT_QUANTILE)
@@ -115,13 +115,13 @@ def gains_of(linear: np.ndarray) -> np.ndarray:
     grey = linear[
         (np.hypot(*linear_to_oklab(linear)[:, 1:].T) < GREY_CHROMA) & (light >= 0.5 * bright)
     ]
-    if len(grey) < LEAST_CELLS:
+    if len(grey) < MIN_CELLS:
         return np.full(3, exposure)
     mean = np.maximum(grey.mean(0), 1e-6)
     return exposure * np.clip(mean.mean() / mean, 1 / CAST_LIMIT, CAST_LIMIT)
 
 
-def default_colour(block: str) -> np.ndarray:
+def block_colour(block: str) -> np.ndarray:
     """Return the Oklab colour, float32 [3], of a block state."""
     return srgb_to_oklab(np.array(colour_of(block), np.uint8))
 
@@ -148,7 +148,7 @@ def group_medians(
     return medians, sizes
 
 
-def spread(
+def fill_colours(
     colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray
 ) -> np.ndarray:
     """Return the colours, float32 [N, 3], at ``wanted``: each its own, or the nearest known one.

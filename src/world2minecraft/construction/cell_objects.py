@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.colour_sources import Coats
+from world2minecraft.construction.colour_sources import ColourSource
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     TIE,
     Design,
-    of_half_layers,
-    standing,
-    turned_middle,
+    base_layer,
+    halves_from_layers,
+    rotate_middle,
 )
 from world2minecraft.construction.fitting import (
     Fit,
@@ -46,18 +46,18 @@ COPY_IOU = 0.5  # and meet in so much of what either fills.
 SLIM = 0.5  # What is a cell thick is thinner: a cell is on where an eighth of it is filled.
 SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
 FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
-LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
+MIN_STRETCH, MAX_STRETCH = 0.8, 1.25  # By so much a side may be stretched to end with a block.
 FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
 MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
 # What of these does not stand on a floor may hang on a wall.
-HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
+WALL_MOUNTED = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
 # Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
 # count whole; here what is one cell thick counts half.
-LEAST_IOU, LEAST_THIN = 0.25, 0.5
+MIN_IOU, MIN_THIN = 0.25, 0.5
 
 
-class Shape(NamedTuple):
+class HalfBlockShape(NamedTuple):
     """Half blocks in a box of the lattice, and the block of each cell."""
 
     low: np.ndarray  # int [3], the lattice index of the box's first block
@@ -65,9 +65,9 @@ class Shape(NamedTuple):
     blocks: np.ndarray  # int [N, 3], lattice indices, one for each cell
 
 
-def shape_of_cells(
+def resample_cells(
     cells: np.ndarray, grid: OccupancyGrid, lattice: Lattice, share: float, shift: bool
-) -> Shape:
+) -> HalfBlockShape:
     """Return the half blocks that show cells.
 
     Args:
@@ -98,7 +98,7 @@ def shape_of_cells(
     halves = _halves(mask, local, high - low, share)
     middles = [np.floor((edge[:-1] + edge[1:]) / 2).astype(int) for edge in edges]
     blocks = np.stack([middles[axis][cells[:, axis] - low_cell[axis]] for axis in range(3)], 1)
-    return Shape(low, halves, blocks)
+    return HalfBlockShape(low, halves, blocks)
 
 
 def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: float):
@@ -109,7 +109,7 @@ def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: 
     share = min(share, float(shares.max()))  # Nothing vanishes for being small.
     fine = face_shares(mask, doubled, (shape[0], shape[1], 2 * shape[2])) >= share
     whole = shares >= share
-    halves = of_half_layers(fine)
+    halves = halves_from_layers(fine)
     halves[~whole] = 0
     halves[whole & (halves == 0)] = 3
     return halves
@@ -156,7 +156,7 @@ class CellsDesign(NamedTuple):
     fit: Fit
 
 
-def inner_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.ndarray:
+def enclosed_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.ndarray:
     """Return the unseen cells, int [N, 3], within a closed object: under its skin and beside it.
 
     Args:
@@ -178,7 +178,7 @@ def inner_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.nda
     return np.argwhere(above & beside & unseen & ~mask) + low
 
 
-def solid_of(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
+def make_solid(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
     """Return cells, int [N, 3], and what they enclose, [M, 3], as a solid of its own frame."""
     low = cells.min(0)
     mask = np.zeros(cells.max(0) + 1 - low, bool)
@@ -187,7 +187,7 @@ def solid_of(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
     return Solid(np.ascontiguousarray(turn_grid(mask, -turns)), turns % 4)
 
 
-def shared_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dict[int, Solid]:
+def share_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dict[int, Solid]:
     """Return the solids by number, those of copies replaced by what most of the copies have.
 
     Two objects of one class are copies where their sizes differ by a cell or two and most of
@@ -236,7 +236,7 @@ def _majority(masks: Sequence[np.ndarray]) -> np.ndarray:
     return mean[tuple(map(slice, at.min(0), at.max(0) + 1))]
 
 
-def design_of_cells(
+def fit_cells(
     cells: np.ndarray,
     solid: Solid,
     grid: OccupancyGrid,
@@ -250,7 +250,7 @@ def design_of_cells(
 
     Args:
         cells: int [N, 3], indices into the grid, at least one; they say where it stands.
-        solid: what is fitted, as of ``solid_of`` or ``shared_solids``.
+        solid: what is fitted, as of ``make_solid`` or ``share_solids``.
         grid: where the cells lie.
         lattice: where the blocks stand.
         kinds: the kinds of shape that may be used.
@@ -262,7 +262,7 @@ def design_of_cells(
     low, high = cells.min(0), cells.max(0) + 1
     ends = np.array([[lattice.edges_of(grid, a)[at[a]] for a in range(3)] for at in (low, high)])
     side = grid.voxel_m * lattice.blocks_per_metre
-    base, bottom = standing(float(ends[0, 2]), lattice)
+    base, bottom = base_layer(float(ends[0, 2]), lattice)
     stands = not hangs or base == lattice.ground_under(float(base))
     body = _body_of(solid.mask, side, bottom, shift, flush)
     target = _target(solid.mask, body, grid.voxel_m, bottom)
@@ -274,7 +274,7 @@ def design_of_cells(
     else:
         at = np.round(centre * SUB).astype(int) % SUB
         fit = solve(target, (int(at[0]), int(at[1])), shapes, rules)
-    middle = turned_middle(fit, turns)
+    middle = rotate_middle(fit, turns)
     xy = np.floor(centre - middle + 0.5 - TIE).astype(int)
     numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
     design = Design(np.array([*xy, base]), numbers, (numbers > 0).astype(np.int16), shapes)
@@ -284,7 +284,7 @@ def design_of_cells(
     return CellsDesign(design, np.where(shift, np.clip(blocks, design.low, last), blocks), fit)
 
 
-def kinds_of_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozenset[str]:
+def kinds_for_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozenset[str]:
     """Return the kinds that suit an object: an upright sheet takes no stairs, which fray it.
 
     Where no panel exists in its colour it is of full blocks. ``side`` is a cell's, in blocks.
@@ -325,7 +325,7 @@ def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: boo
     ends = flush and _ends_flush(tall)
     goal = np.ceil(tall - TIE) if ends else max(np.floor(2 * tall + 0.5) / 2, 0.5)
     factor = (goal - bottom / SUB) / (side * last)
-    if LEAST <= factor <= MOST:
+    if MIN_STRETCH <= factor <= MAX_STRETCH:
         sides[2] = side * factor
     return Body(sides, middle, (phase[0], phase[1]), ends)
 
@@ -340,7 +340,7 @@ def _bulk(mask: np.ndarray, axis: int) -> tuple[int, int]:
 def _whole(size: float) -> tuple[float, float]:
     """Return the blocks that a size is stretched to and the factor; 0 where none is near."""
     for blocks in (np.floor(size + 0.5), np.floor(2 * size + 0.5) / 2):
-        if blocks and LEAST <= blocks / size <= MOST:
+        if blocks and MIN_STRETCH <= blocks / size <= MAX_STRETCH:
             return float(blocks), float(blocks / size)
     return 0.0, 1.0
 
@@ -382,24 +382,24 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
     return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)
 
 
-def solids_of(
-    placements: Sequence[Placement], held: Mapping[int, np.ndarray], coats: Coats
+def make_solids(
+    placements: Sequence[Placement], held: Mapping[int, np.ndarray], coats: ColourSource
 ) -> dict[int, Solid]:
     """Return what placements are fitted to, copies alike, by the id of each."""
     solids: dict[int, Solid] = {}
     for one in placements:
         if len(held[id(one)]):
             cells, _ = coats.with_tops(held[id(one)])
-            inner = inner_cells(cells, coats.grid, one.class_id)
-            solids[id(one)] = solid_of(cells, inner, one.quarter_turns)
-    return shared_solids(solids, {id(one): one.class_id for one in placements})
+            inner = enclosed_cells(cells, coats.grid, one.class_id)
+            solids[id(one)] = make_solid(cells, inner, one.quarter_turns)
+    return share_solids(solids, {id(one): one.class_id for one in placements})
 
 
-def well_fitted(
+def good_fits(
     placements: Sequence[Placement],
     held: Mapping[int, np.ndarray],
     solids: Mapping[int, Solid],
-    coats: Coats,
+    coats: ColourSource,
     lattice: Lattice,
     kinds_of: Callable[[np.ndarray, Placement], frozenset[str]],
 ) -> dict[int, CellsDesign]:
@@ -414,7 +414,7 @@ def well_fitted(
     lost: set[str] = set()
     for one in (one for one in placements if one.template != OWN_CELLS and id(one) in solids):
         cells, hues = coats.with_tops(held[id(one)])
-        kinds = kinds_of_sheet(kinds_of(hues, one), solids[id(one)], side)
+        kinds = kinds_for_sheet(kinds_of(hues, one), solids[id(one)], side)
         flush = one.class_id in LAID_ON
         of_cells = (
             cells,
@@ -424,10 +424,10 @@ def well_fitted(
             kinds,
             True,
             flush,
-            one.class_id in HUNG,
+            one.class_id in WALL_MOUNTED,
         )
-        fit = design_of_cells(*of_cells) if kinds & BULKY else None
-        if fit and fit.fit.iou >= LEAST_IOU and fit.fit.thin_recall >= LEAST_THIN:
+        fit = fit_cells(*of_cells) if kinds & BULKY else None
+        if fit and fit.fit.iou >= MIN_IOU and fit.fit.thin_recall >= MIN_THIN:
             made[id(one)] = fit
         elif one.class_id == SemanticClass.CHAIR:
             lost.add(one.template)

@@ -5,20 +5,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.worktops import top_cells
+from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.geometry.morphology import dilate_faces
 
 
-class Hues(NamedTuple):
+class ColourSamples(NamedTuple):
     """The cells that colour a thing, and the block that each of them colours."""
 
     cells: np.ndarray  # int [N, 3]
     blocks: np.ndarray  # int [N, 3], of the lattice
 
 
-class Coats:
+class ColourSource:
     """The colours of a room's cells, as things take them."""
 
     def __init__(
@@ -44,7 +44,7 @@ class Coats:
             return cells, cells
         if np.bincount(self.grid.labels[tuple(cells.T)]).argmax() == SemanticClass.CHAIR:
             return cells, cells
-        added, alike = top_cells(self.grid, cells)
+        added, alike = missing_top_cells(self.grid, cells)
         return np.concatenate([cells, added]), np.concatenate([cells, alike])
 
     def stretched(
@@ -61,9 +61,9 @@ class Coats:
         share = (centres - placement.center_m) / size + 0.5
         near = (np.abs(share - 0.5) <= 0.5 + self.grid.voxel_m / size).all(1)
         blocks = np.floor(share[near] * np.array(shape)).astype(int)
-        return Hues(hues[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
+        return ColourSamples(hues[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
 
-    def colours_of(self, hues: "Hues") -> tuple[np.ndarray, np.ndarray]:
+    def colours_of(self, hues: "ColourSamples") -> tuple[np.ndarray, np.ndarray]:
         """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
         at = tuple(hues.cells.T)
         usable = self.coloured[at] & self.exposed[at]

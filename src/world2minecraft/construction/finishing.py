@@ -35,10 +35,12 @@ UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
 SHAPES = ("_stairs", "_slab", "_trapdoor", "_fence_gate", "_fence", "_wall", "_carpet", "_bed",
           "_door", "_button", "_pressure_plate", "_wall_sign", "_sign", "_wall_banner", "_banner",
           "_pane", "_candle", "_log", "_wood")  # fmt: skip
-MOST = 0.5  # Of a block: what fills more of it becomes a full block, what fills less goes.
+MIN_FULL_SHARE = (
+    0.5  # Of a block: what fills more of it becomes a full block, what fills less goes.
+)
 
 
-def connect(canvas: Canvas) -> None:
+def connect_neighbours(canvas: Canvas) -> None:
     """Give all that joins its neighbours its connections and shape, in place."""
     states, palette = connected(grid_to_block_axes(canvas.states), canvas.palette)
     known = len(canvas.palette)
@@ -46,7 +48,7 @@ def connect(canvas: Canvas) -> None:
     canvas.states[:] = block_axes_to_grid(numbers[states])
 
 
-def settle(canvas: Canvas) -> int:
+def apply_block_updates(canvas: Canvas) -> int:
     """Connect a canvas and take away, in place, what would fall, pop off, break or flow.
 
     Returns:
@@ -54,7 +56,7 @@ def settle(canvas: Canvas) -> int:
     """
     taken = 0
     for _ in range(ROUNDS):
-        connect(canvas)
+        connect_neighbours(canvas)
         blocks = grid_to_block_axes(canvas.states)
         loose = [
             cell
@@ -70,7 +72,7 @@ def settle(canvas: Canvas) -> int:
     return taken
 
 
-def restrict(canvas: Canvas, palette: Palette) -> None:
+def restrict_to_palette(canvas: Canvas, palette: Palette) -> None:
     """Replace all that stands on a canvas and is none of the palette's blocks, in place."""
     if palette.only is None:
         return
@@ -111,7 +113,7 @@ def _replacement(state: str, only: frozenset[str]) -> str:
         whole = [one for one in whole if "glass" in one] or whole
     else:
         whole = [one for one in whole if "glass" not in one] or whole
-    return _nearest(state, whole) if filled > MOST else AIR
+    return _nearest(state, whole) if filled > MIN_FULL_SHARE else AIR
 
 
 def _nearest(state: str, choices: list[str]) -> str:

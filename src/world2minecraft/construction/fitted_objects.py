@@ -23,7 +23,7 @@ TIE = 1e-6
 LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.
 
 
-def of_half_layers(layers: np.ndarray) -> np.ndarray:
+def halves_from_layers(layers: np.ndarray) -> np.ndarray:
     """Return halves, uint8 [X, Y, Z], of a bool array [X, Y, 2 Z] with two layers a block."""
     return (layers[:, :, 0::2] * LOWER + layers[:, :, 1::2] * UPPER).astype(np.uint8)
 
@@ -50,14 +50,14 @@ class Design(NamedTuple):
         return Design(low, numbers, np.where(numbers > 0, self.part[box], 0), self.shapes)
 
 
-def of_halves(low: np.ndarray, halves: np.ndarray, part: np.ndarray | None = None) -> Design:
+def design_of_halves(low: np.ndarray, halves: np.ndarray, part: np.ndarray | None = None) -> Design:
     """Return half blocks, uint8 [X, Y, Z], as a design of full blocks that begins at ``low``."""
     numbers = (halves > 0).astype(np.intp)
     own = numbers.astype(np.int16) if part is None else np.where(halves > 0, part, 0)
     return Design(low, numbers, own, shape_set(frozenset()))
 
 
-def one_block(place: np.ndarray) -> Design:
+def single_block_design(place: np.ndarray) -> Design:
     """Return a single full block at a place, int [3]."""
     ones = np.ones((1, 1, 1), np.intp)
     return Design(place, ones, ones.astype(np.int16), shape_set(frozenset()))
@@ -72,7 +72,7 @@ def design_of_parts(
     """
     sizes = placement.size_m * lattice.blocks_per_metre
     middle = lattice.coordinates_of(placement.center_m)
-    base, bottom = standing(middle[2] - sizes[2] / 2, lattice)
+    base, bottom = base_layer(middle[2] - sizes[2] / 2, lattice)
     counts, start = _plan(placement, sizes, middle)
     boxes = tuple(tuple(np.round(part.box_m, 4).tolist()) for part in parts)
     fit, part = _fit_of_parts(
@@ -80,7 +80,7 @@ def design_of_parts(
     )
     shapes, turns = shape_set(kinds), placement.quarter_turns
     numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
-    centre = turned_middle(fit, turns)
+    centre = rotate_middle(fit, turns)
     xy = np.floor(middle[:2] - centre + 0.5 - TIE).astype(int) if start is None else start
     return Design(np.array([*xy, base]), numbers, np.rot90(part, turns), shapes)
 
@@ -97,7 +97,7 @@ def _fit_of_parts(boxes, blocks_per_metre, kinds, counts, bottom, flush) -> Part
     )
 
 
-def turned_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
+def rotate_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
     """Return where the middle of a fit lies in its box after quarter turns, float64 [2]."""
     x, y = fit.middle.tolist()
     wide, long = fit.numbers.shape[:2]
@@ -106,7 +106,7 @@ def turned_middle(fit: Fit, quarter_turns: int) -> np.ndarray:
     return np.array([x, y])
 
 
-def standing(bottom: float, lattice: Lattice) -> tuple[int, int]:
+def base_layer(bottom: float, lattice: Lattice) -> tuple[int, int]:
     """Return the layer where something begins, and the sub-cell in it: whole or half a block."""
     half = float(np.floor(2 * bottom + 0.5) / 2)
     ground = float(lattice.ground_under(half))

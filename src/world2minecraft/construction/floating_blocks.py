@@ -20,7 +20,7 @@ CORD = "minecraft:chain[axis=y,waterlogged=false]"
 WAYS = ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1))
 
 
-def carry_floaters(canvas: Canvas) -> None:
+def support_floaters(canvas: Canvas) -> None:
     """Join floating parts of objects to what carries them, in place, or take them away.
 
     Parts touch by faces, edges or corners. A part is joined by the shortest straight way to

@@ -27,14 +27,14 @@ WALK_M, WALK_BLOCKS = 2.0, 2  # What stays free under a lamp: a person, and a pl
 TABLE_M = 1.45  # Over a table nobody walks.
 REACH_M = 2.6  # How far one lamp is taken to light. A guess: about 4 m between two.
 WALL_M = 0.5  # No lamp hangs nearer to a wall, unless the room is that narrow.
-MOST = 24  # Lamps a storey.
+MAX_LAMPS = 24  # Lamps a storey.
 CHAIN = "minecraft:chain[axis=y,waterlogged=false]"
 LANTERN = "minecraft:lantern[hanging=true,waterlogged=false]"
 SHADE = "minecraft:sea_lantern"
 DOWNLIGHT = "minecraft:ochre_froglight[axis=y]"
 LEVEL = BRIGHTEST
-LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
-LEAST_CORNER = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
+MIN_LIGHT = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
+MIN_CORNER_LIGHT = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
 ABOVE_FLOOR = 2  # Over the head of a player that stands.
 SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
 APART = 6  # Blocks between lights that are added in one round.
@@ -95,7 +95,7 @@ def _places(canvas: Canvas, room: _Room) -> list[tuple[int, int]]:
         _take(places, clear, middle)
     reach = REACH_M * scale
     dark = clear & (away >= min(WALL_M * scale, away.max()))
-    while len(places) < MOST:
+    while len(places) < MAX_LAMPS:
         for place in places:
             dark &= _distance(dark.shape, place) > reach
         if not dark.any():
@@ -182,12 +182,12 @@ def _light_storey(canvas, gives, air, clear, footprint, ground, end) -> None:
         spots[offset::SPACING, offset::SPACING, min(z, top)] = True
     spots &= air & footprint[:, :, None]
     if (gives > 0).any():
-        spots &= spread_light(gives, clear) < LEAST  # Where a lamp shines none is needed.
+        spots &= spread_light(gives, clear) < MIN_LIGHT  # Where a lamp shines none is needed.
     gives[spots] = LEVEL
     walkable = walkable_cells(canvas.states, canvas.palette, footprint, ground)
     least = np.zeros(air.shape, np.uint8)
-    least[_air_of(air, walkable, footprint, (ground, top))] = LEAST_CORNER
-    least[:, :, ground][walkable] = LEAST
+    least[_air_of(air, walkable, footprint, (ground, top))] = MIN_CORNER_LIGHT
+    least[:, :, ground][walkable] = MIN_LIGHT
     _light_the_dark(gives, least, air, clear)
 
 

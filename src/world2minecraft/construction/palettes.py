@@ -16,7 +16,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from world2minecraft.construction.block_meanings import meanings_of
+from world2minecraft.construction.block_meanings import parse_meanings
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError, one_line
 from world2minecraft.core.files import plain_yaml, read_bytes
@@ -54,7 +54,7 @@ _LASTING = ("sandstone", "packed_ice", "blue_ice")
 _WEATHERING = ("copper",)
 
 
-class Cell(NamedTuple):
+class PieceBlock(NamedTuple):
     """One block of a piece of several: front-to-back, side, up from its first; its block."""
 
     at: tuple[int, int, int]
@@ -63,7 +63,7 @@ class Cell(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Piece:
+class FurniturePiece:
     """What stands for some templates.
 
     designs: the names of templates, or of families, that it stands for.
@@ -76,13 +76,13 @@ class Piece:
     """
 
     designs: tuple[str, ...]
-    cells: tuple[Cell, ...]
+    cells: tuple[PieceBlock, ...]
     fill: str = "one"
     facing: Literal["front", "back", "left", "right"] | None = None
     joins: str | None = None
 
 
-def piece_of(raw: Any) -> Piece:
+def parse_piece(raw: Any) -> FurniturePiece:
     """Return the piece that an entry of a palette file holds.
 
     Raises:
@@ -101,10 +101,12 @@ def piece_of(raw: Any) -> Piece:
     cells = tuple(_cell(one) for one in listed)
     if len(cells) > 1 and raw.get("fill", "one") != "one":
         raise ValueError("a piece of several cells cannot fill a place")
-    return Piece(tuple(designs), cells, raw.get("fill", "one"), raw.get("facing"), raw.get("joins"))
+    return FurniturePiece(
+        tuple(designs), cells, raw.get("fill", "one"), raw.get("facing"), raw.get("joins")
+    )
 
 
-def _cell(raw: Any) -> Cell:
+def _cell(raw: Any) -> PieceBlock:
     if not isinstance(raw, dict) or not isinstance(raw.get("id"), str):
         raise ValueError(f"a piece of furniture needs an id, such as mod:oak_chair, not {raw!r}")
     at = raw.get("at", [0, 0, 0])
@@ -117,7 +119,7 @@ def _cell(raw: Any) -> Cell:
     texts = {str(key): str(value).lower() for key, value in properties.items()}
     for kind in (WOODS[0], DYES[0]):
         BlockState(raw["id"].replace("{wood}", kind).replace("{dye}", kind), texts)
-    return Cell((at[0], at[1], at[2]), raw["id"], tuple(sorted(texts.items())))
+    return PieceBlock((at[0], at[1], at[2]), raw["id"], tuple(sorted(texts.items())))
 
 
 @dataclass(frozen=True)
@@ -154,7 +156,7 @@ def load_palette(name: str) -> Palette:
         InputError: the file is no palette; the message says what it lacks.
     """
     if name in PALETTE_FILES:
-        return source_of(name)
+        return load_shipped(name)
     if name.endswith(FILE_SUFFIXES):
         return read_palette(Path(name))
     if Path(name).is_file():
@@ -162,7 +164,7 @@ def load_palette(name: str) -> Palette:
     raise UnknownNameError("palette", name, PALETTE_FILES)
 
 
-def shipped(name: str) -> str:
+def shipped_palette_text(name: str) -> str:
     """Return the text of a palette file of the program."""
     source = files("world2minecraft.construction") / "data" / PALETTE_FILES[name]
     return source.read_text("utf-8")
@@ -181,18 +183,18 @@ def read_palette(path: Path) -> Palette:
         kind = "JSON" if path.suffix == ".json" else "YAML"
         raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error
     try:
-        return palette_of(raw)
+        return parse_palette(raw)
     except (ValueError, UsageError) as error:
         raise InputError(path, str(error)) from error
 
 
 @cache
-def source_of(name: str) -> Palette:
+def load_shipped(name: str) -> Palette:
     """Return a palette of the program by its name."""
-    return palette_of(json.loads(shipped(name)))
+    return parse_palette(json.loads(shipped_palette_text(name)))
 
 
-def palette_of(raw: Any) -> Palette:
+def parse_palette(raw: Any) -> Palette:
     """Return the palette that a palette file holds.
 
     Raises:
@@ -226,8 +228,8 @@ def palette_of(raw: Any) -> Palette:
         glass=_glass("glass", whole.get("glass"), only),
         pane=_glass("pane", whole.get("pane"), only),
         only=only,
-        furniture=tuple(piece_of(one) for one in _list("furniture", whole.get("furniture", []))),
-        meanings=meanings_of(whole["reads"]) if "reads" in whole else None,
+        furniture=tuple(parse_piece(one) for one in _list("furniture", whole.get("furniture", []))),
+        meanings=parse_meanings(whole["reads"]) if "reads" in whole else None,
     )
 
 
@@ -236,7 +238,7 @@ def _extended(keys: Mapping[str, Any]) -> dict[str, Any]:
     base = keys.get("extends", "vanilla")
     if base not in PALETTE_FILES:
         raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, not {base!r}")
-    below = json.loads(shipped(base))
+    below = json.loads(shipped_palette_text(base))
     if "extends" in below:
         below = _extended(below)
     result = dict(below)

@@ -10,7 +10,7 @@ SHAPES = ("calm", "cubes")
 CEILINGS = ("on", "off", "glass")
 LIGHTS = ("hidden", "off", "lamps")
 _YES, _NO = (True, "true", "yes", "1"), (False, "false", "no", "0")
-MOST_TEXT = 60  # Four lines of a sign hold about as many letters.
+MAX_TEXT = 60  # Four lines of a sign hold about as many letters.
 _DISTANCES = (
     "saturation",
     "preference",
@@ -104,9 +104,9 @@ class BuildParameters:
     def __post_init__(self):
         self._choose("ceiling", CEILINGS)
         self._choose("lights", LIGHTS)
-        if not (0 < len(self.plaque) <= MOST_TEXT and self.plaque.isprintable()):
+        if not (0 < len(self.plaque) <= MAX_TEXT and self.plaque.isprintable()):
             raise UsageError(
-                f"build.plaque must be auto, off, or up to {MOST_TEXT} letters, not {self.plaque!r}"
+                f"build.plaque must be auto, off, or up to {MAX_TEXT} letters, not {self.plaque!r}"
             )
         if self.edge not in EDGES:
             raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")

@@ -25,7 +25,7 @@ TOGGLE = "/function w2m:toggle_size"
 _FACINGS = ("north", "east", "south", "west")
 
 
-def with_plaque(volume: BlockVolume, name: str) -> BlockVolume:
+def add_plaque(volume: BlockVolume, name: str) -> BlockVolume:
     """Return a volume with a sign that says a name, or itself where no place is free for one.
 
     The sign carries class 0: it is no part of what was seen.

@@ -12,23 +12,27 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.construction.canvas import BARRIER, Canvas
-from world2minecraft.construction.cell_colours import spread
+from world2minecraft.construction.cell_colours import fill_colours
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
-from world2minecraft.construction.surface_painting import block_colours, painted, put_painted
+from world2minecraft.construction.surface_painting import (
+    block_colours,
+    paint_surface,
+    place_painted,
+)
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate
 
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
-LEAST_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
-MOST_SHARE = 0.6  # What covers more of a surface is the surface.
+MIN_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
+MAX_SHARE = 0.6  # What covers more of a surface is the surface.
 SURE_SHARE = 0.3  # Of a part that stands out. A guess: a picture's rim is half wall.
-LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
+MIN_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
 
 
-class Steps(NamedTuple):
+class PaintThresholds(NamedTuple):
     """From which differences on a block surely is of another paint, and from which it may be."""
 
     hue: float  # Oklab distance of hue and chroma at one lightness
@@ -39,13 +43,15 @@ class Steps(NamedTuple):
 
 
 # All 20 rugs of the generated rooms differ by 0.05 and more, planks of one floor by up to 0.03.
-RUG = Steps(0.04, np.inf, 0.03, np.inf, 0.5)
+RUG = PaintThresholds(0.04, np.inf, 0.03, np.inf, 0.5)
 # A picture is a mix of colours at 4 blocks a metre, darker than its wall by 0.25 to 0.3; a curtain
 # darkens the wall beside it by up to 0.19.
-PICTURE = Steps(0.04, 0.22, 0.015, 0.045, 0.3)
+PICTURE = PaintThresholds(0.04, 0.22, 0.015, 0.045, 0.3)
 
 
-def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: Steps) -> np.ndarray:
+def find_contrasting_parts(
+    mask: np.ndarray, colours: np.ndarray, step_m: float, steps: PaintThresholds
+) -> np.ndarray:
     """Return the parts of a flat surface that stand out, int32 [N], numbered from 1; 0: none.
 
     Args:
@@ -56,7 +62,7 @@ def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: St
     """
     places = np.argwhere(mask)
     flat = np.flatnonzero(np.ptp(places, axis=0) > 0) if len(places) else np.zeros(0, int)
-    if len(places) < LEAST_BLOCKS or len(flat) != 2:
+    if len(places) < MIN_BLOCKS or len(flat) != 2:
         return np.zeros(len(places), np.int32)
     at = places[:, flat] - places[:, flat].min(0)
     sure, maybe = _differ(at.astype(float), colours, steps)
@@ -66,13 +72,15 @@ def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: St
     parts, _ = label_components(wide, corners=False)
     sizes = np.bincount(parts.ravel())
     held = np.bincount(parts[sheet[0]], minlength=len(sizes))
-    good = (sizes * step_m**2 >= steps.least_m2) & (sizes <= MOST_SHARE * len(places))
+    good = (sizes * step_m**2 >= steps.least_m2) & (sizes <= MAX_SHARE * len(places))
     good &= held >= SURE_SHARE * sizes
     good[0] = False
     return np.where(good, np.arange(len(sizes)), 0).astype(np.int32)[parts[tuple(at.T)]]
 
 
-def _differ(at: np.ndarray, colours: np.ndarray, steps: Steps) -> tuple[np.ndarray, np.ndarray]:
+def _differ(
+    at: np.ndarray, colours: np.ndarray, steps: PaintThresholds
+) -> tuple[np.ndarray, np.ndarray]:
     """Return which blocks surely differ from the paint of most, and which may, bool [N] each."""
     lightness = np.maximum(colours[:, 0], 0.05)
     middle = np.median(lightness)
@@ -152,12 +160,12 @@ def _put_surface(
     parts = np.zeros(patch.shape, np.int32)
     if class_id in STAND_OUT and (known & patch).any():
         step_m = 1 / canvas.lattice.blocks_per_metre
-        colours = spread(tinted, known & patch, patch, np.zeros(3, np.float32))
-        parts[patch] = standing_out(patch, colours, step_m, STAND_OUT[class_id])
+        colours = fill_colours(tinted, known & patch, patch, np.zeros(3, np.float32))
+        parts[patch] = find_contrasting_parts(patch, colours, step_m, STAND_OUT[class_id])
     around: frozenset[str] = frozenset()
     for part in np.unique(parts[patch]).tolist():
         mask = patch & (parts == part)
-        states = painted(
+        states = paint_surface(
             mask,
             tinted,
             known & (mask if (known & mask).any() else patch),
@@ -168,7 +176,7 @@ def _put_surface(
             beside=around,
             used=used,
         )
-        put_painted(canvas, mask, states, class_id)
+        place_painted(canvas, mask, states, class_id)
         around = around or frozenset(states.tolist())
     return around
 
@@ -177,7 +185,7 @@ def _patches(mask: np.ndarray, numbers: np.ndarray):
     """Yield the surfaces of a mask; the small ones come together as one."""
     held = numbers[mask]
     counts = np.bincount(held, minlength=int(numbers.max()) + 1)
-    small = counts < LEAST_PATCH
+    small = counts < MIN_PATCH
     if (small[held]).any():
         yield mask & small[numbers]
     for number in np.flatnonzero(~small):

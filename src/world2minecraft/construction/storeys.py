@@ -13,11 +13,11 @@ from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 
-LEAST_HEIGHT_M = 1.9  # Between two floors: under a loft one still has to stand.
-LEAST_AREA_M2 = 2.0
-LEAST_SHARE = 0.15  # Of the largest floor's area: a podium is none.
+MIN_HEIGHT_M = 1.9  # Between two floors: under a loft one still has to stand.
+MIN_AREA_M2 = 2.0
+MIN_SHARE = 0.15  # Of the largest floor's area: a podium is none.
 SLAB_M = 0.4  # Layers of one floor lie no farther apart.
-LEAST_BLOCKS = 3  # A floor, and two blocks to stand in.
+MIN_BLOCKS = 3  # A floor, and two blocks to stand in.
 
 
 def upper_floors_m(grid: OccupancyGrid) -> list[float]:
@@ -27,7 +27,7 @@ def upper_floors_m(grid: OccupancyGrid) -> list[float]:
     """
     area_m2 = (grid.labels == SemanticClass.FLOOR).sum(axis=(0, 1)) * grid.voxel_m**2
     tops_m = grid.origin_m[2] + np.arange(1, grid.shape[2] + 1) * grid.voxel_m
-    least = max(LEAST_AREA_M2, LEAST_SHARE * float(area_m2.max(initial=0)))
+    least = max(MIN_AREA_M2, MIN_SHARE * float(area_m2.max(initial=0)))
     layers = np.flatnonzero(area_m2 >= least)
     levels = [0.0]
     for slab in np.split(layers, np.flatnonzero(np.diff(tops_m[layers]) > SLAB_M) + 1):
@@ -35,18 +35,18 @@ def upper_floors_m(grid: OccupancyGrid) -> list[float]:
             continue
         full = slab[area_m2[slab] >= 0.5 * area_m2[slab].max()]
         top = float(tops_m[full[-1]])
-        if top - levels[-1] >= LEAST_HEIGHT_M:
+        if top - levels[-1] >= MIN_HEIGHT_M:
             levels.append(top)
     return levels[1:]
 
 
-def with_storeys(lattice: Lattice, grid: OccupancyGrid) -> Lattice:
+def add_storeys(lattice: Lattice, grid: OccupancyGrid) -> Lattice:
     """Return the lattice, which knows where the upper storeys of the grid begin."""
     grounds: list[int] = []
     for height_m in upper_floors_m(grid):
         level = lattice.ground + round(height_m * lattice.blocks_per_metre)
         below = grounds[-1] if grounds else lattice.ground
-        level = max(level, below + LEAST_BLOCKS)
+        level = max(level, below + MIN_BLOCKS)
         if level < lattice.shape[2]:
             grounds.append(level)
     return replace(lattice, upper=tuple(grounds))

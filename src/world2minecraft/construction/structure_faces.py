@@ -14,7 +14,7 @@ from world2minecraft.construction.lattice import Lattice, overlaps, summed
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.types import OccupancyGrid
 
-LEAST_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wall. A guess.
+MIN_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wall. A guess.
 
 
 class Faces(NamedTuple):
@@ -68,7 +68,7 @@ def _spread_wide(faces: np.ndarray, voxel_m: float) -> np.ndarray:
     Of the places sideways, a quarter of a metre each way, most of one side's must have a face
     too, at about the same depth and height.
     """
-    reach = max(1, round(LEAST_WIDTH_M / voxel_m))
+    reach = max(1, round(MIN_WIDTH_M / voxel_m))
     near = ndimage.maximum_filter(faces.astype(np.uint8), size=(3, 1, 3))
     counts = ndimage.convolve1d(
         near.astype(np.int32), np.ones(2 * reach + 1, np.int32), axis=1, mode="constant"

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.construction.colour_sources import Coats, Hues
+from world2minecraft.construction.colour_sources import ColourSamples, ColourSource
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Span, Template, template, templates_of
@@ -23,8 +23,10 @@ PLANT = "plant"
 GREEN_HUE_DEG, GREEN_CHROMA = (105.0, 165.0), 0.04  # Oklab; leaves in sun and shade.
 
 
-def known_by_shape(
-    placements: Sequence[Placement], cells_of: Callable[[Placement], np.ndarray], coats: Coats
+def substitute_templates(
+    placements: Sequence[Placement],
+    cells_of: Callable[[Placement], np.ndarray],
+    coats: ColourSource,
 ) -> list[Placement]:
     """Return the placements, those that their cells would not show by a design of the library.
 
@@ -37,13 +39,13 @@ def known_by_shape(
     renewed = []
     for one in placements:
         cells = cells_of(one)
-        colours, usable = coats.colours_of(Hues(cells, cells))
+        colours, usable = coats.colours_of(ColourSamples(cells, cells))
         colour = np.median(colours[usable], axis=0) if usable.any() else None
-        renewed.append(stand_in(one, count[one.object_id] == 1, colour))
+        renewed.append(substitute_template(one, count[one.object_id] == 1, colour))
     return renewed
 
 
-def stand_in(placement: Placement, alone: bool, colour: np.ndarray | None) -> Placement:
+def substitute_template(placement: Placement, alone: bool, colour: np.ndarray | None) -> Placement:
     """Return a placement by a design of its class where its own cells would show nothing.
 
     Args:

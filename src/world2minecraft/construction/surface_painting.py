@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.cell_colours import default_colour, group_medians, spread
+from world2minecraft.construction.cell_colours import block_colour, fill_colours, group_medians
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import STRUCTURE_CLASSES, SemanticClass
@@ -23,8 +23,8 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import colours_of
 
-LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
-LEAST_BLOCKS = 3.0
+MIN_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
+MIN_BLOCKS = 3.0
 ROUNDS = 4
 # A blue chair may be a stronger blue, but not purple: hue counts more than chroma.
 CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
@@ -42,10 +42,10 @@ MIN_HUE_CHROMA, MIN_HUE_SHARE = (
     0.3,
 )  # Over sensor noise; grey cushions leave so much of a frame.
 NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
-TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
+DISTINGUISHABLE = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
 
-def costs_of(
+def colour_costs(
     colours: np.ndarray,
     candidates: Sequence[str],
     lightness_weight: float,
@@ -74,13 +74,13 @@ def costs_of(
     return (np.sqrt(apart) + handicaps.astype(np.float32) + faded) ** 2
 
 
-def choose_few(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
+def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
     """Return the columns of ``costs`` [N, M] that serve all rows best, ``most`` at the most.
 
     Greedy: the column that serves all best, then each next one that saves more than it costs;
     one must be worth it for as many blocks as make a part, at the Oklab distance ``noticed``.
     """
-    price = noticed**2 * max(LEAST_BLOCKS, LEAST_PART * len(costs))
+    price = noticed**2 * max(MIN_BLOCKS, MIN_PART * len(costs))
     chosen = [int(costs.sum(0).argmin())]
     served = costs[:, chosen[0]].copy()
     while len(chosen) < most:
@@ -107,7 +107,7 @@ def neighbour_table(positions: np.ndarray) -> np.ndarray:
     return np.where(ordered[found] == wanted, order[found], len(positions))
 
 
-def calm(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
+def smooth_blocks(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
     """Return a column of ``costs`` [N, M] for each block, neighbours agreeing where they can.
 
     Blocks of even and of odd places take turns, so that no two neighbours change at once.
@@ -164,11 +164,11 @@ def paint(
         return np.zeros(0, np.intp)
     stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
     extra = np.zeros(len(candidates)) if handicaps is None else handicaps
-    sample = costs_of(colours[::stride], candidates, lightness_weight, extra, fading)
-    few = choose_few(sample, most, noticed)
+    sample = colour_costs(colours[::stride], candidates, lightness_weight, extra, fading)
+    few = choose_blocks(sample, most, noticed)
     offered = [str(candidates[index]) for index in few]
-    costs = costs_of(colours, offered, lightness_weight, extra[few], fading)
-    parts = calm(costs, positions, calm_step)
+    costs = colour_costs(colours, offered, lightness_weight, extra[few], fading)
+    parts = smooth_blocks(costs, positions, calm_step)
     weight = lightness_weight if match_weight is None else match_weight
     parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
     matched = _matched(parts, colours, candidates, weight, extra, fading)
@@ -187,7 +187,7 @@ def _matched(
 ) -> np.ndarray:
     """Return the candidate nearest to the median of each part, intp [parts]."""
     medians, _ = group_medians(parts, colours, int(parts.max()) + 1)
-    return costs_of(medians, candidates, weight, handicaps, fading).argmin(1)
+    return colour_costs(medians, candidates, weight, handicaps, fading).argmin(1)
 
 
 def _joined(
@@ -276,7 +276,7 @@ def block_colours(
     return result.reshape((*shape, 3)), known.reshape(shape)
 
 
-def painted(
+def paint_surface(
     mask: np.ndarray,
     colours: np.ndarray,
     known: np.ndarray,
@@ -313,7 +313,7 @@ def painted(
         handicaps += [NEW_PAINT * (block not in used) for block in choices]
     shell, weight = class_id in STRUCTURE_CLASSES, parameters.lightness_weight
     index = paint(
-        spread(colours, known & mask, mask, default_colour(default)),
+        fill_colours(colours, known & mask, mask, block_colour(default)),
         np.argwhere(mask),
         choices,
         most=most,
@@ -333,13 +333,13 @@ def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]
         return choices
     offered = srgb_to_oklab(colours_of(choices))
     others = srgb_to_oklab(colours_of(sorted(beside)))
-    apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= TOLD_APART
+    apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= DISTINGUISHABLE
     return tuple(np.array(choices)[apart].tolist()) or choices
 
 
-def put_painted(
+def place_painted(
     canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance: int = 0
 ) -> None:
-    """Set the blocks of a mask to the states that ``painted`` gave for it."""
+    """Set the blocks of a mask to the states that ``paint_surface`` gave for it."""
     names, index = np.unique(states.astype(str), return_inverse=True)
     canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id, instance)

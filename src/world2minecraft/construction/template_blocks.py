@@ -11,12 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.fitted_objects import Design, of_half_layers
+from world2minecraft.construction.fitted_objects import Design, halves_from_layers
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.materials import WEIGHTS, materials_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import painted
+from world2minecraft.construction.surface_painting import paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import Placement
@@ -26,10 +26,10 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.minecraft.block_colours import colours_of
 
-LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
+LATE_RANKS = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
-GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
-MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+MAX_COLOUR_LOSS = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
+MAX_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
 TIE = 1e-6
 POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
@@ -45,14 +45,14 @@ def within_storeys(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarr
     return within
 
 
-def in_order(placement: Placement) -> tuple:
+def placement_order(placement: Placement) -> tuple:
     """Large furniture first, then chairs, then what stands on things; templates before cells."""
-    rank = LAST.get(placement.class_id, 0)
+    rank = LATE_RANKS.get(placement.class_id, 0)
     own = placement.template == OWN_CELLS
     return rank, own, placement.object_id, placement.center_m.tolist(), placement.template
 
 
-class Dresser:
+class ShapePainter:
     """Finds the blocks of shapes in a palette."""
 
     def __init__(self, palette: Palette, parameters: BuildParameters):
@@ -63,7 +63,7 @@ class Dresser:
         """Return the kinds of shape that exist in the Oklab colours, [N, 3], of an object."""
         if self.parameters.shapes == "cubes":
             return frozenset(("full",))
-        few = colours[:: 1 + len(colours) // MOST_COLOURS]
+        few = colours[:: 1 + len(colours) // MAX_COLOURS]
         full = self.palette.blocks[class_id]
         preferred = self.palette.preferred[class_id] or full
         handicaps = np.array([self.parameters.preference * (one not in preferred) for one in full])
@@ -87,9 +87,9 @@ class Dresser:
         plain = np.empty(design.numbers.shape, object)
         own, able = plain.copy(), self.materials.in_all(used, full)
         if able and shaped.any():
-            own[shaped] = painted(shaped, colours, known & shaped, *choice, only=able)
+            own[shaped] = paint_surface(shaped, colours, known & shaped, *choice, only=able)
         alike = frozenset(own[shaped].tolist()) if able else frozenset()
-        plain[design.filled] = painted(design.filled, colours, known, *choice, used=alike)
+        plain[design.filled] = paint_surface(design.filled, colours, known, *choice, used=alike)
         if not able:
             own = plain
         result = plain.copy()
@@ -106,7 +106,7 @@ class Dresser:
         offered = srgb_to_oklab(colours_of([block, other]))
         light = np.sqrt(self.parameters.lightness_weight)
         apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
-        return bool(apart[0] - apart[1] <= GIVEN_UP)
+        return bool(apart[0] - apart[1] <= MAX_COLOUR_LOSS)
 
 
 class HalfBlockDesign(NamedTuple):
@@ -201,7 +201,7 @@ def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
 
 def _turned(owner, posts, low, quarter_turns) -> HalfBlockDesign:
     owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
-    halves = of_half_layers(owner > 0)
+    halves = halves_from_layers(owner > 0)
     upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
     part = np.where(upper > 0, upper, lower)
     return HalfBlockDesign(low, halves, part, posts[:, :, 0::2] & posts[:, :, 1::2])

@@ -5,21 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.cell_colours import cell_colours, one_paint, seen_colours
+from world2minecraft.construction.cell_colours import cell_colours, coloured_cells, unify_paints
 from world2minecraft.construction.display.builder import DisplayBuilder
-from world2minecraft.construction.finishing import restrict, settle
-from world2minecraft.construction.floating_blocks import carry_floaters, close_gaps
+from world2minecraft.construction.finishing import apply_block_updates, restrict_to_palette
+from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
 from world2minecraft.construction.lattice import is_exact, lattice_over, snapped_corner_m
 from world2minecraft.construction.lighting import hang_lamps, put_lights
-from world2minecraft.construction.objects import ObjectBuilder
+from world2minecraft.construction.mod_furniture import place_mod_furniture
+from world2minecraft.construction.object_builder import ObjectBuilder
 from world2minecraft.construction.palettes import Palette, load_palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.plaque import SIGN, WALL_SIGN, with_plaque
+from world2minecraft.construction.plaque import SIGN, WALL_SIGN, add_plaque
 from world2minecraft.construction.shell import put_edge, put_shell
-from world2minecraft.construction.storeys import with_storeys
+from world2minecraft.construction.storeys import add_storeys
 from world2minecraft.construction.structure import build_shell
-from world2minecraft.construction.user_furniture import put_own_furniture
-from world2minecraft.construction.voxel_blocks import put_cells_exactly
+from world2minecraft.construction.voxel_blocks import place_voxels
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
@@ -56,28 +56,28 @@ def build_volume(
     if not 0 < blocks_per_metre < 1e4:
         raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
     corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
-    canvas = Canvas(with_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
+    canvas = Canvas(add_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)
     colours = cell_colours(grid, chosen.expose, chosen.saturation)
-    coloured = seen_colours(grid)
+    coloured = coloured_cells(grid)
     source = (grid, colours, coloured, palette, chosen)
     if is_exact(grid, blocks_per_metre):
-        footprints = put_cells_exactly(canvas, *source)
+        footprints = place_voxels(canvas, *source)
     else:
         footprints = _put_room(canvas, placements, instances, *source)
-    restrict(canvas, palette)
-    settle(canvas)
+    restrict_to_palette(canvas, palette)
+    apply_block_updates(canvas)
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
     if chosen.lights == "lamps" and not is_exact(grid, blocks_per_metre):
         hang_lamps(canvas, footprints, palette)
     if chosen.lights != "off":
         put_lights(canvas, footprints)
-    restrict(canvas, palette)
+    restrict_to_palette(canvas, palette)
     volume = canvas.volume()
     text = {"auto": name, "off": ""}.get(chosen.plaque, chosen.plaque)
     allowed = palette.allows(SIGN) and palette.allows(WALL_SIGN)
-    return with_plaque(volume, text) if text and allowed else volume
+    return add_plaque(volume, text) if text and allowed else volume
 
 
 def _put_room(
@@ -95,15 +95,15 @@ def _put_room(
     put_shell(canvas, shell, colours, coloured, palette, parameters)
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
-    painted[things] = one_paint(colours[things])
+    painted[things] = unify_paints(colours[things])
     if parameters.style == "display":
         source = (grid, painted, coloured, palette, parameters)
         DisplayBuilder(canvas, *source, instances).put_all(placements)
         return shell.footprints
     builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
     source = (placements, painted, grid, builder.within)
-    builder.put_all(put_own_furniture(canvas, palette.furniture, *source))
-    carry_floaters(canvas)
+    builder.put_all(place_mod_furniture(canvas, palette.furniture, *source))
+    support_floaters(canvas)
     close_gaps(canvas)
     return shell.footprints
 

@@ -7,12 +7,12 @@ from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
-from world2minecraft.construction.surface_painting import painted
+from world2minecraft.construction.surface_painting import paint_surface
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.geometry.morphology import dilate, fill_holes
 
 
-def put_cells_exactly(
+def place_voxels(
     canvas: Canvas,
     grid: OccupancyGrid,
     colours: np.ndarray,
@@ -38,7 +38,7 @@ def put_cells_exactly(
         if class_id == WINDOW:
             states[mask] = canvas.id_of(palette.glass)
             continue
-        chosen = painted(mask, colours, coloured, class_id, palette, parameters, limit)
+        chosen = paint_surface(mask, colours, coloured, class_id, palette, parameters, limit)
         names, index = np.unique(chosen.astype(str), return_inverse=True)
         states[mask] = canvas.ids_of(names.tolist())[index]
     canvas.states[inside] = states

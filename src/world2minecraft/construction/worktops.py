@@ -29,19 +29,19 @@ from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
 REACH_M = 0.7  # How far from the rim: the depth of a worktop.
-LEAST_RIM_M = 0.3  # Lower things are no furniture with a top.
-LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
-LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.
+MIN_RIM_M = 0.3  # Lower things are no furniture with a top.
+MIN_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
+MIN_M, MAX_M = 0.6, 1.3  # Heights at which one works standing or sitting.
 FRONT_APART = 0.12  # Oklab distance to the front from which a cell at the rim is no part of it.
 DARK_SHARE = 0.25  # Of the cells at the rim that are no front. Things that lie on it are lighter.
-LEAST_RIM = 8  # Cells; fewer say nothing of the colour.
+MIN_RIM = 8  # Cells; fewer say nothing of the colour.
 COVERED = 0.2  # Share of a block's face: a rim of one cell counts.
 GAP_CELLS = 2  # Things that lie on a top hide it.
 PILLAR_CELLS = 3  # Own cells that go on so far above and below are no top.
 PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 
 
-def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def missing_top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return unseen cells that close the top of an object, and cells that look like them.
 
     Args:
@@ -85,7 +85,7 @@ def _joined_to(
     """Return an object's own tall cells and the steps that join it, bool in the box of steps."""
     reach = max(1, round(REACH_M / grid.voxel_m))
     body = np.zeros(steps.shape, bool)
-    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
+    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= MIN_RIM_M
     body[tuple((cells[tall] - low).T)] = True
     return body, _joined(steps, dilate(body, (0, 0, RIM_LAYERS)), reach)
 
@@ -137,14 +137,14 @@ def find_worktop(
         return None
     steps = step_cells(grid, cells)
     heights = grid.origin_m[2] + (steps[:, 2] + 1) * grid.voxel_m
-    steps = steps[(heights >= LEAST_M) & (heights <= MOST_M)]
-    if len(steps) * grid.voxel_m**2 < LEAST_M2:
+    steps = steps[(heights >= MIN_M) & (heights <= MAX_M)]
+    if len(steps) * grid.voxel_m**2 < MIN_M2:
         return None
     level = int(np.bincount(steps[:, 2]).argmax())
     steps = steps[np.abs(steps[:, 2] - level) <= 1]
     rim = cells[(cells[:, 2] >= level) & (cells[:, 2] <= level + 2)]
     front = cells[cells[:, 2] < level - 1]
-    if len(steps) * grid.voxel_m**2 < LEAST_M2 or not len(front):
+    if len(steps) * grid.voxel_m**2 < MIN_M2 or not len(front):
         return None
     dark = _rim_of(rim, front, colours, coloured)
     if dark is None:
@@ -161,7 +161,7 @@ def find_worktop(
     return Worktop(columns, layer, half, colour, float(top), plan)
 
 
-def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
+def join_worktops(tops: dict[int, Worktop]) -> dict[int, Worktop]:
     """Return the worktops with those that touch at about one height of one height and colour.
 
     The arms of an L are objects of their own, yet one plate lies over both. The larger part says
@@ -197,7 +197,7 @@ def _rim_of(
         return None
     middle = np.median(colours[tuple(front.T)], axis=0)
     rim = rim[np.linalg.norm(colours[tuple(rim.T)] - middle, axis=1) >= FRONT_APART]
-    if len(rim) * DARK_SHARE < LEAST_RIM:
+    if len(rim) * DARK_SHARE < MIN_RIM:
         return None
     order = np.argsort(colours[tuple(rim.T)][:, 0], kind="stable")
     return rim[order[: int(len(rim) * DARK_SHARE)]]
@@ -214,7 +214,7 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
     return binary_closing(plan, (GAP_CELLS, GAP_CELLS))
 
 
-class Plates:
+class PlateBuilder:
     """The worktops of a room by the number of their object."""
 
     def __init__(self, canvas: Canvas, palette: Palette):
@@ -228,7 +228,7 @@ class Plates:
             top = find_worktop(grid, cells, colours, coloured, self.lattice)
             if number and top is not None:
                 self.worktops[int(number)] = top
-        self.worktops = joined(self.worktops)
+        self.worktops = join_worktops(self.worktops)
         if self.lattice.blocks_per_metre < PLATES_FROM:
             return
         for number, top in self.worktops.items():

@@ -1,1 +1,1 @@
-"""Edits of blocks: done, undone, kept in a journal; clean-up; building into a user's world."""
+"""Editing of blocks and scenes with undo, clean-up of builds, and building into game worlds."""

@@ -1,10 +1,10 @@
-"""Files of a world replaced with a backup, so that any step can be taken back, byte by byte.
+"""Replacement of files of a world with backups, so that any step can be undone byte by byte.
 
-A step lies in ``WORLD/w2m_undo/0001``: ``old/`` the files as they were, ``new/`` those to come,
-``manifest.json`` their names and checksums, ``editing.journal`` the blocks. Nothing of the world is
-touched before the manifest is there; then each file is exchanged by one rename; then the manifest
-says ``done``. So whatever the moment at which the program is killed, either nothing was touched or
-the manifest tells what to bring back, and the next command does so (``recover``).
+A step lies in ``WORLD/w2m_undo/0001``: ``old/`` the files before it, ``new/`` the files to come,
+``manifest.json`` their names and checksums, ``edit.journal`` the blocks. Nothing of the world is
+touched before the manifest exists; then each file is exchanged by one rename; then the manifest is
+marked ``done``. Whenever the program is killed, either nothing was touched or the manifest states
+what to restore, and the next command does so (``recover``).
 """
 
 import hashlib
@@ -47,7 +47,7 @@ class FileChange:
 
 @dataclass(frozen=True)
 class Step:
-    """A step that was done to a world, as its manifest tells."""
+    """A step that was done to a world, as its manifest describes it."""
 
     folder: Path
     state: str
@@ -244,8 +244,8 @@ def _check_backups(step: Step) -> None:
 def _mark(step: Step, state: str) -> Step:
     marked = replace(step, state=state)
     entries = [vars(entry) for entry in step.files]
-    told = {"state": state, "what": step.what, "files": entries, "made": list(step.made)}
-    write_json(step.folder / MANIFEST, told)
+    content = {"state": state, "what": step.what, "files": entries, "made": list(step.made)}
+    write_json(step.folder / MANIFEST, content)
     return marked
 
 

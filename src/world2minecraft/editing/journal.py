@@ -34,8 +34,8 @@ def pack_edit(edit: BlockEdit) -> bytes:
             "instance": -1 if edit.instance is None else edit.instance,
             "palette": list(edit.palette),
             "cells": np.ascontiguousarray(edit.cells.ravel(), np.int32),
-            "before": _packed(edit.before),
-            "after": _packed(edit.after),
+            "before": _pack_blocks(edit.before),
+            "after": _pack_blocks(edit.after),
         }
     )
 
@@ -56,17 +56,17 @@ def unpack_edit(data: bytes, path: str | Path) -> BlockEdit:
             kind=root["kind"],
             cells=np.asarray(root["cells"], np.int32).reshape(-1, 3),
             palette=tuple(map(str, root["palette"])),
-            before=_unpacked(root["before"]),
-            after=_unpacked(root["after"]),
+            before=_unpack_blocks(root["before"]),
+            after=_unpack_blocks(root["after"]),
             reason=str(root["reason"]),
-            class_id=_number(root["class_id"]),
-            instance=_number(root["instance"]),
+            class_id=_none_if_negative(root["class_id"]),
+            instance=_none_if_negative(root["instance"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DamagedFileError(path, f"holds no edit of blocks ({error})") from error
 
 
-def _packed(blocks: Blocks) -> dict[str, Any]:
+def _pack_blocks(blocks: Blocks) -> dict[str, Any]:
     return {
         "states": blocks.states.astype(np.int32),
         "semantic": blocks.semantic.view(np.int8),
@@ -88,17 +88,18 @@ def _packed(blocks: Blocks) -> dict[str, Any]:
     }
 
 
-def _unpacked(held: Mapping[str, Any]) -> Blocks:
+def _unpack_blocks(held: Mapping[str, Any]) -> Blocks:
     return Blocks(
-        states=_small(held["states"]),
+        states=_as_uint16(held["states"]),
         semantic=np.asarray(held["semantic"], np.int8).view(np.uint8),
-        instance=_small(held["instance"]),
+        instance=_as_uint16(held["instance"]),
         block_entities=tuple(
-            BlockEntity(_three(e["pos"], int), str(e["id"]), dict(e["nbt"])) for e in held["data"]
+            BlockEntity(_as_triple(e["pos"], int), str(e["id"]), dict(e["nbt"]))
+            for e in held["data"]
         ),
         entities=tuple(
             Entity(
-                _three(e["pos"], float),
+                _as_triple(e["pos"], float),
                 str(e["id"]),
                 dict(e["nbt"]),
                 int(e["class_id"]),
@@ -109,19 +110,19 @@ def _unpacked(held: Mapping[str, Any]) -> Blocks:
     )
 
 
-def _small(values: Any) -> np.ndarray:
+def _as_uint16(values: Any) -> np.ndarray:
     numbers = np.asarray(values, np.int32)
     if numbers.size and not 0 <= numbers.min() <= numbers.max() <= 0xFFFF:
         raise ValueError("a number of it is none of a palette or an object")
     return numbers.astype(np.uint16)
 
 
-def _three(values: Any, kind: Any) -> tuple[Any, Any, Any]:
+def _as_triple(values: Any, kind: Any) -> tuple[Any, Any, Any]:
     x, y, z = (kind(value) for value in values)
     return x, y, z
 
 
-def _number(value: int) -> int | None:
+def _none_if_negative(value: int) -> int | None:
     return None if value < 0 else int(value)
 
 
@@ -173,7 +174,7 @@ class Journal:
         for record, packed in self._file.scan():
             if not record.is_whole:
                 raise DamagedFileError(self.path, f"is damaged at byte {record.at}")
-            self._replay(*self._file.opened(packed))
+            self._replay(*self._file.unpack(packed))
 
     def _replay(self, verb: bytes, number: int, rest: bytes) -> None:
         if verb == DO and number == len(self.edits):

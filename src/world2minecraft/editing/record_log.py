@@ -1,4 +1,4 @@
-"""A file of records that only grows, and that a kill in the middle of one does not break.
+"""An append-only file of records that survives a kill in the middle of a write.
 
 After the mark come records, each a length and a CRC-32 (big-endian, four bytes each) and that many
 bytes: a zlib stream of a verb of one byte, a number of four and what belongs to them. A record
@@ -97,7 +97,7 @@ class RecordFile:
             raise DamagedFileError(self.path, f"is damaged at byte {record.at}")
         return packed
 
-    def opened(self, packed: bytes, most: int | None = None) -> tuple[bytes, int, bytes]:
+    def unpack(self, packed: bytes, most: int | None = None) -> tuple[bytes, int, bytes]:
         """Return the verb, the number and what belongs to them, of the stream of a record.
 
         Args:

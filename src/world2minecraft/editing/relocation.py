@@ -1,4 +1,4 @@
-"""A volume moved to another place of the world, whole: blocks, data, entities and its frame."""
+"""Relocation of a whole volume in the world: blocks, block data, entities and its frame."""
 
 from dataclasses import replace
 from typing import Any

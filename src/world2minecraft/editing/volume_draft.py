@@ -53,7 +53,7 @@ class Draft:
             self._palette.append(state)
         return self._ids[state]
 
-    def held(self, cells: np.ndarray, entities: Sequence[Entity] = ()) -> Blocks:
+    def contents(self, cells: np.ndarray, entities: Sequence[Entity] = ()) -> Blocks:
         """Return what some cells hold now.
 
         Args:
@@ -66,17 +66,17 @@ class Draft:
         found = self.states[at], self.semantic[at], self.instance[at]
         return Blocks(*found, data, tuple(entities))
 
-    def change(self, kind: str, cells: np.ndarray, after: Blocks, **told: Any) -> BlockEdit:
+    def change(self, kind: str, cells: np.ndarray, after: Blocks, **details: Any) -> BlockEdit:
         """Set cells and record the edit.
 
         Args:
             kind: a verb.
             cells: int [N, 3], indices into the arrays.
             after: what they become; states index ``palette``.
-            told: ``reason``, ``class_id``, ``instance`` of the edit, and ``entities``, those that
-                go with what was there before.
+            details: ``reason``, ``class_id``, ``instance`` of the edit, and ``entities`` that go
+                with what was there before.
         """
-        before = self.held(cells, told.pop("entities", ()))
+        before = self.contents(cells, details.pop("entities", ()))
         used = np.unique(np.concatenate([before.states, after.states]))
         numbers = np.zeros(len(self._palette), np.uint16)
         numbers[used] = np.arange(len(used))
@@ -86,26 +86,26 @@ class Draft:
             tuple(self._palette[number] for number in used.tolist()),
             replace(before, states=numbers[before.states]),
             replace(after, states=numbers[after.states]),
-            **told,
+            **details,
         )
         self._set(cells, edit)
         self.edits.append(edit)
         return edit
 
-    def fill(self, kind: str, cells: np.ndarray, state: str, **told: Any) -> BlockEdit:
+    def fill(self, kind: str, cells: np.ndarray, state: str, **details: Any) -> BlockEdit:
         """Set all cells to one block state and record the edit.
 
         Args:
             kind: a verb.
             cells: int [N, 3], indices into the arrays.
             state: what they become.
-            told: as in ``change``, and ``as_class`` and ``as_instance``, what they count as: 0
+            details: as in ``change``, and ``as_class`` and ``as_instance``, what they count as: 0
                 where left out.
         """
         numbers = np.full(len(cells), self.id_of(state), np.uint16)
-        semantic = np.full(len(cells), told.pop("as_class", 0), np.uint8)
-        instance = np.full(len(cells), told.pop("as_instance", 0), np.uint16)
-        return self.change(kind, cells, Blocks(numbers, semantic, instance), **told)
+        semantic = np.full(len(cells), details.pop("as_class", 0), np.uint8)
+        instance = np.full(len(cells), details.pop("as_instance", 0), np.uint16)
+        return self.change(kind, cells, Blocks(numbers, semantic, instance), **details)
 
     def apply(self, edit: BlockEdit) -> None:
         """Do an edit.
@@ -113,14 +113,14 @@ class Draft:
         Raises:
             ConflictError: the cells do not hold what it says they held; nothing is changed.
         """
-        if reason := self._against(edit):
+        if reason := self._find_conflict(edit):
             raise ConflictError(f"edit {edit.kind}", reason)
         self._set(edit.cells - self.corner, edit)
         self.edits.append(edit)
 
     def holds(self, edit: BlockEdit) -> bool:
         """Whether the cells hold what an edit says they held before it."""
-        return not self._against(edit)
+        return not self._find_conflict(edit)
 
     def volume(self) -> BlockVolume:
         """Return the blocks as they are now; the palette sorted, without unused states."""
@@ -137,13 +137,13 @@ class Draft:
             entities=self.entities,
         )
 
-    def _against(self, edit: BlockEdit) -> str:
+    def _find_conflict(self, edit: BlockEdit) -> str:
         """Why an edit cannot be done here; empty where it can."""
         cells = edit.cells - self.corner
         inside = ((cells >= 0) & (cells < self.states.shape)).all(axis=1)
         if not inside.all():
             return f"block {_position(edit.cells[~inside][0])} lies outside the volume"
-        now, names = self.held(cells), np.array(edit.palette, object)
+        now, names = self.contents(cells), np.array(edit.palette, object)
         wrong = np.array(self._palette, object)[now.states] != names[edit.before.states]
         wrong |= now.semantic != edit.before.semantic
         wrong |= now.instance != edit.before.instance
@@ -219,7 +219,7 @@ class History:
             ConflictError: the volume is another one than the journal speaks of.
         """
         self.journal = journal
-        self.volume = _caught_up(volume, journal)
+        self.volume = _replay_missing(volume, journal)
         self._undone: list[int] = []
 
     def do(self, edit: BlockEdit) -> None:
@@ -269,7 +269,7 @@ class History:
         return chosen
 
 
-def _caught_up(volume: BlockVolume, journal: Journal) -> BlockVolume:
+def _replay_missing(volume: BlockVolume, journal: Journal) -> BlockVolume:
     """Return the volume with all steps of the journal: blocks are written after their records."""
     edits = [
         journal.edits[number] if is_done else journal.edits[number].inverse()

@@ -1,8 +1,8 @@
-"""Blocks built into a world that exists, and taken out again.
+"""Building into an existing world, and removal of a build.
 
-``build_into_world`` puts a volume into a world: blocks, what signs and chests hold, and entities; chunks
-keep everything else. ``remove_build`` undoes the last such step block by block, in a world that
-was played in since.
+``build_into_world`` puts a volume into a world: blocks, what signs and chests hold, and entities;
+chunks keep everything else. ``remove_build`` undoes the last such step block by block, in a world
+that was played in since.
 """
 
 from collections.abc import Sequence

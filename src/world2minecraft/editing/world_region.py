@@ -77,7 +77,7 @@ class WorldBox:
         changed = self._changed_chunks(states, data)
         regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
         for place in changed:
-            regions[region_of(place)][place] = self._rewritten(place, states, data)
+            regions[region_of(place)][place] = self._rewrite_chunk(place, states, data)
         files = {}
         for region, chunks in sorted(regions.items()):
             found = self._regions[region]
@@ -97,7 +97,9 @@ class WorldBox:
                 found.append(place)
         return found
 
-    def _rewritten(self, place: Place, states: np.ndarray, data: Sequence[BlockEntity]) -> bytes:
+    def _rewrite_chunk(
+        self, place: Place, states: np.ndarray, data: Sequence[BlockEntity]
+    ) -> bytes:
         root = self._chunks.get(place)
         if root is None:
             lowest = game_version().min_y >> 4
@@ -286,7 +288,7 @@ class WorldEntities:
         regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
         for place, held in wanted.items():
             if _keys(held) != _keys(self._held.get(place, [])):
-                regions[region_of(place)][place] = self._packed(place, held)
+                regions[region_of(place)][place] = self._pack_chunk(place, held)
         files = {}
         for region, chunks in sorted(regions.items()):
             found = self._regions.get(region) or self._new_region(region)
@@ -308,7 +310,7 @@ class WorldEntities:
             raise DamagedFileError(region.path, "has an entity without id and place") from error
         return held
 
-    def _packed(self, place: Place, held: list[dict[str, Any]]) -> bytes:
+    def _pack_chunk(self, place: Place, held: list[dict[str, Any]]) -> bytes:
         """Return a chunk of entities; with those of others in it, it stays as old as it was.
 
         The game brings entities up to date by what their chunk says: one that said too much would

@@ -1,4 +1,1 @@
-"""The program's own files and the formats of others that are not the game's.
-
-Each module holds one file with its reader and its writer.
-"""
+"""Readers and writers of the program's own files and of foreign formats that are not the game's."""

@@ -75,6 +75,14 @@ class Faces(NamedTuple):
         return result
 
 
+class _Ranks(NamedTuple):
+    """The different values of each plane along one axis, and the number of each row's two ends."""
+
+    values: np.ndarray  # int32 [K], plane by plane
+    starts: np.ndarray  # int64 [P + 1], where each plane's values begin
+    ranks: np.ndarray  # int64 [N, 2], the numbers of a row's low and high value within its plane
+
+
 def visible_faces(
     boxes: np.ndarray, owner: np.ndarray, material: np.ndarray, is_clear: np.ndarray
 ) -> Faces:
@@ -82,7 +90,7 @@ def visible_faces(
 
     Args:
         boxes: int32 [N, 6], x0 y0 z0 x1 y1 z1, each with some volume.
-        owner: int32 [N], whose each box is.
+        owner: int32 [N], the owner of each box.
         material: int32 [N], indices into ``is_clear``.
         is_clear: bool [M], whether one sees through a material.
     """
@@ -92,28 +100,23 @@ def visible_faces(
     is_first[1:-1] = (rows[1:, :3] != rows[:-1, :3]).any(axis=1)
     starts = np.flatnonzero(is_first)
     plane = np.cumsum(is_first[:-1]) - 1
-    us, u_starts, u_ranks = _ranks(plane, rows[:, [4, 6]])
-    vs, v_starts, v_ranks = _ranks(plane, rows[:, [5, 7]])
-    tables = (rows, starts, us, u_starts, u_ranks, vs, v_starts, v_ranks, is_clear)
+    us = _ranks(plane, rows[:, [4, 6]])
+    vs = _ranks(plane, rows[:, [5, 7]])
     found = np.empty((len(rows), 9), np.int32)
-    count = _visible(*tables, found)
+    count = _visible(rows, starts, us, vs, is_clear, found)
     if count > len(found):  # Parts of faces may be more than the faces.
         found = np.empty((count, 9), np.int32)
-        _visible(*tables, found)
+        _visible(rows, starts, us, vs, is_clear, found)
     owner, axis, plane, side, u0, v0, u1, v1, material = np.ascontiguousarray(found[:count].T)
     return Faces(owner, axis, plane, side, np.stack([u0, u1], 1), np.stack([v0, v1], 1), material)
 
 
-def _ranks(plane: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Number the values of each plane in order.
+def _ranks(plane: np.ndarray, ends: np.ndarray) -> _Ranks:
+    """Number the different values of each plane in rising order.
 
     Args:
-        plane: int64 [N], rising, whose each row is.
+        plane: int64 [N], rising, the plane of each row.
         ends: int32 [N, 2], values of the rows.
-
-    Returns:
-        The different values, int32 [K], plane by plane; where each plane's begin, int64 [P + 1];
-        and the number of each value within its plane, int64 [N, 2].
     """
     wide = np.int64(1) << 32
     keys = plane[:, None] * wide + (ends.astype(np.int64) + (wide >> 1))
@@ -121,7 +124,7 @@ def _ranks(plane: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     owner = held // wide
     starts = np.searchsorted(owner, np.arange(int(plane[-1]) + 2 if len(plane) else 1))
     ranks = numbers.reshape(ends.shape) - starts[plane][:, None]
-    return (held % wide - (wide >> 1)).astype(np.int32), starts, ranks
+    return _Ranks((held % wide - (wide >> 1)).astype(np.int32), starts, ranks)
 
 
 def _side(
@@ -137,19 +140,21 @@ def _side(
 
 
 @njit
-def _visible(
-    rows, starts, us, u_starts, u_ranks, vs, v_starts, v_ranks, is_clear, found
-):  # pragma: no cover
-    """Fill ``found`` as far as it has room; return how many rows there are."""
+def _visible(rows, starts, us, vs, is_clear, found):  # pragma: no cover
+    """Fill ``found`` as far as it has room; return how many rows there are.
+
+    ``rows`` [N, 9] are those of ``_side`` plane by plane, which begin at ``starts`` [P + 1];
+    ``us`` and ``vs`` are their ``_Ranks`` along u and v.
+    """
     count = 0
     for plane in range(len(starts) - 1):
-        wide = u_starts[plane + 1] - u_starts[plane] - 1
-        high = v_starts[plane + 1] - v_starts[plane] - 1
+        wide = us.starts[plane + 1] - us.starts[plane] - 1
+        high = vs.starts[plane + 1] - vs.starts[plane] - 1
         drawn = np.zeros((2, wide, high), np.int32)
         for row in range(starts[plane], starts[plane + 1]):
             side, kind = rows[row, 3], rows[row, 8] + 1
-            for u in range(u_ranks[row, 0], u_ranks[row, 1]):
-                for v in range(v_ranks[row, 0], v_ranks[row, 1]):
+            for u in range(us.ranks[row, 0], us.ranks[row, 1]):
+                for v in range(vs.ranks[row, 0], vs.ranks[row, 1]):
                     held = drawn[side, u, v]
                     if held == 0 or is_clear[held - 1]:
                         drawn[side, u, v] = kind
@@ -183,10 +188,10 @@ def _visible(
                         found[count, 1] = rows[first, 1]
                         found[count, 2] = rows[first, 2]
                         found[count, 3], found[count, 8] = side, kind - 1
-                        found[count, 4] = us[u_starts[plane] + u]
-                        found[count, 5] = vs[v_starts[plane] + v]
-                        found[count, 6] = us[u_starts[plane] + u1]
-                        found[count, 7] = vs[v_starts[plane] + v1]
+                        found[count, 4] = us.values[us.starts[plane] + u]
+                        found[count, 5] = vs.values[vs.starts[plane] + v]
+                        found[count, 6] = us.values[us.starts[plane] + u1]
+                        found[count, 7] = vs.values[vs.starts[plane] + v1]
                     count += 1
     return count
 
@@ -218,7 +223,7 @@ class BlockMesh:
     """One closed mesh of rectangles, in metres, y up.
 
     ``corners`` are counter-clockwise seen from outside. ``instance`` is 0 for structure and for
-    what has no label; their bodies hold all blocks of their class.
+    what has no label; their meshes hold all blocks of their class.
     """
 
     class_id: int
@@ -229,7 +234,7 @@ class BlockMesh:
 
     @property
     def name(self) -> str:
-        """A name that no other body of the volume has."""
+        """A name that no other mesh of the volume has."""
         kind = CLASS_NAMES[self.class_id] if self.class_id else "blocks"
         return f"{kind}_{self.instance}" if self.instance else kind
 
@@ -240,7 +245,7 @@ class BlockMesh:
 
 
 def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
-    """Return the bodies of a volume, structure first, then objects by number; and their looks."""
+    """Return the meshes of a volume, structure first, then objects by number; and their looks."""
     looks = _Looks()
     owners = _owners(volume)
     parts = [_block_faces(volume, owners, looks), *_display_faces(volume, looks)]
@@ -253,17 +258,17 @@ def volume_meshes(volume: BlockVolume) -> tuple[list[BlockMesh], list[Look]]:
     normals = normals @ to_metres[:3, :3].T
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     class_of = _classes_of(volume, owners)
-    bodies = []
+    meshes = []
     for number in sorted(set(owner.tolist()), key=lambda one: (one < _CLASSES, one)):
         rows = owner == number
         instance = number if number < _CLASSES else 0
         class_id = class_of.get(number, 0) if instance else number - _CLASSES
-        bodies.append(BlockMesh(class_id, instance, corners[rows], normals[rows], kinds[rows]))
-    return bodies, looks.held
+        meshes.append(BlockMesh(class_id, instance, corners[rows], normals[rows], kinds[rows]))
+    return meshes, looks.held
 
 
 class _Looks:
-    """The looks that are met, each once."""
+    """Table of the different looks of a volume."""
 
     def __init__(self) -> None:
         self.held: list[Look] = []
@@ -285,7 +290,7 @@ class _Looks:
 
 
 def _owners(volume: BlockVolume) -> np.ndarray:
-    """Return whose each block is, int32 [X, Y, Z]: an instance, else a class of structure."""
+    """Return the owner of each block, int32 [X, Y, Z]: an instance, else a class of structure."""
     semantic = volume.semantic.astype(np.int32)
     kind = np.where(semantic < len(CLASS_NAMES), semantic, 0)
     return np.where(volume.instance > 0, volume.instance, _CLASSES + kind).astype(np.int32)

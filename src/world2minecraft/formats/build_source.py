@@ -1,4 +1,4 @@
-"""Any build as a volume: a run's folder, its build, a world of anyone, or a file of blocks."""
+"""Read any build as a volume: a run's folder, its build, any world, or a file of blocks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -51,8 +51,8 @@ def box_around_spawn(world: Path) -> tuple[Box, str]:
     """Return the blocks around a world's spawn as a box, and a note for the user."""
     x, y, z = level_spawn(read_level(world))
     wide, low, deep = SPAWN_REACH
-    told = " ".join(str(value) for value in (x, y, z))
-    note = f"this world has no scene.json: drawing the blocks around its spawn ({told}); "
+    place = " ".join(str(value) for value in (x, y, z))
+    note = f"this world has no scene.json: drawing the blocks around its spawn ({place}); "
     box = (x - wide, y - low, z - deep, x + wide, y + SPAWN_REACH_UP, z + deep)
     return box, note + "--box x0,y0,z0,x1,y1,z1 chooses others"
 
@@ -102,7 +102,7 @@ def level_spawn(level: dict[str, Any]) -> tuple[int, int, int]:
 
 def _read_file(path: Path, box: Box | None) -> BuildSource:
     volume = read_volume(path)
-    _, folder = _scene_beside(path)
+    _, folder = _find_scene(path)
     return BuildSource(crop_volume(volume, box) if box else volume, path.stem, path, folder=folder)
 
 
@@ -110,7 +110,7 @@ def _read_world(
     world: Path, asked: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
 ) -> BuildSource:
     """Read the box of a world that is asked for, that of its scene, or the one chosen."""
-    scene, folder = _scene_beside(asked)
+    scene, folder = _find_scene(asked)
     if scene is None or folder is None:
         chosen, note = (box, "") if box else choose(world)
         source = BuildSource(read_world(world, box=chosen), world.name, asked)
@@ -124,7 +124,7 @@ def _read_world(
     return source
 
 
-def _scene_beside(path: Path) -> tuple[dict[str, Any] | None, Path | None]:
+def _find_scene(path: Path) -> tuple[dict[str, Any] | None, Path | None]:
     for folder in (path, path / "build", path.parent):
         if (folder / "scene.json").is_file():
             scene = read_json(folder / "scene.json")

@@ -263,15 +263,15 @@ def gltf_bytes(
     keep_blocks: bool = True,
 ) -> bytes:
     """Return the bytes of ``write_gltf``. Raises what it raises."""
-    bodies, looks = volume_meshes(volume)
-    if not bodies:
+    meshes, looks = volume_meshes(volume)
+    if not meshes:
         raise UsageError("the volume holds no block that can be seen; glTF needs a mesh")
     writer = GlbWriter(f"World2Minecraft {__version__}")
     _put_materials(writer, looks)
     side = texture_side(len(looks))
     nodes = [
-        writer.add("nodes", _node(writer, body, looks, side, (templates or {}).get(body.instance)))
-        for body in bodies
+        writer.add("nodes", _node(writer, mesh, looks, side, (templates or {}).get(mesh.instance)))
+        for mesh in meshes
     ]
     add_default_scene(writer, nodes)
     extras: dict[str, Any] = {"metres_per_block": 1 / volume.blocks_per_metre}
@@ -297,21 +297,21 @@ def read_gltf(path: str | Path) -> BlockVolume:
     return unpack_volume(view_bytes(tree, numbers, ours["blocks"], path), path)
 
 
-def body_extras(body: BlockMesh, template: str | None = None) -> dict[str, Any]:
-    """Return what a body is: ``class``, ``class_name``, ``instance``, ``size_m``."""
-    low, high = body.bounds
+def body_extras(mesh: BlockMesh, template: str | None = None) -> dict[str, Any]:
+    """Return what a mesh is: ``class``, ``class_name``, ``instance``, ``size_m``."""
+    low, high = mesh.bounds
     extras: dict[str, Any] = {
-        "class": body.class_id,
-        "class_name": CLASS_NAMES[body.class_id] if body.class_id else "unknown",
-        "instance": body.instance,
+        "class": mesh.class_id,
+        "class_name": CLASS_NAMES[mesh.class_id] if mesh.class_id else "unknown",
+        "instance": mesh.instance,
         "size_m": np.round(high - low, 6).tolist(),
     }
     return extras | ({"template": template} if template else {})
 
 
-def base_center(body: BlockMesh) -> np.ndarray:
-    """Return the middle of a body's underside, float64 [3], where its node stands."""
-    low, high = body.bounds
+def base_center(mesh: BlockMesh) -> np.ndarray:
+    """Return the middle of a mesh's underside, float64 [3], where its node stands."""
+    low, high = mesh.bounds
     return np.round([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2], 6)
 
 
@@ -321,10 +321,10 @@ def add_default_scene(writer: GlbWriter, nodes: Sequence[int]) -> None:
     writer.tree["scene"] = 0
 
 
-def add_vertices(writer: GlbWriter, body: BlockMesh, rows: np.ndarray) -> dict[str, int]:
-    """Add positions and normals of some faces of a body, from its foot; return the attributes."""
-    positions = (body.corners[rows].reshape(-1, 3) - base_center(body)).astype(np.float32)
-    normals = np.repeat(body.normals[rows], 4, axis=0).astype(np.float32)
+def add_vertices(writer: GlbWriter, mesh: BlockMesh, rows: np.ndarray) -> dict[str, int]:
+    """Add positions and normals of some faces of a mesh, from its foot; return the attributes."""
+    positions = (mesh.corners[rows].reshape(-1, 3) - base_center(mesh)).astype(np.float32)
+    normals = np.repeat(mesh.normals[rows], 4, axis=0).astype(np.float32)
     return {
         "POSITION": writer.accessor(positions, "vertices"),
         "NORMAL": writer.accessor(normals + np.float32(0), "vertices"),
@@ -349,28 +349,28 @@ def texture_side(count: int) -> int:
 
 
 def _node(
-    writer: GlbWriter, body: BlockMesh, looks: Sequence[Look], side: int, template: str | None
+    writer: GlbWriter, mesh: BlockMesh, looks: Sequence[Look], side: int, template: str | None
 ) -> dict[str, Any]:
-    is_clear = np.array([look.is_clear for look in looks])[body.looks]
+    is_clear = np.array([look.is_clear for look in looks])[mesh.looks]
     primitives = [
-        _primitive(writer, body, np.flatnonzero(is_clear == (material == CLEAR)), side, material)
+        _primitive(writer, mesh, np.flatnonzero(is_clear == (material == CLEAR)), side, material)
         for material in (OPAQUE, CLEAR)
         if (is_clear == (material == CLEAR)).any()
     ]
     return {
-        "name": body.name,
-        "mesh": writer.add("meshes", {"name": body.name, "primitives": primitives}),
-        "translation": base_center(body).tolist(),
-        "extras": body_extras(body, template),
+        "name": mesh.name,
+        "mesh": writer.add("meshes", {"name": mesh.name, "primitives": primitives}),
+        "translation": base_center(mesh).tolist(),
+        "extras": body_extras(mesh, template),
     }
 
 
 def _primitive(
-    writer: GlbWriter, body: BlockMesh, rows: np.ndarray, side: int, material: int
+    writer: GlbWriter, mesh: BlockMesh, rows: np.ndarray, side: int, material: int
 ) -> dict[str, Any]:
-    row, column = np.divmod(np.repeat(body.looks[rows], 4), side)
+    row, column = np.divmod(np.repeat(mesh.looks[rows], 4), side)
     texels = ((np.column_stack([column, row]) + 0.5) / side).astype(np.float32)
-    attributes = add_vertices(writer, body, rows)
+    attributes = add_vertices(writer, mesh, rows)
     attributes["TEXCOORD_0"] = writer.accessor(texels, "vertices")
     return {
         "attributes": attributes,

@@ -62,13 +62,13 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
             f"scene name {name!r} must be letters, digits, _ and -; name it as room.habitat"
         )
     target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
-    bodies, _ = volume_meshes(volume)
-    ids = semantic_ids(bodies)
+    meshes, _ = volume_meshes(volume)
+    ids = semantic_ids(meshes)
     stages = target / "stages"
     write_bytes(stages / f"{name}.glb", render)
-    write_bytes(stages / f"{name}.semantic.glb", _semantic_glb(bodies, ids))
-    write_text(stages / f"{name}.semantic.txt", semantic_text(bodies, ids))
-    write_json(stages / "info_semantic.json", semantic_json(bodies, ids))
+    write_bytes(stages / f"{name}.semantic.glb", _semantic_glb(meshes, ids))
+    write_text(stages / f"{name}.semantic.txt", semantic_text(meshes, ids))
+    write_json(stages / "info_semantic.json", semantic_json(meshes, ids))
     write_json(stages / f"{name}.stage_config.json", _stage(name))
     scene = {"stage_instance": {"template_name": name}, "object_instances": []}
     write_json(target / "scenes" / f"{name}.scene_instance.json", scene)
@@ -79,17 +79,17 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
     write_json(target / f"{name}.scene_dataset_config.json", dataset)
 
 
-def semantic_ids(bodies: Sequence[BlockMesh]) -> list[int]:
-    """Return the id of each body: its instance, or for structure the next free number.
+def semantic_ids(meshes: Sequence[BlockMesh]) -> list[int]:
+    """Return the id of each mesh: its instance, or for structure the next free number.
 
     Raises:
         UsageError: an id would be above what Habitat reads.
     """
-    last = max(body.instance for body in bodies)
+    last = max(mesh.instance for mesh in meshes)
     ids = []
-    for body in bodies:
-        last += not body.instance
-        ids.append(body.instance or last)
+    for mesh in meshes:
+        last += not mesh.instance
+        ids.append(mesh.instance or last)
     if max(ids) > MAX_ID:
         raise UsageError(f"Habitat reads ids up to {MAX_ID:,}; the objects go to {max(ids):,}")
     return ids
@@ -110,42 +110,42 @@ def semantic_colour(number: int) -> tuple[int, int, int]:
     return red & ~15 | low[0], green & ~31 | low[1], blue & ~31 | low[2]
 
 
-def semantic_text(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> str:
+def semantic_text(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> str:
     """Return HM3D's list: a header, then id, colour, class and region of each object."""
     rows = [
-        f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(body)}",0'
-        for number, body in sorted(zip(ids, bodies, strict=True), key=lambda pair: pair[0])
+        f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(mesh)}",0'
+        for number, mesh in sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
     ]
     return "\n".join([HEADER, *rows]) + "\n"
 
 
-def semantic_json(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, Any]:
+def semantic_json(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> dict[str, Any]:
     """Return Replica's ``info_semantic.json``: classes, objects with boxes, the class of each id.
 
     ``id_to_label`` holds the class of each id from 0, -1 where no object has it.
     """
-    pairs = sorted(zip(ids, bodies, strict=True), key=lambda pair: pair[0])
+    pairs = sorted(zip(ids, meshes, strict=True), key=lambda pair: pair[0])
     labels = [-1] * (max(ids) + 1)
-    for number, body in pairs:
-        labels[number] = body.class_id
+    for number, mesh in pairs:
+        labels[number] = mesh.class_id
     classes = [{"id": 0, "name": "unknown"}]
     classes += [{"id": n, "name": name} for n, name in enumerate(CLASS_NAMES) if n]
     return {
         "classes": classes,
-        "objects": [_object(number, body) for number, body in pairs],
+        "objects": [_object(number, mesh) for number, mesh in pairs],
         "id_to_label": labels,
     }
 
 
-def _object(number: int, body: BlockMesh) -> dict[str, Any]:
+def _object(number: int, mesh: BlockMesh) -> dict[str, Any]:
     to_room = ROOM_AXES_TO_BLOCK.T
-    low, high = body.bounds
+    low, high = mesh.bounds
     center, sizes = to_room @ ((low + high) / 2), np.abs(to_room @ (high - low))
     return {
         "id": number,
-        "class_id": body.class_id,
-        "class_name": _kind(body),
-        "instance": body.instance,
+        "class_id": mesh.class_id,
+        "class_name": _kind(mesh),
+        "instance": mesh.instance,
         "oriented_bbox": {
             "abb": {"center": np.round(center, 6).tolist(), "sizes": np.round(sizes, 6).tolist()},
             "orientation": {"rotation": [0.0, 0.0, 0.0, 1.0], "translation": [0.0, 0.0, 0.0]},
@@ -153,8 +153,8 @@ def _object(number: int, body: BlockMesh) -> dict[str, Any]:
     }
 
 
-def _kind(body: BlockMesh) -> str:
-    return CLASS_NAMES[body.class_id] if body.class_id else "unknown"
+def _kind(mesh: BlockMesh) -> str:
+    return CLASS_NAMES[mesh.class_id] if mesh.class_id else "unknown"
 
 
 def _stage(name: str) -> dict[str, Any]:
@@ -174,20 +174,20 @@ def _stage(name: str) -> dict[str, Any]:
     }
 
 
-def _semantic_glb(bodies: Sequence[BlockMesh], ids: Sequence[int]) -> bytes:
-    """Return the bodies in plain colours of vertices, which glTF keeps linear."""
+def _semantic_glb(meshes: Sequence[BlockMesh], ids: Sequence[int]) -> bytes:
+    """Return the meshes in plain colours of vertices, which glTF keeps linear."""
     writer = GlbWriter(f"World2Minecraft {__version__}")
     nodes = []
-    for number, body in zip(ids, bodies, strict=True):
-        rows = np.arange(len(body.looks))
+    for number, mesh in zip(ids, meshes, strict=True):
+        rows = np.arange(len(mesh.looks))
         colour = srgb_to_linear(np.array(semantic_colour(number), np.uint8))
-        attributes = add_vertices(writer, body, rows)
+        attributes = add_vertices(writer, mesh, rows)
         painted = np.tile(colour.astype(np.float32), (4 * len(rows), 1))
         attributes["COLOR_0"] = writer.accessor(painted, "vertices")
         primitive = {"attributes": attributes, "indices": add_triangles(writer, len(rows))}
-        mesh = writer.add("meshes", {"name": body.name, "primitives": [primitive]})
-        extras = body_extras(body) | {"id": number}
-        place = {"translation": base_center(body).tolist(), "extras": extras}
-        nodes.append(writer.add("nodes", {"name": body.name, "mesh": mesh, **place}))
+        index = writer.add("meshes", {"name": mesh.name, "primitives": [primitive]})
+        extras = body_extras(mesh) | {"id": number}
+        place = {"translation": base_center(mesh).tolist(), "extras": extras}
+        nodes.append(writer.add("nodes", {"name": mesh.name, "mesh": index, **place}))
     add_default_scene(writer, nodes)
     return writer.to_bytes()

@@ -84,7 +84,10 @@ def _rounded(values: np.ndarray) -> list:
 
 
 def read_rooms(folder: str | Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
-    """Return the rooms of a run's folder; none where nothing tells of them.
+    """Return the rooms of a run's folder, none where no file holds any.
+
+    They come from ``layout.json``; where a run has none, or it found no outline, from
+    ``scan.json``: one room, as long, deep and high as the capture was aligned to.
 
     Args:
         folder: where the run's files lie.

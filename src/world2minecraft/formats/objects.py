@@ -1,4 +1,4 @@
-"""``objects.json`` and ``placements.json``: what was found, and what was put in its place.
+"""``objects.json`` and ``placements.json``: found objects, and the templates placed for them.
 
 ``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``; an object's
 cells are those of ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list of
@@ -111,5 +111,5 @@ def _rows(path: str | Path, reader):
 
 
 def round_metres(values: np.ndarray) -> list[float]:
-    """Return metres as files state them: to a tenth of a millimetre."""
+    """Return metres rounded to a tenth of a millimetre, as files state them."""
     return [round(float(value), 4) for value in values]

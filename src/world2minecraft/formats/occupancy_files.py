@@ -153,22 +153,22 @@ def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
     value = read_json(path)
     if isinstance(value, dict) and value.get("format") == "world2minecraft/occ":
         return read_occ_json(path), CELLS
-    told = value if isinstance(value, dict) else {}
+    keys = value if isinstance(value, dict) else {}
     try:
         held = _voxel_list(value)
         if (labels := _dense_labels(held)) is not None:
-            unit, origin = CELLS, _first_of(told, _ORIGINS, [0.0] * 3)
-            voxel_m = float(_first_of(told, _SIDES, DEFAULT_VOXEL_M))
+            unit, origin = CELLS, _first_of(keys, _ORIGINS, [0.0] * 3)
+            voxel_m = float(_first_of(keys, _SIDES, DEFAULT_VOXEL_M))
         else:
             points, classes = _points(held)
             unit = CELLS if np.array_equal(points, np.round(points)) else METRES
             voxel_m = float(
                 _first_of(
-                    told, _SIDES, _smallest_step(points) if unit == METRES else DEFAULT_VOXEL_M
+                    keys, _SIDES, _smallest_step(points) if unit == METRES else DEFAULT_VOXEL_M
                 )
             )
-            cells, origin = _cells(points, unit, voxel_m, _first_of(told, _ORIGINS, None))
-            labels = _fill_grid(path, cells, classes, _first_of(told, _SHAPES, None))
+            cells, origin = _cells(points, unit, voxel_m, _first_of(keys, _ORIGINS, None))
+            labels = _fill_grid(path, cells, classes, _first_of(keys, _SHAPES, None))
         low = np.array(origin, np.float64)
         return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
     except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
@@ -288,6 +288,7 @@ def _class(name: Any) -> int:
 
 
 def _first_of(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
+    """Return the value of the first of some keys that a row has."""
     return next((row[name] for name in names if name in row), default)
 
 

@@ -1,8 +1,8 @@
 """Arrays of a run's folder: ``room.npz``, ``evidence.npz`` and ``centers.npz``.
 
 - ``room.npz``, an OccupancyGrid and where it stands in the scan: ``labels``, ``confidence``,
-  ``colour``, ``source``, ``instance`` as in OccupancyGrid; ``voxel_m`` float64; ``origin_m`` float64
-  [3]; ``scan_to_room`` float64 [4, 4].
+  ``colour``, ``source``, ``instance`` as in OccupancyGrid; ``voxel_m`` float64; ``origin_m``
+  float64 [3]; ``scan_to_room`` float64 [4, 4].
 - ``evidence.npz``: FusedEvidence, enough to run the label stage and all after it again. Cells
   without votes take most of the room, and compress to nothing.
 - ``centers.npz``, the paper's D, C and C': ``density`` float32 [X, Y, Z]; ``candidates`` int32

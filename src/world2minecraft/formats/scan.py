@@ -1,4 +1,4 @@
-"""``scan.json`` and ``poses.npz``: how a capture was read and aligned, and what registration changed.
+"""``scan.json``, how a capture was read and aligned, and ``poses.npz``, what registration changed.
 
 ``poses.npz`` holds, frame by frame: ``names`` [F]; ``pose_change`` float64 [F, 4, 4], scan to scan,
 applied on the left of a frame's pose; ``depth_scale`` float64 [F], what its depth is multiplied by.

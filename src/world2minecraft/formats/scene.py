@@ -1,4 +1,4 @@
-"""``scene.json`` and ``scene.npz``: what lies beside every world that the program writes.
+"""``scene.json`` and ``scene.npz``: labels and scale of every world that the program writes.
 
 ``scene.json``: ``block_to_room`` [4][4], ``metres_per_block``, ``corner`` [3], ``size`` [3],
 ``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}; of a made house ``light``

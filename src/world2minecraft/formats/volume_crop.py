@@ -1,4 +1,4 @@
-"""A part of a volume: the blocks of a box, or all but the air around them."""
+"""Crop volumes: to the blocks of a box, or to all but the air around them."""
 
 from dataclasses import replace
 

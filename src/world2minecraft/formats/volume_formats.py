@@ -167,14 +167,14 @@ def read_volume(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     Raises:
         InputError: nothing is there or no form knows it, or one of its kinds from the reader.
     """
-    source, told = Path(path), Losses() if losses is None else losses
+    source, counted = Path(path), Losses() if losses is None else losses
     if not source.exists():
         raise InputError(source, "is not there")
     for form in scene_formats():
         if form.is_at(source):
-            return form.read(source, told)
+            return form.read(source, counted)
     try:
-        volume = read_blocks(find_blocks(source), told)
+        volume = read_blocks(find_blocks(source), counted)
     except InputError as error:
         if not error.reason.startswith("is no block file"):
             raise
@@ -194,11 +194,11 @@ def write_volume(
     Raises:
         UsageError: no form has this suffix. OutputError: the path cannot be written.
     """
-    target, told = Path(path), Losses() if losses is None else losses
+    target, counted = Path(path), Losses() if losses is None else losses
     form = format_for_path(target)
-    form.write(volume, target, options or WriteOptions(), told)
+    form.write(volume, target, options or WriteOptions(), counted)
     if not form.keeps_labels:
-        told.add(LABELS, int((volume.semantic > 0).sum()))
+        counted.add(LABELS, int((volume.semantic > 0).sum()))
 
 
 def format_for_path(path: str | Path) -> BlockFormat:

@@ -1,4 +1,4 @@
-"""The oriented points of a scan: the flat patches of its frames, gathered in one frame."""
+"""Oriented points of a scan: the planar patches of its views in one common frame."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -29,8 +29,8 @@ class OrientedPoints:
     owner: np.ndarray
     names: tuple[str, ...] = ()
 
-    def transformed(self, transform: np.ndarray) -> "Surface":
-        """Return the surface in another frame; ``transform`` is rigid."""
+    def transformed(self, transform: np.ndarray) -> "OrientedPoints":
+        """Return the points in another frame; ``transform`` is rigid."""
         return replace(
             self,
             points_m=_moved(self.points_m, transform[:3, :3], transform[:3, 3]),
@@ -38,8 +38,8 @@ class OrientedPoints:
             cameras=transform @ self.cameras,
         )
 
-    def subset(self, which: np.ndarray) -> "Surface":
-        """Return the surface of some of the points, by a mask or by indices."""
+    def subset(self, which: np.ndarray) -> "OrientedPoints":
+        """Return some of the points, by a mask or by indices."""
         return replace(
             self,
             points_m=self.points_m[which],

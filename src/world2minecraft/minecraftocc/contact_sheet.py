@@ -9,9 +9,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_frames
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY
 
 GAP_PX, LINE_PX = 6, 16
 PAPER, INK = (250, 250, 248), (40, 42, 46)

@@ -15,12 +15,12 @@ from world2minecraft.core.errors import CaptureError, DamagedFileError, InputErr
 from world2minecraft.core.files import array_names, read_npz
 from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
 from world2minecraft.core.types.checks import transform
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, metres_of
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, decode_depth
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
 from world2minecraft.reconstruction.fusion import (
     CleanParameters,
     EvidenceMap,
-    read_out,
+    extract_grid,
     remove_floaters,
 )
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
@@ -114,7 +114,7 @@ def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:
         return depth_of_png(path, raw, _likely(raw))
     depth_m = {
         "rotated": lambda: ((raw >> 3) | (raw << 13)) / np.float32(1000),
-        "mm": lambda: metres_of(raw, "mm"),
+        "mm": lambda: decode_depth(raw, "mm"),
         "8000": lambda: raw / np.float32(8000),
     }[code]()
     depth_m = np.where(raw > 0, depth_m, 0).astype(np.float32)
@@ -165,7 +165,7 @@ def complete_frame(
     )
     points = DepthPredictor(FAR_M).lift(view)
     evidence = _in_grid(points, world_to_grid)
-    grid = remove_floaters(read_out(evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleanParameters())
     sight = sight_of(grid, evidence, floor_m=floor_of(points, world_to_grid))
     chance = (model or CompletionModel()).chances(sight)
     labels = likeliest(chance, sight.log_odds)

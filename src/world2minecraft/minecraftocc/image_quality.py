@@ -1,4 +1,4 @@
-"""Picture quality of a data set: NIQE, PIQE and LV over a sample, beside the paper's table.
+"""Measure the image quality of a data set or a folder: NIQE, PIQE and LV over a sample.
 
 The paper measures 100 pictures of each set, chosen by chance, and names no variant. Here each
 figure says its own: the NIQE model, the kernel of the Laplacian, the size of the pictures.
@@ -27,14 +27,14 @@ from world2minecraft.minecraftocc.statistics.published_figures import (
     PUBLISHED_QUALITY,
     PublishedQuality,
 )
-from world2minecraft.minecraftocc.statistics.tables import columns
+from world2minecraft.minecraftocc.statistics.tables import align_columns
 from world2minecraft.minecraftocc.store import OccStore, open_store
 from world2minecraft.minecraftocc.store.folder import META
 
 KERNELS = (1, 5)
 PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
 NATIVE = "native"
-MOST_PX = 16_384  # Of a side that pictures are resized to.
+MAX_SIDE_PX = 16_384  # Of a side that pictures are resized to.
 CAVEATS = (
     "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
     "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
@@ -52,7 +52,7 @@ class PictureSource:
     is_picture: Callable[[str], bool] | None = None  # Where some keys may be none.
 
 
-def pictures_at(path: str | Path) -> PictureSource:
+def open_pictures(path: str | Path) -> PictureSource:
     """Return the pictures of a stored data set or of a folder, its subfolders too.
 
     Raises:
@@ -125,7 +125,7 @@ class QualityReport:
     sizes_px: tuple[str, ...]  # of the pictures as they are
 
 
-def choose(
+def sample_keys(
     keys: Sequence[str], count: int, seed: int, is_wanted: Callable[[str], bool] | None = None
 ) -> list[str]:
     """Return a sample of keys, all where there are no more; the same for the same seed.
@@ -137,7 +137,7 @@ def choose(
         is_wanted: whether a key may be taken; any may where None. Few are asked.
 
     Example:
-        >>> choose(["a", "b", "c", "d"], 2, seed=0)
+        >>> sample_keys(["a", "b", "c", "d"], 2, seed=0)
         ['a', 'c']
     """
     if count < 1:
@@ -147,14 +147,14 @@ def choose(
     return sorted(islice((key for key in shuffled if not is_wanted or is_wanted(key)), count))
 
 
-def size_of(text: str) -> tuple[int, int] | None:
+def parse_size(text: str) -> tuple[int, int] | None:
     """Return the width and height that a text says, None for ``none``.
 
     Raises:
         UsageError: it says none.
 
     Example:
-        >>> size_of("640x480"), size_of("none")
+        >>> size_of("640x480"), parse_size("none")
         ((640, 480), None)
     """
     if text == "none":
@@ -164,7 +164,7 @@ def size_of(text: str) -> tuple[int, int] | None:
         size = (int(width), int(height))
     except ValueError:
         size = (0, 0)
-    if min(size) < 1 or max(size) > MOST_PX:
+    if min(size) < 1 or max(size) > MAX_SIDE_PX:
         raise UsageError(f"--resize is WIDTHxHEIGHT, such as 640x480, or none, not {text!r}")
     return size
 
@@ -207,7 +207,11 @@ def measure_quality(
         found[NATIVE].append(picture_quality(picture, models))
         if resize is not None:
             same = size == resize
-            small = found[NATIVE][-1] if same else picture_quality(resized(picture, resize), models)
+            small = (
+                found[NATIVE][-1]
+                if same
+                else picture_quality(resize_and_crop(picture, resize), models)
+            )
             found.setdefault("x".join(map(str, resize)), []).append(small)
     progress("quality", len(keys), len(keys))
     if resize is not None and sizes == {resize}:
@@ -217,7 +221,7 @@ def measure_quality(
     return QualityReport(name, rows, variants, tuple(f"{w}x{h}" for w, h in sorted(sizes)))
 
 
-def resized(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+def resize_and_crop(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
     """Return a picture at a width and height, each pixel the mean of what it covers.
 
     A picture of other proportions is cut to those of the size, about its middle.
@@ -233,17 +237,20 @@ def resized(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 def quality_text(report: QualityReport) -> str:
     """Return the table, the paper's rows above, and what to heed in reading it."""
-    shown = _shown(report)
+    shown = _shown_variants(report)
     head = ["data set", "size", "pictures", *(f"NIQE {name}" for name in shown)]
     head += ["PIQE", *(f"LV k={kernel}" for kernel in KERNELS)]
     rows = [tuple(head)]
     rows += [_published_row(row, shown) for row in PUBLISHED_QUALITY]
     for row in report.rows:
         size = _sizes(report.sizes_px) if row.size == NATIVE else row.size
-        figures = [_figure(row.niqe.get(name), 2) for name in shown]
-        figures += [_figure(row.piqe, 2), *(_figure(row.laplacian[k], 0) for k in KERNELS)]
+        figures = [_format_number(row.niqe.get(name), 2) for name in shown]
+        figures += [
+            _format_number(row.piqe, 2),
+            *(_format_number(row.laplacian[k], 0) for k in KERNELS),
+        ]
         rows.append((report.name, size, f"{row.pictures:,}", *figures))
-    lines = [*columns(rows), ""]
+    lines = [*align_columns(rows), ""]
     lines += [f"note: {caveat}" for caveat in CAVEATS]
     without = max((row.without_niqe for row in report.rows), default=0)
     if without:
@@ -287,7 +294,7 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-def _shown(report: QualityReport) -> tuple[str, ...]:
+def _shown_variants(report: QualityReport) -> tuple[str, ...]:
     """Return the variants that have a column: what is measured, and what the paper's is like."""
     more = () if PAPER_VARIANT in report.variants else (PAPER_VARIANT,)
     return (*report.variants, *more)
@@ -303,5 +310,5 @@ def _sizes(sizes_px: Sequence[str]) -> str:
     return sizes_px[0] if len(sizes_px) == 1 else f"{len(sizes_px)} sizes"
 
 
-def _figure(value: float | None, digits: int) -> str:
+def _format_number(value: float | None, digits: int) -> str:
     return "-" if value is None else f"{value:,.{digits}f}"

@@ -16,7 +16,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.labels.image_labels import label_image
 from world2minecraft.minecraftocc.labels.region import region_in
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
@@ -32,8 +32,8 @@ from world2minecraft.procgen.sensors.trajectory import plan_tour
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
 FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
-ROOMS_A_SEED = 1_000
-MOST_CLUTTER = 0.8
+ROOMS_PER_SEED = 1_000
+MAX_CLUTTER = 0.8
 FINE_CLASSES = (
     FineClass("minecraft:air"),
     *(FineClass(f"room:{name}") for name in CLASS_NAMES[1:]),
@@ -55,8 +55,8 @@ class PhotoRooms:
     camera: Camera = NYU_CAMERA
 
     def __post_init__(self):
-        if not 1 <= self.rooms <= ROOMS_A_SEED:
-            raise UsageError(f"--rooms is 1 to {ROOMS_A_SEED}, not {self.rooms}")
+        if not 1 <= self.rooms <= ROOMS_PER_SEED:
+            raise UsageError(f"--rooms is 1 to {ROOMS_PER_SEED}, not {self.rooms}")
         if self.images < self.rooms:
             raise UsageError(f"--images is {self.rooms} or more, one a room, not {self.images}")
         if not 0 <= self.test_share < 1 or self.test_rooms >= self.rooms:
@@ -80,7 +80,7 @@ def photo_samples(plan: PhotoRooms) -> Iterator[OccSample]:
         yield from _of_room(plan, number, room, "test" if is_test else "train")
 
 
-def room_voxels(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
+def voxelize_room(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
     """Return a room's cells, by the rule that made NYUv2's 8 cm of 2 cm; they know no instances.
 
     Args:
@@ -97,7 +97,7 @@ def room_voxels(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
     before = first % factor
     after = -(before + room.labels.shape) % factor
     padded = np.pad(room.labels, list(zip(before, after, strict=True)))
-    labels = downsampled(padded, factor)
+    labels = downsample_labels(padded, factor)
     return SceneVoxels(
         labels=labels,
         fine=labels.astype(np.uint16),
@@ -110,8 +110,8 @@ def room_voxels(room: Room, voxel_m: float = DEFAULT_VOXEL_M) -> SceneVoxels:
 
 def _room(plan: PhotoRooms, number: int) -> Room:
     """Return a room of any kind and shape, more or less tidy; where one kind fails, the next."""
-    seed = FIRST_SEED + ROOMS_A_SEED * plan.seed + number
-    clutter = float(np.random.default_rng([seed, 5]).uniform(0, MOST_CLUTTER))
+    seed = FIRST_SEED + ROOMS_PER_SEED * plan.seed + number
+    clutter = float(np.random.default_rng([seed, 5]).uniform(0, MAX_CLUTTER))
     kinds = sorted(KINDS)
     turn = seed % len(kinds)
     for kind in (*kinds[turn:], *kinds[:turn]):
@@ -121,7 +121,7 @@ def _room(plan: PhotoRooms, number: int) -> Room:
 
 
 def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[OccSample]:
-    scene, voxels = prepare_textured(room), room_voxels(room)
+    scene, voxels = prepare_textured(room), voxelize_room(room)
     rng = np.random.default_rng([room.seed, 6])
     images = plan.images_of(number)
     poses = plan_tour(room, scene.photos.scene, plan.camera, images, rng)

@@ -17,8 +17,10 @@ from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.tours import nyu_camera
 
 TEST_SHARE = 0.2  # Of images and of scenes, where no preset says it.
-MOST_IMAGES, MOST_SCENES = 10_000_000, 100_000
-LONGEST_NAME = 46  # Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
+MAX_IMAGES, MAX_SCENES = 10_000_000, 100_000
+MAX_SCENE_NAME = (
+    46  # Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
+)
 
 
 @dataclass(frozen=True)
@@ -165,11 +167,11 @@ def plan_dataset(
     order = sorted(scenes, key=lambda scene: _chance(how.seed, scene.scene_id))
     names = {scene.scene_id for scene in order[:count]}
     shares = {
-        **_shared([scene.scene_id for scene in scenes if scene.scene_id in names], test),
-        **_shared([scene.scene_id for scene in scenes if scene.scene_id not in names], train),
+        **_share_evenly([scene.scene_id for scene in scenes if scene.scene_id in names], test),
+        **_share_evenly([scene.scene_id for scene in scenes if scene.scene_id not in names], train),
     }
     placed = [
-        _with(scene, "test" if scene.scene_id in names else "train", shares[scene.scene_id])
+        _with_images(scene, "test" if scene.scene_id in names else "train", shares[scene.scene_id])
         for scene in scenes
     ]
     return DatasetPlan(tuple(placed), how, preset)
@@ -187,7 +189,7 @@ def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
         if path.resolve() in known:
             raise UsageError(f"{path} is given twice; give each world once")
         known.add(path.resolve())
-        name = base = scene_id_of(path)[:LONGEST_NAME]
+        name = base = scene_id_of(path)[:MAX_SCENE_NAME]
         number = 2
         while name in found:
             name, number = f"{base}_{number}", number + 1
@@ -198,17 +200,17 @@ def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
 def _check(scenes: Sequence[SceneSpec], images: int | None, preset: str, test_share: float) -> None:
     if not scenes:
         raise UsageError("a data set needs a scene: give --houses, --worlds, --world or --schem")
-    if len(scenes) > MOST_SCENES:
-        raise UsageError(f"at most {MOST_SCENES:,} scenes are taken, not {len(scenes):,}")
+    if len(scenes) > MAX_SCENES:
+        raise UsageError(f"at most {MAX_SCENES:,} scenes are taken, not {len(scenes):,}")
     if preset:
         if images is not None:
             raise UsageError(f"--preset {preset} says how many images; leave out --images")
         if len(scenes) < 2:
             raise UsageError(f"--preset {preset} is split by scene: give it two scenes or more")
-    elif images is None or not len(scenes) <= images <= MOST_IMAGES:
+    elif images is None or not len(scenes) <= images <= MAX_IMAGES:
         told = "no number" if images is None else f"{images:,}"
         raise UsageError(
-            f"--images is one for each of {len(scenes)} scenes or more, up to {MOST_IMAGES:,}, "
+            f"--images is one for each of {len(scenes)} scenes or more, up to {MAX_IMAGES:,}, "
             f"not {told}"
         )
     if not 0 <= test_share < 1:
@@ -224,7 +226,7 @@ def _chance(seed: int, name: str) -> bytes:
     return hashlib.sha256(f"{seed}:{name}".encode()).digest()
 
 
-def _shared(names: list[str], images: int) -> dict[str, int]:
+def _share_evenly(names: list[str], images: int) -> dict[str, int]:
     """Share images evenly; the first scenes get one more where they do not come out even."""
     if not names:
         return {}
@@ -232,6 +234,6 @@ def _shared(names: list[str], images: int) -> dict[str, int]:
     return {name: each + (number < more) for number, name in enumerate(names)}
 
 
-def _with(scene: SceneSpec, split: str, images: int) -> SceneSpec:
+def _with_images(scene: SceneSpec, split: str, images: int) -> SceneSpec:
     facts = {**scene.__dict__, "split": split, "images": images}
     return SceneSpec(**facts)

@@ -1,7 +1,10 @@
-"""Any place that holds blocks as a scene to make a data set of: blocks, classes and designs.
+"""Open any place that holds blocks as a scene of a data set: blocks, classes and designs.
 
-In: a run's folder, a generated world, a world of anyone, a schematic. What lies beside the blocks
-says what they are (``scene.json``, ``scene.npz``); where nothing does, a block map tells.
+In: a run's folder, a generated world, a world of anyone, a schematic. Files beside the blocks say
+what they are (``scene.json``, ``scene.npz``); without them, a block map decides.
+
+In a world of others the box that somebody has built is searched for: in the chunks around the spawn
+first, by the palette of each of their sections, then in all others, up to a number.
 """
 
 import re
@@ -31,12 +34,14 @@ from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.world_reader import read_level, region_files
 from world2minecraft.minecraftocc.block_map import BlockMap, classify, load_block_map, remap_labels
 from world2minecraft.minecraftocc.block_map.parser import MAPS
-from world2minecraft.minecraftocc.labels.fine_classes import fine_names
+from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
 
 SECTION = 16
-NEAR = 6  # Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
-MOST_CHUNKS = 6144  # About half a minute of reading; six regions.
-MOST_SIDE = 320  # Blocks; what is larger is cut around the middle of what was built.
+NEAR_CHUNKS = (
+    6  # Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
+)
+MAX_CHUNKS = 6144  # About half a minute of reading; six regions.
+MAX_SIDE = 320  # Blocks; what is larger is cut around the middle of what was built.
 MARGIN = 2
 # By parts of names: what players build of, and what no landscape, ore or plant is.
 BUILT = (
@@ -48,13 +53,13 @@ BUILT = (
 # ... but these stand in mines and ruins too: they go on with a build, and alone are none.
 WILD = ("oak_planks", "oak_fence", "rail", "mossy_stone_bricks", "stone_bricks")
 _BUILT = re.compile("|".join(translate(pattern) for pattern in BUILT))
-LEAST = 3  # Kinds of built blocks that some section of a build must have.
+MIN_BUILT_KINDS = 3  # Kinds of built blocks that some section of a build must have.
 FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
 OWN_MAP = MAPS[0]  # The map that our own truth is by.
 _FIRST = ("build", "world")  # Names of folders that say nothing of the scene.
 
 
-def built_box(world: Path) -> tuple[Box, str]:
+def find_built_box(world: Path) -> tuple[Box, str]:
     """Return the box of what was built in a world, and a sentence that says so.
 
     Where nothing looks built, the blocks around the spawn are returned.
@@ -64,17 +69,15 @@ def built_box(world: Path) -> tuple[Box, str]:
     """
     spawn = level_spawn(read_level(world))
     sections, was_cut = _built_sections(world, (spawn[0] >> 4, spawn[2] >> 4))
-    if max(sections.values(), default=0) < LEAST:
+    if max(sections.values(), default=0) < MIN_BUILT_KINDS:
         box, _ = box_around_spawn(world)
         return box, (
             "nothing in this world looks built, so the blocks around its spawn are taken; "
             "--box x0 y0 z0 x1 y1 z1 chooses others"
         )
-    box = _box_of(_group(sections, spawn))
+    box = _box_of(_main_build(sections, spawn))
     told = " ".join(str(value) for value in box)
-    more = (
-        f"; only the {MOST_CHUNKS:,} chunks nearest to the spawn were searched" if was_cut else ""
-    )
+    more = f"; only the {MAX_CHUNKS:,} chunks nearest to the spawn were searched" if was_cut else ""
     return box, f"this world has no scene.json: taking what looks built, --box {told}{more}"
 
 
@@ -106,17 +109,17 @@ def _built_sections(
     for path in sorted(region_files(world), key=lambda one: _distance(one, spawn)):
         for place, data in read_region(path):
             searched += 1
-            if searched > MOST_CHUNKS:
+            if searched > MAX_CHUNKS:
                 return found, True
             _, sections = read_chunk(data, place, path, known)
             for section in sections:
-                count = sum(_asked(state, built) for state in section.palette)
+                count = sum(_is_built_cached(state, built) for state in section.palette)
                 if count or any(_name(state) in WILD for state in section.palette):
                     found[section.place] = count
     return found, False
 
 
-def _asked(state: str, built: dict[str, bool]) -> bool:
+def _is_built_cached(state: str, built: dict[str, bool]) -> bool:
     if state not in built:
         built[state] = is_built(state)
     return built[state]
@@ -129,7 +132,7 @@ def _distance(region: Path, spawn: tuple[int, int]) -> tuple[float, str]:
     return float(np.hypot(x - spawn[0], z - spawn[1])), region.name
 
 
-def _group(
+def _main_build(
     sections: dict[tuple[int, int, int], int], spawn: tuple[int, int, int]
 ) -> Iterable[tuple[int, int, int]]:
     """Return the sections of the build that is meant: near the spawn if any is, else the largest.
@@ -147,8 +150,8 @@ def _group(
     weight = np.array([sections[tuple(place)] for place in places.tolist()])
     sums = np.bincount(own, weight, minlength=count + 1)
     middle = np.array([spawn[0] >> 4, spawn[2] >> 4])
-    is_meant = weight >= LEAST
-    near = is_meant & (np.abs(places[:, [0, 2]] - middle).max(axis=1) <= NEAR)
+    is_meant = weight >= MIN_BUILT_KINDS
+    near = is_meant & (np.abs(places[:, [0, 2]] - middle).max(axis=1) <= NEAR_CHUNKS)
     candidates = np.unique(own[near if near.any() else is_meant])
     best = int(candidates[np.argmax(sums[candidates])])
     return [tuple(place) for place in places[own == best].tolist()]
@@ -158,14 +161,14 @@ def _box_of(places: Iterable[tuple[int, int, int]]) -> Box:
     held = np.array(list(places))
     low, high = held.min(axis=0) * SECTION - MARGIN, (held.max(axis=0) + 1) * SECTION + MARGIN
     middle = (low + high) // 2
-    low = np.maximum(low, middle - MOST_SIDE // 2)
-    high = np.minimum(high, middle + MOST_SIDE // 2)
+    low = np.maximum(low, middle - MAX_SIDE // 2)
+    high = np.minimum(high, middle + MAX_SIDE // 2)
     x0, y0, z0 = (int(value) for value in low)
     x1, y1, z1 = (int(value) for value in high)
     return x0, y0, z0, x1, y1, z1
 
 
-def designs_beside(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray, tuple[str, ...]]:
+def read_designs(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the design of each block of a volume, uint16 [X, Y, Z], and their names.
 
     Number 0 stands for none; its name is empty.
@@ -185,10 +188,10 @@ def designs_beside(folder: Path | None, volume: BlockVolume) -> tuple[np.ndarray
         ours, theirs = overlapping_cells(volume, scene)
         none[ours] = np.where(volume.states[ours] > 0, scene.design[theirs], 0)
         return none, scene.designs
-    return _of_run(volume, read_run_templates(folder.parent))
+    return _designs_of_run(volume, read_run_templates(folder.parent))
 
 
-def _of_run(
+def _designs_of_run(
     volume: BlockVolume, templates: Mapping[int, str]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     names = ("", *sorted(set(templates.values())))
@@ -246,7 +249,7 @@ class SceneSource:
         """
         if "designs" not in self._cache:
             source = self._read()
-            self._cache["designs"] = designs_beside(source.folder, source.volume)
+            self._cache["designs"] = read_designs(source.folder, source.volume)
         return self._cache["designs"]
 
     def start(self) -> tuple[float, float, float] | None:
@@ -264,9 +267,9 @@ class SceneSource:
 
     def _read(self) -> BuildSource:
         if "source" not in self._cache:
-            source = read_build(self.path, self.box, choose=built_box)
+            source = read_build(self.path, self.box, choose=find_built_box)
             if source.folder is None or self.blocks_per_metre is not None:
-                source.volume = _scaled(source.volume, self.blocks_per_metre or FOREIGN_SCALE)
+                source.volume = _with_scale(source.volume, self.blocks_per_metre or FOREIGN_SCALE)
             self._cache["source"] = source
         return self._cache["source"]
 
@@ -274,10 +277,10 @@ class SceneSource:
         volume = self._read().volume
         if not volume.semantic.any():
             return classify(volume, self.rules)
-        volume = with_unlabelled(volume, self.rules)
+        volume = classify_unlabelled(volume, self.rules)
         if self.block_map == OWN_MAP:
             return volume
-        names = fine_names(volume, self.designs())
+        names = map_fine_classes(volume, self.designs())
         fine = names.of_cells(np.arange(volume.states.size)).reshape(volume.states.shape)
         return replace(
             volume, semantic=remap_labels(volume.semantic, fine, names.classes, self.rules)
@@ -314,7 +317,7 @@ def open_scene_source(
         raise UsageError(f"blocks per metre must be above 0 and up to 64, not {blocks_per_metre}")
     load_block_map(block_map)
     return SceneSource(
-        place, scene_id or scene_id_of(place), str(block_map), _box(box), blocks_per_metre
+        place, scene_id or scene_id_of(place), str(block_map), _check_box(box), blocks_per_metre
     )
 
 
@@ -335,7 +338,7 @@ def scene_id_of(path: Path) -> str:
     return re.sub(r"[^A-Za-z0-9_]+", "_", stem).strip("_") or "scene"
 
 
-def with_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
+def classify_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
     """Return a volume with classes by a map where it has blocks that it says nothing of.
 
     A player who builds on in a world of ours leaves such blocks.
@@ -352,7 +355,7 @@ def with_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
     return replace(volume, semantic=semantic, instance=instance.astype(np.uint16))
 
 
-def _box(box: Sequence[int] | None) -> Box | None:
+def _check_box(box: Sequence[int] | None) -> Box | None:
     if box is None:
         return None
     numbers = [int(value) for value in box]
@@ -364,5 +367,5 @@ def _box(box: Sequence[int] | None) -> Box | None:
     return x0, y0, z0, x1, y1, z1
 
 
-def _scaled(volume: BlockVolume, blocks_per_metre: float) -> BlockVolume:
+def _with_scale(volume: BlockVolume, blocks_per_metre: float) -> BlockVolume:
     return replace(volume, block_to_room=block_to_room(np.zeros(2), blocks_per_metre))

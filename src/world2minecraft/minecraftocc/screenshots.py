@@ -1,8 +1,16 @@
-"""Real screenshots from the game, each with its pose: from a sidecar, its name, or its PNG text.
+"""Read real screenshots from the game, each with its pose: from a sidecar, its name, or PNG text.
 
-Whether a pose is that of the feet, as F3 shows it, or of the eye must be said: a slip of 1.62
-blocks spoils every label. Without other word a sidecar beside the pictures is looked for first,
-then the PNG's texts, then the name; each view says where its pose came from.
+Whether a pose is that of the feet, as F3 shows it, or of the eye must be stated: a slip of 1.62
+blocks spoils every label. By default a sidecar beside the pictures is looked for first, then the
+PNG's texts, then the name; each view says where its pose came from.
+
+A pattern of names is a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, which is safe whatever
+the names are, or a regex with the named groups x, y, z, yaw and pitch; a regex that could take very
+long on some name (nested repeats, many wildcards) is refused.
+
+PNGs are read chunk by chunk, everything bounded, and not by Pillow: its reader keeps the last of
+several texts with one keyword, where a pose given twice must be refused, unpacks all pixels to find
+texts behind them, and takes a text that does not unpack for an empty one.
 """
 
 import re
@@ -23,20 +31,24 @@ from world2minecraft.rendering.views.cameras import GamePose, camera_of
 from world2minecraft.rendering.views.pose_file import TourPose, read_tour
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
-MOST_CHUNKS = 20_000
-MOST_TEXT, MOST_TEXTS = 1 << 16, 64  # Bytes of one text, unpacked; texts of a file.
-MOST_SIDE_PX = 20_000
-NEEDED = ("x", "y", "z", "yaw", "pitch")
-USUAL = ("*{x}_{y}_{z}_{yaw}_{pitch}", "*{x},{y},{z},{yaw},{pitch}", "*{x} {y} {z} {yaw} {pitch}")
-MOST_NAME = 255  # Letters, as most file systems have it.
-MOST_PATTERN = 400
-MOST_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
+MAX_CHUNKS = 20_000
+MAX_TEXT, MAX_TEXTS = 1 << 16, 64  # Bytes of one text, unpacked; texts of a file.
+MAX_SIDE_PX = 20_000
+POSE_FIELDS = ("x", "y", "z", "yaw", "pitch")
+DEFAULT_PATTERNS = (
+    "*{x}_{y}_{z}_{yaw}_{pitch}",
+    "*{x},{y},{z},{yaw},{pitch}",
+    "*{x} {y} {z} {yaw} {pitch}",
+)
+MAX_NAME = 255  # Letters, as most file systems have it.
+MAX_PATTERN = 400
+MAX_WILD = 2  # Repeats of nearly anything: the time grows with the power of their number.
 NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,9})?"
 _WHOLE = r"(?:(?<![\d.])|(?=[-+]))"  # Behind anything a number begins, and does not go on.
 _EXAMPLE = "{x}_{y}_{z}_{yaw}_{pitch}"
 At = Literal["feet", "eye"]
 SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")
-MOST_PICTURES = 1_000_000
+MAX_PICTURES = 1_000_000
 _PAIR = re.compile(
     r"(?<![A-Za-z_])(yaw|pitch|x|y|z)[\"']?\s{0,3}[:=]\s{0,3}([-+]?\d{1,9}(?:\.\d{1,16})?)(?![\d.])",
     re.IGNORECASE,
@@ -61,35 +73,35 @@ def read_png_facts(path: str | Path) -> PngFacts:
     source = Path(path)
     try:
         with source.open("rb") as stream:
-            return _facts(stream, source)
+            return _read_facts(stream, source)
     except OSError as error:
         raise InputError(source, f"cannot be read: {error.strerror or error}") from error
 
 
-def _facts(stream: BinaryIO, source: Path) -> PngFacts:
+def _read_facts(stream: BinaryIO, source: Path) -> PngFacts:
     if stream.read(8) != SIGNATURE:
         raise DamagedFileError(source, "is no PNG")
-    length, kind = _head(stream, source)
+    length, kind = _read_chunk_head(stream, source)
     if kind != b"IHDR" or length != 13:
         raise DamagedFileError(source, "is no PNG: it does not begin with its size")
-    width, height = struct.unpack(">II", _body(stream, length, kind, source)[:8])
-    if not (0 < width <= MOST_SIDE_PX and 0 < height <= MOST_SIDE_PX):
+    width, height = struct.unpack(">II", _read_chunk_body(stream, length, kind, source)[:8])
+    if not (0 < width <= MAX_SIDE_PX and 0 < height <= MAX_SIDE_PX):
         raise DamagedFileError(source, f"says a size of {width}x{height} pixels")
     texts: list[tuple[str, str]] = []
-    for _ in range(MOST_CHUNKS):
-        length, kind = _head(stream, source)
+    for _ in range(MAX_CHUNKS):
+        length, kind = _read_chunk_head(stream, source)
         if kind == b"IEND":
             return PngFacts(width, height, tuple(texts))
         if kind not in (b"tEXt", b"zTXt", b"iTXt"):
             stream.seek(length + 4, 1)
             continue
-        if length > MOST_TEXT or len(texts) == MOST_TEXTS:
-            raise LimitError(source, f"holds more than {MOST_TEXTS} texts of {MOST_TEXT} bytes")
-        texts.append(_text(kind, _body(stream, length, kind, source), source))
-    raise LimitError(source, f"has more than {MOST_CHUNKS} chunks")
+        if length > MAX_TEXT or len(texts) == MAX_TEXTS:
+            raise LimitError(source, f"holds more than {MAX_TEXTS} texts of {MAX_TEXT} bytes")
+        texts.append(_parse_text(kind, _read_chunk_body(stream, length, kind, source), source))
+    raise LimitError(source, f"has more than {MAX_CHUNKS} chunks")
 
 
-def _head(stream: BinaryIO, source: Path) -> tuple[int, bytes]:
+def _read_chunk_head(stream: BinaryIO, source: Path) -> tuple[int, bytes]:
     head = stream.read(8)
     if len(head) < 8:
         raise DamagedFileError(source, "is cut short")
@@ -99,7 +111,7 @@ def _head(stream: BinaryIO, source: Path) -> tuple[int, bytes]:
     return length, kind
 
 
-def _body(stream: BinaryIO, length: int, kind: bytes, source: Path) -> bytes:
+def _read_chunk_body(stream: BinaryIO, length: int, kind: bytes, source: Path) -> bytes:
     data = stream.read(length + 4)
     if len(data) < length + 4:
         raise DamagedFileError(source, "is cut short")
@@ -108,30 +120,27 @@ def _body(stream: BinaryIO, length: int, kind: bytes, source: Path) -> bytes:
     return data[:length]
 
 
-def _text(kind: bytes, data: bytes, source: Path) -> tuple[str, str]:
+def _parse_text(kind: bytes, data: bytes, source: Path) -> tuple[str, str]:
     keyword, _, rest = data.partition(b"\0")
     encoding = "latin-1"
     if kind == b"zTXt":
-        rest = _unpacked(rest[1:], source)
+        rest = _decompress(rest[1:], source)
     elif kind == b"iTXt":
         packed, encoding = rest[:1] == b"\1", "utf-8"
         rest = rest[2:].partition(b"\0")[2].partition(b"\0")[2]  # Behind language and translation.
-        rest = _unpacked(rest, source) if packed else rest
+        rest = _decompress(rest, source) if packed else rest
     return keyword.decode("latin-1"), rest.decode(encoding, "replace")
 
 
-def _unpacked(data: bytes, source: Path) -> bytes:
+def _decompress(data: bytes, source: Path) -> bytes:
     unpacker = zlib.decompressobj()
     try:
-        text = unpacker.decompress(data, MOST_TEXT)
+        text = unpacker.decompress(data, MAX_TEXT)
     except zlib.error as error:
         raise DamagedFileError(source, "is damaged: a packed text does not unpack") from error
     if unpacker.unconsumed_tail:
-        raise LimitError(source, f"holds a text of more than {MOST_TEXT} bytes")
+        raise LimitError(source, f"holds a text of more than {MAX_TEXT} bytes")
     return text
-
-
-
 
 
 class NamePattern:
@@ -140,10 +149,10 @@ class NamePattern:
     def __init__(self, text: str):
         """Check a pattern. Raises UsageError."""
         self.text = text
-        if len(text) > MOST_PATTERN:
-            raise UsageError(f"a pattern has up to {MOST_PATTERN} letters, not {len(text)}")
-        self._compiled = re.compile(_regex(text) if "(?P<" in text else _of_template(text))
-        missing = [name for name in NEEDED if name not in self._compiled.groupindex]
+        if len(text) > MAX_PATTERN:
+            raise UsageError(f"a pattern has up to {MAX_PATTERN} letters, not {len(text)}")
+        self._compiled = re.compile(_check_regex(text) if "(?P<" in text else _template_regex(text))
+        missing = [name for name in POSE_FIELDS if name not in self._compiled.groupindex]
         if missing:
             raise UsageError(
                 f"pattern {text!r} has no {missing[0]}; it needs all of {_EXAMPLE}, in any order"
@@ -151,26 +160,28 @@ class NamePattern:
 
     def read(self, stem: str) -> dict[str, float] | None:
         """Return x, y, z, yaw and pitch of a name; None where it does not match."""
-        if len(stem) > MOST_NAME or (found := self._compiled.fullmatch(stem)) is None:
+        if len(stem) > MAX_NAME or (found := self._compiled.fullmatch(stem)) is None:
             return None
         try:
-            return {name: float(found[name]) for name in NEEDED}
+            return {name: float(found[name]) for name in POSE_FIELDS}
         except (TypeError, ValueError):  # A group that took part in no match, or no number.
             return None
 
 
-def _of_template(text: str) -> str:
+def _template_regex(text: str) -> str:
     """Return the regex of a template. Raises UsageError."""
-    if text.count("*") > MOST_WILD:
-        raise UsageError(f"pattern {text!r} has more than {MOST_WILD} *")
+    if text.count("*") > MAX_WILD:
+        raise UsageError(f"pattern {text!r} has more than {MAX_WILD} *")
     parts, known, before = [], set(), ""
     for part in filter(None, re.split(r"(\{[^{}]*\}|\*)", text)):
         if part == "*":
             parts.append(".*?")
         elif part.startswith("{") and part.endswith("}"):
             name = part[1:-1]
-            if name not in NEEDED:
-                raise UsageError(f"pattern {text!r} has {part}; it knows {', '.join(NEEDED)} and *")
+            if name not in POSE_FIELDS:
+                raise UsageError(
+                    f"pattern {text!r} has {part}; it knows {', '.join(POSE_FIELDS)} and *"
+                )
             if name in known:
                 raise UsageError(f"pattern {text!r} has {part} twice")
             if before.startswith("{"):
@@ -183,25 +194,25 @@ def _of_template(text: str) -> str:
     return "".join(parts)
 
 
-def _regex(text: str) -> str:
+def _check_regex(text: str) -> str:
     """Return a regex as it is, when it is quick on every name. Raises UsageError."""
     try:
         tree = import_module("re._parser").parse(text)
     except (re.error, RecursionError, OverflowError) as error:
         raise UsageError(f"pattern {text!r} is no regex ({error}); try {_EXAMPLE}") from error
-    found = list(_items(tree))
+    found = list(_regex_parts(tree))
     names = [name for name, _, _ in found]
     if any("ASSERT" in name or name.startswith(("GROUPREF", "BRANCH")) for name in names):
         raise UsageError(f"pattern {text!r} looks ahead or back, or branches; try {_EXAMPLE}")
     if any(inside for name, inside, _ in found if name == "REPEAT"):
         raise UsageError(f"pattern {text!r} has a repeat within a repeat; try {_EXAMPLE}")
     wild = sum(is_wild for name, _, is_wild in found if name == "REPEAT")
-    if wild > MOST_WILD:
+    if wild > MAX_WILD:
         raise UsageError(f"pattern {text!r} has {wild} repeats of anything; try {_EXAMPLE}")
     return text
 
 
-def _items(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, bool]]:
+def _regex_parts(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, bool]]:
     """Give what a parsed regex is made of: its name, whether it is repeated, whether it is wild."""
     for code, value in tree:
         name = str(code)
@@ -209,17 +220,17 @@ def _items(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, bool]]:
             _, most, body = value
             is_many = int(most) > 1
             if is_many:
-                yield "REPEAT", inside, _is_wild(body)
-            yield from _items(body, inside or is_many)
+                yield "REPEAT", inside, _matches_anything(body)
+            yield from _regex_parts(body, inside or is_many)
         elif name == "SUBPATTERN":
-            yield from _items(value[-1], inside)
+            yield from _regex_parts(value[-1], inside)
         elif name == "ATOMIC_GROUP":
-            yield from _items(value, inside)
+            yield from _regex_parts(value, inside)
         else:
             yield name, inside, False
 
 
-def _is_wild(body: Any) -> bool:
+def _matches_anything(body: Any) -> bool:
     """Whether what is repeated takes more than figures, dots and signs."""
     if len(body) != 1:
         return True
@@ -236,8 +247,6 @@ def _is_numeric(kind: str, told: Any) -> bool:
     if kind == "RANGE":
         return ord("0") <= told[0] and told[1] <= ord("9")
     return kind == "CATEGORY" and str(told) == "CATEGORY_DIGIT"
-
-
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,7 +311,7 @@ def read_screenshots(
             raise InputError(path, f"has no pose: {told} does not tell x, y, z, yaw and pitch")
         camera = camera_of(facts.width_px, facts.height_px, vertical_fov_deg=vertical_fov_deg)
         try:
-            pose = GamePose(*(numbers[name] for name in NEEDED), at=at)
+            pose = GamePose(*(numbers[name] for name in POSE_FIELDS), at=at)
         except UsageError as error:
             raise DamagedFileError(path, f"has no pose of the game: {error}") from error
         views.append(RecordedView(path, camera, pose, told, frame))
@@ -315,8 +324,8 @@ def _pictures(folder: Path) -> list[Path]:
     found = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".png")
     if not found:
         raise InputError(folder, "has no screenshot: no .png lies in it")
-    if len(found) > MOST_PICTURES:
-        raise LimitError(folder, f"has more than {MOST_PICTURES} screenshots")
+    if len(found) > MAX_PICTURES:
+        raise LimitError(folder, f"has more than {MAX_PICTURES} screenshots")
     return found
 
 
@@ -386,13 +395,13 @@ def _reader(pictures: list[Path], pattern: str | None) -> tuple[Reader, str]:
     facts = read_png_facts(first)
     if _by_text(first, facts) is not None:
         return _by_text, "its PNG text"
-    for usual in USUAL:
+    for usual in DEFAULT_PATTERNS:
         if _by_name(usual)(first, facts) is not None:
             return _by_name(usual), f"its name by {usual}"
     raise InputError(
         first,
         f"has no pose: no sidecar ({', '.join(SIDECARS)}) lies beside it, its PNG texts tell none, "
-        f"and its name is not like {USUAL[0]}; name a sidecar or a pattern",
+        f"and its name is not like {DEFAULT_PATTERNS[0]}; name a sidecar or a pattern",
     )
 
 
@@ -405,9 +414,9 @@ def _by_text(path: Path, facts: PngFacts) -> dict[str, float] | None:
     """Return the pose that the texts of a PNG tell: five keywords, or pairs such as ``x=1.5``."""
     found: dict[str, float] = {}
     for keyword, text in facts.texts:
-        own = f"{keyword}={text.strip()}" if keyword.lower() in NEEDED else text
+        own = f"{keyword}={text.strip()}" if keyword.lower() in POSE_FIELDS else text
         for name, number in _PAIR.findall(own):
             value = float(number)
             if found.setdefault(name.lower(), value) != value:
                 raise DamagedFileError(path, f"tells {name.lower()} twice in its PNG texts")
-    return found if len(found) == len(NEEDED) else None
+    return found if len(found) == len(POSE_FIELDS) else None

@@ -27,7 +27,7 @@ RAMP = np.array(
 )
 
 
-def sample_picture(sample: OccSample) -> np.ndarray:
+def draw_sample(sample: OccSample) -> np.ndarray:
     """Return the picture of a sample, uint8 [H, W, 3]."""
     width, height = PANEL_PX
     sheet = Sheet(MARGIN_PX * 4 + width * 2 + 150, HEAD_PX + (height + LINE_PX + MARGIN_PX) * 2)
@@ -36,14 +36,14 @@ def sample_picture(sample: OccSample) -> np.ndarray:
         left = MARGIN_PX + (number % 2) * (width + MARGIN_PX)
         top = HEAD_PX + (number // 2) * (height + LINE_PX + MARGIN_PX)
         sheet.text((left, top), title, 14, FAINT)
-        at, scale = _placed(sheet, pixels, (left, top + LINE_PX), smooth)
+        at, scale = _place_panel(sheet, pixels, (left, top + LINE_PX), smooth)
         if not smooth:
             _draw_view(sheet, sample, at, scale)
     _legend(sheet, sample, (MARGIN_PX * 3 + width * 2, HEAD_PX + LINE_PX))
     return sheet.finished()
 
 
-def seen_in_cells(sample: OccSample) -> float | None:
+def share_of_depth_in_cells(sample: OccSample) -> float | None:
     """Return the share of the depth's points within the region that lie in an occupied cell.
 
     Points at most a cell beside one count: surfaces lie on the borders of cells. None where there
@@ -51,13 +51,13 @@ def seen_in_cells(sample: OccSample) -> float | None:
     """
     if sample.depth_m is None:
         return None
-    _, cells = cells_behind(sample, sample.depth_m)
+    _, cells = cells_behind_depth(sample, sample.depth_m)
     if not len(cells):
         return None
-    return float(_widened(sample.occ.occupied)[tuple(cells.T)].mean())
+    return float(_dilate(sample.occ.occupied)[tuple(cells.T)].mean())
 
 
-def label_image_of(sample: OccSample) -> np.ndarray:
+def project_labels(sample: OccSample) -> np.ndarray:
     """Return the label of what each pixel sees, uint8 [H, W]; 0 where the region does not hold it.
 
     It is that of the cell behind the depth; where there is none, of the first cell that the ray
@@ -72,7 +72,7 @@ def label_image_of(sample: OccSample) -> np.ndarray:
     met = labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
     met = np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
     if sample.depth_m is not None:
-        pixels, cells = cells_behind(sample, sample.depth_m)
+        pixels, cells = cells_behind_depth(sample, sample.depth_m)
         behind = sample.occ.labels[tuple(cells.T)]
         met.reshape(-1)[pixels[behind > 0]] = behind[behind > 0]
     return met
@@ -82,7 +82,7 @@ def _camera_to_region(sample: OccSample) -> np.ndarray:
     return invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
 
 
-def cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def cells_behind_depth(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return where pixels lead by their depth: to the cell a little behind the surface they see.
 
     Returns:
@@ -100,12 +100,12 @@ def cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np
     return pixels[within], cells[within]
 
 
-def labelled_picture(sample: OccSample) -> np.ndarray:
+def overlay_labels(sample: OccSample) -> np.ndarray:
     """Return the picture with its labels over it, uint8 [H, W, 3]; on grey where there is none."""
     size = (sample.camera.height_px, sample.camera.width_px)
     colour = np.full((*size, 3), PANEL, np.uint8) if sample.colour is None else sample.colour
-    labels = label_image_of(sample)
-    mixed = LABEL_SHARE * _painted(labels) + (1 - LABEL_SHARE) * colour
+    labels = project_labels(sample)
+    mixed = LABEL_SHARE * _colour_labels(labels) + (1 - LABEL_SHARE) * colour
     return np.where((labels > 0)[..., None], mixed, colour).astype(np.uint8)
 
 
@@ -119,7 +119,7 @@ def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
     return [
         (f"{title}, {size[1]} x {size[0]}", colour, True),
         (f"depth, 0 to {far_m:.1f} m" if far_m else "depth: none", seen, True),
-        ("labels, as the camera meets them", labelled_picture(sample), True),
+        ("labels, as the camera meets them", overlay_labels(sample), True),
         ("the region from above, without its ceiling", _from_above(sample), False),
     ]
 
@@ -144,7 +144,7 @@ def _from_above(sample: OccSample) -> np.ndarray:
     shown = (labels > 1) & (labels != UNKNOWN)  # 1 is the ceiling.
     top = labels.shape[2] - 1 - np.argmax(shown[:, :, ::-1], axis=2)
     ids = np.where(shown.any(axis=2), np.take_along_axis(labels, top[..., None], 2)[..., 0], 0)
-    colours = _painted(ids).astype(np.float64)
+    colours = _colour_labels(ids).astype(np.float64)
     colours *= (0.75 + 0.25 * top / max(labels.shape[2] - 1, 1))[..., None]
     colours[ids == 0] = NOTHING
     colours[(labels == UNKNOWN).all(axis=2)] = UNKNOWN_COLOUR
@@ -153,7 +153,7 @@ def _from_above(sample: OccSample) -> np.ndarray:
     return np.rot90(colours.astype(np.uint8)).copy()
 
 
-def _placed(
+def _place_panel(
     sheet: Sheet, pixels: np.ndarray, corner: tuple[float, float], smooth: bool
 ) -> tuple[tuple[float, float], float]:
     """Put a picture into its panel as large as it fits; return its corner and its scale."""
@@ -198,7 +198,7 @@ def _legend(sheet: Sheet, sample: OccSample, corner: tuple[float, float]) -> Non
 
 def _lines(sample: OccSample, held: np.ndarray) -> list[str]:
     occ = sample.occ
-    met = seen_in_cells(sample)
+    met = share_of_depth_in_cells(sample)
     return [
         f"split: {sample.split or 'none'}",
         f"region: {occ.region.kind}",
@@ -210,13 +210,13 @@ def _lines(sample: OccSample, held: np.ndarray) -> list[str]:
     ]
 
 
-def _painted(labels: np.ndarray) -> np.ndarray:
+def _colour_labels(labels: np.ndarray) -> np.ndarray:
     table = np.full((256, 3), UNKNOWN_COLOUR, np.uint8)
     table[: len(CLASS_COLOURS)] = CLASS_COLOURS
     return table[labels]
 
 
-def _widened(mask: np.ndarray) -> np.ndarray:
+def _dilate(mask: np.ndarray) -> np.ndarray:
     """Return a mask with the cells that touch it by a face."""
     wide = mask.copy()
     for axis in range(3):

@@ -52,6 +52,16 @@ listen().catch(() => {{}}).finally(() => {{
   document.getElementById("keys").textContent = "The program has ended; close this page."
 }})
 </script>"""
+PATIENCE_S = 600.0  # Without a key for so long nobody is there.
+KEYS = {
+    "ArrowUp": Move.FORWARD,
+    "w": Move.FORWARD,
+    "ArrowLeft": Move.LEFT,
+    "a": Move.LEFT,
+    "ArrowRight": Move.RIGHT,
+    "d": Move.RIGHT,
+    " ": Move.STOP,
+}
 
 
 class Window:
@@ -177,20 +187,6 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
                     self.wfile.write(head.encode() + b"\r\n\r\n" + frame + b"\r\n")
 
     return Handler
-
-
-# The keys by which a person walks, as they come from a window.
-
-PATIENCE_S = 600.0  # Without a key for so long nobody is there.
-KEYS = {
-    "ArrowUp": Move.FORWARD,
-    "w": Move.FORWARD,
-    "ArrowLeft": Move.LEFT,
-    "a": Move.LEFT,
-    "ArrowRight": Move.RIGHT,
-    "d": Move.RIGHT,
-    " ": Move.STOP,
-}
 
 
 def wait_for_move(window: Window, patience_s: float = PATIENCE_S) -> Move:

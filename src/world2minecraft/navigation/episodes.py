@@ -40,7 +40,7 @@ def targets_of(scene: VlnScene) -> tuple[Target, ...]:
     """
     things = []
     for landmark in scene.landmarks:
-        goals = scene.goals_at(landmark) if landmark.is_told else ()
+        goals = scene.goals_at(landmark) if landmark.is_unambiguous else ()
         floors = scene.to_room_m(np.array(goals))[:, 2] if goals else np.zeros(0)
         if len(floors) and landmark.low_m[2] - floors.min() <= MAX_HEIGHT_M:
             things.append(target_of(scene, landmark, goals))
@@ -119,7 +119,7 @@ def random_episode(
     turn_deg = get_move_set(move_set).turn_deg
     for _ in range(TRIES):
         target = targets[int(rng.integers(len(targets)))]
-        away = scene.field_m(target.goals)[scene.main_places]
+        away = scene.distances_m(target.goals)[scene.main_places]
         fit = np.flatnonzero((away >= span_m[0]) & (away <= span_m[1]))
         if not len(fit):
             continue

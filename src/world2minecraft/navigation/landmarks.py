@@ -76,7 +76,7 @@ class Landmark:
     """A thing of a scene. Metres and boxes are those of the room's frame.
 
     ``name`` is its own in the scene ("piano", "red chair", "chair beside the piano"); ``noun`` is
-    the plain word. ``is_told`` says whether a person can tell which one the name means: names that
+    the plain word. ``is_unambiguous`` says whether a person can tell which one the name means: names that
     end in a number, and "object", tell nobody.
     """
 
@@ -89,7 +89,7 @@ class Landmark:
     size_m: np.ndarray  # float64 [3]
     design: str = ""  # of the furniture library, "" where unknown
     room: int = -1  # of the scene's rooms
-    is_told: bool = True
+    is_unambiguous: bool = True
 
     @property
     def class_name(self) -> str:
@@ -146,10 +146,10 @@ def assign_unique_names(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     total, seen, result = Counter(phrases), Counter[str](), []
     for one, phrase in zip(landmarks, phrases, strict=True):
         if total[phrase] == 1:
-            result.append(replace(one, name=phrase, is_told=one.noun != _UNSPECIFIC_NOUN))
+            result.append(replace(one, name=phrase, is_unambiguous=one.noun != _UNSPECIFIC_NOUN))
             continue
         seen[phrase] += 1
-        result.append(replace(one, name=f"{phrase} {seen[phrase]}", is_told=False))
+        result.append(replace(one, name=f"{phrase} {seen[phrase]}", is_unambiguous=False))
     return tuple(result)
 
 

@@ -2,6 +2,10 @@
 
 The body is the game's, times the scene's scale: it steps up 0.6 of its size and drops 3, and walks
 on no furniture, as the walkable graph. One who slides goes on along what stops him, as in the game.
+
+A step is cut into short pieces, each shorter than the body, so that nothing is passed through. Of
+each piece only its end is checked: the body fits there, or fits on top of what is in the way.
+Places are feet in world blocks.
 """
 
 import math
@@ -16,17 +20,12 @@ from world2minecraft.minecraft.physics.walk_graph import DROP, WET
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.values import MOVE_SETS, Move, MoveSet, Stance
 
-# A body's way along the ground, compiled: what stops it, what it steps up on, where it drops.
-#
-# A way is cut into short pieces, each shorter than the body, so that nothing is passed through. Of
-# each piece only its end is looked at: the body fits there, or fits on top of what is in the way.
-# Places are feet in world blocks. ``moves.moved`` is the door to this file.
-
 SUBSTEP = 0.4  # Of half a body's width: how long the pieces of a way are.
 FIRST_FURNITURE, LAST_FURNITURE = (
     5,
     10,
 )  # The classes of furniture, from the first to the last: no ground to walk on.
+_YAW_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
 
 
 class BodySize(NamedTuple):
@@ -144,9 +143,6 @@ def _under(solid, x, y, z, size):
                     found = label if top > best + TOUCH else max(found, label)
                     best = max(best, top)
     return best, found
-
-
-_YAW_DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
 
 
 def apply_move(

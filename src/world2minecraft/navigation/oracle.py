@@ -1,7 +1,10 @@
 """The oracle: from where one stands to a goal by discrete moves, as short as they allow.
 
-Its moves are searched with the very steps that the walker makes, so what it says can be walked:
-``plan_expert_path`` walks it once more before it answers. Files that hold its moves name ``ORACLE_VERSION``.
+A* over the very steps that the walker makes, so the path can be walked: ``plan_expert_path`` walks
+it once more before it returns it. A node of the search is a place with its own exact coordinates,
+so that nothing is rounded; of nodes that are nearly at one place the cheapest is expanded. The
+distance on foot to the goal, times a factor, is the heuristic, since the graph's own paths have
+corners. Files that hold expert moves name ``ORACLE_VERSION``.
 """
 
 import math
@@ -23,13 +26,13 @@ from world2minecraft.navigation.moves import (
 from world2minecraft.navigation.scene import VlnScene, distance_from_field
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
-# The search behind the oracle, compiled: A* over real moves, each tried as the walker makes it.
-#
-# A node is a place that some run of moves comes to, with its own exact coordinates, so that nothing
-# is rounded; of nodes that are nearly at one place the cheapest is followed. The way on foot to the
-# goal is what is at least left, times a share, since the graph's own ways have corners.
-
 SHARE = 0.98  # Between places the field is too long by little: by so much at most.
+ORACLE_VERSION = "w2m-oracle-2"
+GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
+GOAL_STEPS = 0.75  # or so many steps, where steps are long.
+TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
+FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the first finds none.
+MAX_NODES = 400_000
 
 
 @njit
@@ -151,14 +154,6 @@ def _precedes(keys, one, other):
     return keys[one] < keys[other] or (keys[one] == keys[other] and one < other)
 
 
-ORACLE_VERSION = "w2m-oracle-2"
-GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
-GOAL_STEPS = 0.75  # or so many steps, where steps are long.
-TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
-FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the first finds none.
-MAX_NODES = 400_000
-
-
 @dataclass(frozen=True)
 class ExpertPath:
     """The oracle's way: moves, STOP last, and where each but STOP comes to, the start first."""
@@ -195,7 +190,7 @@ def plan_expert_path(
         <Move.STOP: 0>
     """
     how = get_move_set(move_set)
-    field = scene.way_field_m(goals)
+    field = scene.corner_distances_m(goals)
     if not np.isfinite(scene.distance_m(stance.feet, goals)):
         return None
     step = forward_blocks(scene, how)

@@ -1,7 +1,8 @@
 """A world as a walker has it: floor to walk on, distances on foot, things with names, and a view.
 
 In: the path of any place that holds blocks. Out: ``VlnScene``; each of its parts is made when it is
-first asked for. Doors that a player can open stand open, to body and eye alike.
+first asked for. Doors that a player can open stand open, to body and eye alike. ``FloorTable`` has
+the walkable graph by columns, so that a place between those of the graph finds its neighbours.
 """
 
 from collections import OrderedDict
@@ -43,15 +44,20 @@ from world2minecraft.navigation.landmarks import Landmark, landmarks_of
 from world2minecraft.navigation.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.navigation.values import Stance
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.shading_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose
-
-# The walkable graph as a table, so that a place between those of the graph finds them at once.
 
 REACH_SPACINGS = 1.5  # Spacings: places so near to a body are on its own side of any wall,
 LEVEL_SIZES = 0.6  # and so near in height, in sizes of the body, are on its own floor.
+BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
+MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
+STOREY_M = 2.8  # What is so far over a floor, or beside it, is not of its room.
+REACH_M = 1.0  # One stands before a thing where it is no farther than this,
+RING_M = 0.25  # and about as near as one can come.
+MAX_GOALS = 32
+MAX_FIELDS = 64  # Kept of those last used.
 
 
 class FloorTable(NamedTuple):
@@ -103,15 +109,6 @@ def distance_from_field(floor, field, x, y, z):
     return best
 
 
-BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
-MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
-STOREY_M = 2.8  # What is so far over a floor, or beside it, is not of its room.
-REACH_M = 1.0  # One stands before a thing where it is no farther than this,
-RING_M = 0.25  # and about as near as one can come.
-MAX_GOALS = 32
-MAX_FIELDS = 64  # Kept of those last used.
-
-
 class VlnScene:
     """A world to walk in.
 
@@ -155,23 +152,23 @@ class VlnScene:
         return np.array(self.volume.corner, np.int64)
 
     @cached_property
-    def ways(self) -> WalkGraph:
+    def corner_graph(self) -> WalkGraph:
         """The graph again, with the places at corners where shortest ways bend."""
         return walk_graph(self.volume, WalkRule(scale=self.scale, at_corners=True))
 
     @cached_property
     def floor(self) -> FloorTable:
         """The ways as a table, for places between their own."""
-        return build_floor_table(self.ways)
+        return build_floor_table(self.corner_graph)
 
     @cached_property
     def _lattice(self) -> Lattice:
-        return lattice_of(self.ways)
+        return lattice_of(self.corner_graph)
 
     @cached_property
     def _own_places(self) -> np.ndarray:
         """The place in the ways of each place of the graph, int64 [N]."""
-        return np.asarray(KDTree(self.ways.feet).query(self.graph.feet)[1])
+        return np.asarray(KDTree(self.corner_graph.feet).query(self.graph.feet)[1])
 
     @cached_property
     def render_scene(self) -> BlockScene:
@@ -253,15 +250,15 @@ class VlnScene:
         picked = ring[np.linspace(0, len(ring) - 1, min(len(ring), MAX_GOALS)).round().astype(int)]
         return tuple((float(x), float(y), float(z)) for x, y, z in feet[picked])
 
-    def field_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
+    def distances_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
         """Return how far it is on foot from each place to the nearest goal, float64 [N].
 
         Ways are straight wherever a body can walk straight. Infinite where none leads.
         """
-        return self.way_field_m(goals)[self._own_places]
+        return self.corner_distances_m(goals)[self._own_places]
 
-    def way_field_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
-        """Return the same for each place of ``ways``.
+    def corner_distances_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
+        """Return the same for each place of ``corner_graph``.
 
         The last fields are kept: one serves a whole episode.
         """
@@ -269,8 +266,8 @@ class VlnScene:
         if key in self._fields:
             self._fields.move_to_end(key)
             return self._fields[key]
-        places = np.array(sorted({self.ways.nearest(goal) for goal in goals}))
-        field, _ = straight_distances_m(self.ways, self._lattice, places)
+        places = np.array(sorted({self.corner_graph.nearest(goal) for goal in goals}))
+        field, _ = straight_distances_m(self.corner_graph, self._lattice, places)
         self._fields[key] = field
         if len(self._fields) > MAX_FIELDS:
             self._fields.popitem(last=False)
@@ -280,12 +277,12 @@ class VlnScene:
         self, feet: tuple[float, float, float], goals: Sequence[tuple[float, float, float]]
     ) -> float:
         """Return how far it is on foot from a place, also one between those of the graph."""
-        field = self.way_field_m(goals)
+        field = self.corner_distances_m(goals)
         over = distance_from_field(self.floor, field, *(float(value) for value in feet))
         if np.isfinite(over) or not np.isfinite(field).any():
             return float(over)
-        nearest = self.ways.nearest(feet)  # Off the floor: on furniture, or in the air.
-        apart = np.linalg.norm(self.ways.feet[nearest] - np.asarray(feet))
+        nearest = self.corner_graph.nearest(feet)  # Off the floor: on furniture, or in the air.
+        apart = np.linalg.norm(self.corner_graph.feet[nearest] - np.asarray(feet))
         return float(field[nearest] + apart * self.metres_per_block)
 
     def room_at(self, feet: tuple[float, float, float]) -> int:

@@ -1,8 +1,9 @@
 """A recorded walk as moves: turns and steps of one size that end where the walk ended.
 
-The walk's corners are aimed at one after the other from where the moves so far have led, so that
-what a turn or a step is off is made good by the next ones, never dropped. Each move is made by the
-world's physics (``StepFunction``): a way that meets a wall, or that ends elsewhere, is refused.
+The walk's path is simplified to its corners (Ramer, Douglas and Peucker), which are aimed at one
+after the other from where the moves so far have led: what a turn or a step is off is corrected by
+the next ones, never dropped. Each move is made by the world's physics (``StepFunction``); a walk
+that meets a wall, or that ends elsewhere, is refused.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,9 +14,14 @@ import numpy as np
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
-# A path with the corners that matter alone: Ramer, Douglas and Peucker.
-
 EPSILON_M = 0.25  # A move: what lies nearer to a line cannot be walked otherwise.
+DISCRETIZATION_VERSION = (
+    "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
+)
+SLACK_M = 0.1  # Of the end, beside half a step.
+CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
+MEETING_M = 0.15  # nor does an end that is met so near.
+MAX_MOVES = 500
 
 
 def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
@@ -60,14 +66,6 @@ StepFunction = Callable[[Stance, Move], tuple[Stance, bool]]
 
 PathPlanner = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
 """Moves from a stance to feet in world blocks; none where it knows no way."""
-
-DISCRETIZATION_VERSION = (
-    "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
-)
-SLACK_M = 0.1  # Of the end, beside half a step.
-CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
-MEETING_M = 0.15  # nor does an end that is met so near.
-MAX_MOVES = 500
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import TypeVar
 import torch
 from torch import Tensor
 
-Moved = TypeVar("Moved", "OccInput", "OccTarget")
+Movable = TypeVar("Moved", "OccInput", "OccTarget")
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class OccInput:
 
     def to(self, device: torch.device | str) -> "OccInput":
         """Return the same with its tensors on a device."""
-        return _moved(self, device)
+        return _to_device(self, device)
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class OccTarget:
 
     def to(self, device: torch.device | str) -> "OccTarget":
         """Return the same with its tensors on a device."""
-        return _moved(self, device)
+        return _to_device(self, device)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class OccOutput:
     facts: dict[str, Tensor] = field(default_factory=dict)  # scalars worth a log line
 
 
-def _moved(value: Moved, device: torch.device | str) -> Moved:
+def _to_device(value: Movable, device: torch.device | str) -> Movable:
     held = {entry.name: getattr(value, entry.name) for entry in fields(value)}
     tensors = {name: one.to(device) for name, one in held.items() if isinstance(one, Tensor)}
     return replace(value, **tensors)

@@ -22,11 +22,11 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.networks.checkpoints import write_checkpoint, write_weights
 from world2minecraft.networks.config import RunConfig
-from world2minecraft.networks.csv_logger import Journal
-from world2minecraft.networks.lightning_module import Steps, rate_of
+from world2minecraft.networks.csv_logger import CsvLogger
+from world2minecraft.networks.lightning_module import OccupancyModule, learning_rate_at
 
 CHECKPOINT, WEIGHTS, LAST = "checkpoint.safetensors", "weights.safetensors", "last.safetensors"
-NOTED_STEPS = 20  # A mean of losses is noted so often.
+LOG_EVERY_STEPS = 20  # A mean of losses is noted so often.
 
 
 @dataclass
@@ -44,7 +44,7 @@ class RunState:
     summed: int = 0  # and of how many steps.
 
 
-class Keeper(lightning.Callback):
+class TrainingCallback(lightning.Callback):
     """Counts the steps of a run and does what is due after each."""
 
     def __init__(
@@ -57,7 +57,7 @@ class Keeper(lightning.Callback):
     ):
         self._folder, self._config, self._validate = folder, config, validate
         self._progress, self.state = progress, state
-        self._journal = Journal(folder, state.step)
+        self._journal = CsvLogger(folder, state.step)
         self._began, self._first = time.monotonic(), state.step
         self._cpu_began = time.process_time()
         self._before_s, self._cpu_before_s = state.seconds, state.cpu_seconds
@@ -67,7 +67,7 @@ class Keeper(lightning.Callback):
         self, trainer: Any, pl_module: Any, outputs: Any, batch: Any, batch_idx: int
     ) -> None:
         """Note the losses; validate, keep and stop where it is time."""
-        steps: Steps = pl_module
+        steps: OccupancyModule = pl_module
         state, config = self.state, self._config
         state.step += 1
         self._check(steps)
@@ -80,29 +80,29 @@ class Keeper(lightning.Callback):
             self._keep(steps, trainer.optimizers[0])
         self._tell(state.sums)
 
-    def _check(self, steps: Steps) -> None:
+    def _check(self, steps: OccupancyModule) -> None:
         """End a run whose loss is no number: its weights are none any more, and never will be."""
         if not math.isfinite(float(steps.found["loss"])):
-            rate = rate_of(self._config, self.state.step - 1)
+            rate = learning_rate_at(self._config, self.state.step - 1)
             raise UsageError(
                 f"the loss of step {self.state.step:,} is no number, at a learning rate of "
                 f"{rate:.2g}; train in another --out with a lower --lr, or with --precision 32 "
                 "(the best weights so far are kept)"
             )
 
-    def _sum_up(self, steps: Steps) -> None:
+    def _sum_up(self, steps: OccupancyModule) -> None:
         state = self.state
         for name, value in steps.found.items():
             state.sums[name] = state.sums.get(name, 0.0) + float(value)
         state.summed += 1
-        if state.step % NOTED_STEPS == 0 or state.step == self._config.steps:
+        if state.step % LOG_EVERY_STEPS == 0 or state.step == self._config.steps:
             figures = {f"train_{k}": v / state.summed for k, v in state.sums.items()}
-            figures["learning_rate"] = rate_of(self._config, state.step - 1)
+            figures["learning_rate"] = learning_rate_at(self._config, state.step - 1)
             self._journal.note(state.step, figures)
             state.sums, state.summed = {}, 0
             self._said = f"loss {figures['train_loss']:.3f}"
 
-    def _judge(self, steps: Steps) -> None:
+    def _judge(self, steps: OccupancyModule) -> None:
         state, counts = self.state, self._validate()
         self._journal.note(state.step, {"val_iou": counts.iou, "val_miou": counts.miou})
         if counts.miou > state.best_miou:
@@ -112,7 +112,7 @@ class Keeper(lightning.Callback):
             state.worse += 1
         state.stopped = 0 < self._config.patience <= state.worse
 
-    def _keep(self, steps: Steps, optimiser: Any) -> None:
+    def _keep(self, steps: OccupancyModule, optimiser: Any) -> None:
         self.state.seconds = self._before_s + time.monotonic() - self._began
         self.state.cpu_seconds = self._cpu_before_s + time.process_time() - self._cpu_began
         self._journal.save()
@@ -125,7 +125,7 @@ class Keeper(lightning.Callback):
         note = f"{self._said}{', ' if self._said else ''}{rate:.2f} steps/s{best}"
         self._progress("train", state.step, self._config.steps, note)
 
-    def finish(self, steps: Steps) -> None:
+    def finish(self, steps: OccupancyModule) -> None:
         """Write the last weights and close the journal."""
         write_weights(self._folder / LAST, steps.network, self._config)
         self._journal.close()

@@ -24,10 +24,10 @@ MODEL, OPTIMISER = "model.", "optimiser."
 
 def write_weights(path: Path, network: nn.Module, config: RunConfig) -> None:
     """Write a network's weights, and the run that they are of. Raises OutputError."""
-    write_bytes(path, save(_held(network.state_dict()), {CONFIG: config_text(config)}))
+    write_bytes(path, save(_cpu_tensors(network.state_dict()), {CONFIG: config_text(config)}))
 
 
-def weights_config(path: Path) -> RunConfig:
+def read_weights_config(path: Path) -> RunConfig:
     """Return the run that weights are of. Raises InputError or DamagedFileError."""
     _, texts = _read(path, with_tensors=False)
     if CONFIG not in texts:
@@ -42,7 +42,7 @@ def load_weights(path: Path, network: nn.Module) -> None:
         InputError: the file is missing. DamagedFileError: it is none, or of another network.
     """
     tensors, _ = _read(path)
-    _fill(path, network, tensors)
+    _load_state(path, network, tensors)
 
 
 def write_checkpoint(
@@ -53,7 +53,7 @@ def write_checkpoint(
     for number, state in optimiser.state_dict()["state"].items():
         for name, value in state.items():
             tensors[f"{OPTIMISER}{number}.{name}"] = torch.as_tensor(value)
-    write_bytes(path, save(_held(tensors), {FACTS: json.dumps(facts)}))
+    write_bytes(path, save(_cpu_tensors(tensors), {FACTS: json.dumps(facts)}))
 
 
 def read_facts(path: Path) -> dict[str, Any]:
@@ -76,7 +76,7 @@ def load_checkpoint(
     model = {
         name.removeprefix(MODEL): value for name, value in tensors.items() if name.startswith(MODEL)
     }
-    _fill(path, network, model)
+    _load_state(path, network, model)
     if optimiser is None:
         return
     state: dict[int, dict[str, Tensor]] = {}
@@ -88,11 +88,11 @@ def load_checkpoint(
     optimiser.load_state_dict({"state": state, "param_groups": groups})
 
 
-def _held(tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
+def _cpu_tensors(tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
     return {name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}
 
 
-def _fill(path: Path, network: nn.Module, tensors: dict[str, Tensor]) -> None:
+def _load_state(path: Path, network: nn.Module, tensors: dict[str, Tensor]) -> None:
     own = network.state_dict()
     wrong = sorted(
         name

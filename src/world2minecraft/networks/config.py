@@ -29,7 +29,7 @@ GRIDS = {"0.16": Grid((30, 30, 18), 0.16), "0.08": Grid((60, 60, 36), 0.08)}
 SCHEDULES = ("cosine", "step", "constant")
 PRECISIONS = ("auto", "bf16", "32")
 DEPTHS = ("taught", "given", "none")
-OWN_FRAMES = {"embodied": 3}  # A guess: most cells of a room are in view of so many. Others: 1.
+DEFAULT_FRAMES = {"embodied": 3}  # A guess: most cells of a room are in view of so many. Others: 1.
 CLASS_WEIGHTS = ("frequency", "monoscene", "even")
 
 
@@ -76,7 +76,9 @@ class RunConfig:
     grid: str = "0.16"
     image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
     depth: str = "taught"  # To a depth branch; "given" shows it to the network too.
-    frames: int = 0  # Of a scene, at most, in one sample; 0 is the network's own: ``OWN_FRAMES``.
+    frames: int = (
+        0  # Of a scene, at most, in one sample; 0 is the network's own: ``DEFAULT_FRAMES``.
+    )
     steps: int = 2000  # The benchmark's.
     batch: int = 4  # MonoScene's.
     learning_rate: float = 5e-4  # A guess for small networks from nothing; MonoScene's is 1e-4.
@@ -124,7 +126,7 @@ class RunConfig:
     @property
     def fused(self) -> int:
         """How many frames of a scene a sample has at most."""
-        return self.frames or OWN_FRAMES.get(self.network, 1)
+        return self.frames or DEFAULT_FRAMES.get(self.network, 1)
 
     def with_preset(self, name: str) -> "RunConfig":
         """Return the run with a preset's settings. Raises UnknownNameError."""

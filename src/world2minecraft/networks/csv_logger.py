@@ -20,13 +20,13 @@ METRICS = "metrics.csv"
 HEADER = ("step", "name", "value")
 
 
-class Journal:
+class CsvLogger:
     """The figures of a run, from a step on."""
 
     def __init__(self, folder: Path, first_step: int = 0):
         """Go on after ``first_step``: what an earlier try wrote of later steps is dropped."""
         self._path, self._folder = folder / METRICS, folder / "tensorboard"
-        self._rows = [row for row in read_rows(self._path) if row[0] <= first_step]
+        self._rows = [row for row in read_metrics(self._path) if row[0] <= first_step]
         self._first = first_step
         self._board: Any = None
 
@@ -57,14 +57,14 @@ class Journal:
             self._board.close()
 
 
-def read_rows(path: Path) -> list[tuple[int, str, float]]:
+def read_metrics(path: Path) -> list[tuple[int, str, float]]:
     """Return the rows of a ``metrics.csv``; none where there is no file.
 
     Raises:
         DamagedFileError: it holds something else.
 
     Example:
-        >>> read_rows(Path("nowhere.csv"))
+        >>> read_metrics(Path("nowhere.csv"))
         []
     """
     if not path.is_file():

@@ -19,17 +19,17 @@ from world2minecraft.networks.config import RunConfig
 from world2minecraft.networks.data.batches import Batch
 from world2minecraft.networks.losses import LossWeights, occupancy_losses
 
-STEP_DOWN = 0.1  # MonoScene's: a tenth of the rate
-STEP_AT = 2 / 3  # from epoch 20 of 30 on.
-SEED_STEP = 1_000_003  # A prime: seeds of two runs meet at no step of the same number.
+STEP_GAMMA = 0.1  # MonoScene's: a tenth of the rate
+STEP_MILESTONE = 2 / 3  # from epoch 20 of 30 on.
+SEED_STRIDE = 1_000_003  # A prime: seeds of two runs meet at no step of the same number.
 
 
-def rate_of(config: RunConfig, step: int) -> float:
+def learning_rate_at(config: RunConfig, step: int) -> float:
     """Return the learning rate of a step, counted from 0.
 
     Example:
         >>> config = RunConfig("iso", ("x",), steps=100, warmup_steps=10, learning_rate=1.0)
-        >>> [round(rate_of(config, step), 3) for step in (0, 9, 10, 55, 99)]
+        >>> [round(learning_rate_at(config, step), 3) for step in (0, 9, 10, 55, 99)]
         [0.1, 1.0, 1.0, 0.5, 0.0]
     """
     full = config.learning_rate
@@ -38,12 +38,12 @@ def rate_of(config: RunConfig, step: int) -> float:
     if config.schedule == "constant":
         return full
     if config.schedule == "step":
-        return full * (STEP_DOWN if step >= STEP_AT * config.steps else 1.0)
+        return full * (STEP_GAMMA if step >= STEP_MILESTONE * config.steps else 1.0)
     done = (step - config.warmup_steps) / max(config.steps - config.warmup_steps, 1)
     return full * 0.5 * (1 + math.cos(math.pi * min(done, 1.0)))
 
 
-class Steps(lightning.LightningModule):
+class OccupancyModule(lightning.LightningModule):
     """A network with its losses; ``first_step`` is how many steps were done before."""
 
     def __init__(self, network: nn.Module, config: RunConfig, class_weights: Tensor):
@@ -70,29 +70,32 @@ class Steps(lightning.LightningModule):
     def on_train_batch_start(self, batch: Batch, batch_idx: int) -> None:
         """Set the rate and the seed of the step."""
         step = self.first_step + batch_idx
-        torch.manual_seed(self.config.seed * SEED_STEP + step)
+        torch.manual_seed(self.config.seed * SEED_STRIDE + step)
         for group in self.trainer.optimizers[0].param_groups:
-            group["lr"] = rate_of(self.config, step)
+            group["lr"] = learning_rate_at(self.config, step)
 
     def training_step(self, batch: Batch, batch_idx: int) -> Tensor:
         """Return the loss of a step."""
         more = (batch.more,) if batch.more else ()
         output = self.network(batch.inputs, *more)
         with torch.autocast(self.device.type, enabled=False):
-            losses = occupancy_losses(whole(output), batch.target, batch.inputs, self.weights)
+            losses = occupancy_losses(to_float32(output), batch.target, batch.inputs, self.weights)
         total = torch.stack(list(losses.values())).sum()
         self.found = {"loss": total.detach(), **{k: v.detach() for k, v in losses.items()}}
         return total
 
 
-def whole(output: OccOutput) -> OccOutput:
+def to_float32(output: OccOutput) -> OccOutput:
     """Return an answer in float32: sums over 130,000 cells lose too much in bfloat16."""
     return OccOutput(
-        **{entry.name: _whole(getattr(output, entry.name)) for entry in dataclasses.fields(output)}
+        **{
+            entry.name: _to_float32(getattr(output, entry.name))
+            for entry in dataclasses.fields(output)
+        }
     )
 
 
-def _whole(value: Any) -> Any:
+def _to_float32(value: Any) -> Any:
     if isinstance(value, Tensor):
         return value.float()
     return tuple(one.float() for one in value) if isinstance(value, tuple) else value

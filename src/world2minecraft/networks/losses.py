@@ -1,4 +1,12 @@
-"""All losses of a network's answer, each already weighted, so that their sum is what to descend."""
+"""All losses of an occupancy network, each already weighted, so that their sum is minimised.
+
+- cross entropy of the classes, and MonoScene's scene-class affinity (SCAL);
+- MonoScene's frustum proportion loss: the classes in each part of the image, hidden or not;
+- the loss of MonoScene's context prior: four relations of coarse cells with mega-voxels;
+- the loss of a depth branch: cross entropy of the bin that a pixel's depth falls into.
+
+Cells of 255 count in none. Where nothing is left to count, a loss is 0 and its gradients are 0.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,12 +18,12 @@ from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.networks.batch import OccInput, OccOutput, OccTarget
 from world2minecraft.networks.layers.context_prior import RELATIONS
-from world2minecraft.networks.layers.depth_bins import bin_of, least_depth
-from world2minecraft.networks.layers.projection import sight_of
+from world2minecraft.networks.layers.depth_bins import bin_of, min_pool_depth
+from world2minecraft.networks.layers.projection import project_cells
 
 FRUSTA = 8  # Along each side of the picture.
-LEAST = 1e-6
-FACTOR = 4  # From the grid to its coarsest level.
+MIN_CELLS = 1e-6
+COARSE_FACTOR = 4  # From the grid to its coarsest level.
 EMPTY_SHARE = 0.95  # SSCNet's: a coarse cell is empty where more than that is empty or unknown.
 EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; all others have 1.
 
@@ -29,14 +37,11 @@ def depth_loss(logits: Tensor, depth_m: Tensor) -> Tensor:
             depth of those that it covers, as the nearer hides what is behind.
     """
     scale = 2 ** round(math.log2(depth_m.shape[-1] / logits.shape[-1]))
-    near = least_depth(depth_m, scale)
+    near = min_pool_depth(depth_m, scale)
     bins = int(logits.shape[1])
     wanted, known = bin_of(near, bins)
     each = torch.nn.functional.cross_entropy(logits.float(), wanted, reduction="none")
     return (each * known).sum() / known.sum().clamp(min=1)
-
-
-
 
 
 def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
@@ -61,7 +66,7 @@ def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
     truth, said = truth / cells.clamp(min=1), said / cells.clamp(min=1)
     each = torch.where(
         truth > 0,
-        truth * (truth.clamp(min=LEAST).log() - said.clamp(min=LEAST).log()),
+        truth * (truth.clamp(min=MIN_CELLS).log() - said.clamp(min=MIN_CELLS).log()),
         torch.zeros_like(truth),
     )
     return each.sum() / (cells > 0).sum().clamp(min=1)
@@ -69,7 +74,7 @@ def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
 
 def frustum_of_cells(inputs: OccInput) -> Tensor:
     """Return the part of the picture that each cell falls into, int64 [B, N], -1 for none."""
-    sight = sight_of(inputs)
+    sight = project_cells(inputs)
     height, width = sight.size_px
     column = (sight.pixels[..., 0] * FRUSTA / width).floor().clamp(0, FRUSTA - 1).long()
     row = (sight.pixels[..., 1] * FRUSTA / height).floor().clamp(0, FRUSTA - 1).long()
@@ -79,9 +84,6 @@ def frustum_of_cells(inputs: OccInput) -> Tensor:
 def _sums(part: Tensor, values: Tensor) -> Tensor:
     empty = values.new_zeros(FRUSTA * FRUSTA, values.shape[1])
     return empty.index_add(0, part, values)
-
-
-
 
 
 def relation_loss(logits: Tensor, labels: Tensor) -> Tensor:
@@ -118,7 +120,7 @@ def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
     Returns:
         bool [B, 4, M, N], and bool [B, 1, M, N].
     """
-    eight = _eights(labels)[:, :, :, None]  # [B, M, 8, 1]
+    eight = _mega_voxel_cells(labels)[:, :, :, None]  # [B, M, 8, 1]
     cells = labels.flatten(1)[:, None, None]  # [B, 1, 1, N]
     known = (eight != UNKNOWN) & (cells != UNKNOWN)
     alike, both = eight == cells, (eight != 0) & (cells != 0)
@@ -127,7 +129,7 @@ def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
     return torch.stack([(one & known).any(dim=2) for one in held], dim=1), known.any(dim=2)[:, None]
 
 
-def coarse_labels(labels: Tensor, factor: int = FACTOR) -> Tensor:
+def coarse_labels(labels: Tensor, factor: int = COARSE_FACTOR) -> Tensor:
     """Return labels of blocks of cells by SSCNet's rule, int64, sides rounded up.
 
     A block is not occupied where more than 95 % of its cells are empty or unknown: then it is what
@@ -140,7 +142,7 @@ def coarse_labels(labels: Tensor, factor: int = FACTOR) -> Tensor:
     )
     kinds = torch.where(padded == UNKNOWN, CLASS_COUNT, padded)
     counts = torch.stack(
-        [_pooled((kinds == kind).float(), factor) for kind in range(CLASS_COUNT + 1)], dim=1
+        [_block_sums((kinds == kind).float(), factor) for kind in range(CLASS_COUNT + 1)], dim=1
     )
     empty, unknown = counts[:, 0], counts[:, CLASS_COUNT]
     best = counts[:, 1:CLASS_COUNT].argmax(dim=1) + 1
@@ -148,18 +150,16 @@ def coarse_labels(labels: Tensor, factor: int = FACTOR) -> Tensor:
     return torch.where(empty + unknown > EMPTY_SHARE * factor**3, hollow, best)
 
 
-def _pooled(values: Tensor, factor: int) -> Tensor:
+def _block_sums(values: Tensor, factor: int) -> Tensor:
     sums = torch.nn.functional.avg_pool3d(values[:, None], factor)[:, 0] * factor**3
     return torch.round(sums)
 
 
-def _eights(labels: Tensor) -> Tensor:
+def _mega_voxel_cells(labels: Tensor) -> Tensor:
     """Return the eight cells of each whole mega-voxel, [B, M, 8]."""
     x, y, z = (int(side) // 2 * 2 for side in labels.shape[1:])
     blocks = labels[:, :x, :y, :z].reshape(-1, x // 2, 2, y // 2, 2, z // 2, 2)
     return blocks.permute(0, 1, 3, 5, 2, 4, 6).reshape(len(labels), -1, 8)
-
-
 
 
 def cross_entropy(logits: Tensor, labels: Tensor, class_weights: Tensor | None = None) -> Tensor:
@@ -211,10 +211,8 @@ def _affinity(shares: Tensor, truth: Tensor) -> Tensor:
 
 
 def _less_log(part: Tensor, whole: Tensor, counted: Tensor) -> Tensor:
-    share = part / whole.clamp(min=LEAST)
-    return torch.where(counted > 0, -share.clamp(min=LEAST).log(), torch.zeros_like(share))
-
-
+    share = part / whole.clamp(min=MIN_CELLS)
+    return torch.where(counted > 0, -share.clamp(min=MIN_CELLS).log(), torch.zeros_like(share))
 
 
 @dataclass(frozen=True)
@@ -265,7 +263,7 @@ def occupancy_losses(
     or, for depth, where none is known.
     """
     chosen = weights or LossWeights()
-    found = _of_classes(output.logits, target.labels, inputs, chosen)
+    found = _class_losses(output.logits, target.labels, inputs, chosen)
     if output.relations is not None and chosen.relations:
         found["relations"] = chosen.relations * relation_loss(output.relations, target.labels)
     depth_m = inputs.depth_m if target.depth_m is None else target.depth_m
@@ -273,14 +271,14 @@ def occupancy_losses(
         found["depth"] = chosen.depth * depth_loss(output.depth_logits, depth_m)
     if output.auxiliary and chosen.auxiliary:
         earlier = [
-            sum(_of_classes(logits, target.labels, inputs, chosen).values(), logits.new_zeros(()))
+            sum(_class_losses(logits, target.labels, inputs, chosen).values(), logits.new_zeros(()))
             for logits in output.auxiliary
         ]
         found["auxiliary"] = chosen.auxiliary * torch.stack(earlier).sum()
     return found
 
 
-def _of_classes(
+def _class_losses(
     logits: Tensor, labels: Tensor, inputs: OccInput, weights: LossWeights
 ) -> dict[str, Tensor]:
     found: dict[str, Tensor] = {}

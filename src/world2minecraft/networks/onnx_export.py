@@ -1,9 +1,13 @@
-"""A trained network leaves PyTorch as one ONNX file of the contract in docs/networks-onnx.md.
+"""Export a trained network as one ONNX file of the contract in docs/networks-onnx.md.
 
-It is written only where it says what the network says: both are asked about the same picture, and
-no logit may differ by more than ``MOST_DIFFERENCE``. Weights may then be stored small, as
-``weight_storage`` does it; by how much that moves the logits is measured, not bounded: whether it
-may, a score must say.
+It is written only where it answers as the network does: both are given the same image, and no
+logit may differ by more than ``MAX_DIFFERENCE``. Weights may then be compressed; by how much that
+moves the logits is measured, not bounded: whether it may, a score must say.
+
+Only the weights of convolutions and of matrix products are compressed. Biases, norms and what a
+network knows of its grid stay as they are. ``int8`` has one scale per output channel, so that a
+channel of small weights keeps its digits. Activations are never rounded: onnxruntime expands the
+weights as it loads the file, and runs the same float32 network as ever.
 """
 
 import importlib.util
@@ -30,11 +34,11 @@ MOST = 127  # Symmetric: -128 is not used.
 # Which input of a node is weights, and which of its axes counts output channels.
 _WEIGHTS = {"Conv": 0, "ConvTranspose": 1, "MatMul": -1, "Gemm": -1}
 OPSET = 17
-MOST_DIFFERENCE = 1e-3
+MAX_DIFFERENCE = 1e-3
 TURN_DEG = 10.0  # How far the camera of the question looks down.
 
 
-def with_stored_weights(model: Any, kind: str) -> Any:
+def compress_weights(model: Any, kind: str) -> Any:
     """Return an ONNX model whose weights are stored as one of ``KINDS``.
 
     Args:
@@ -55,7 +59,7 @@ def with_stored_weights(model: Any, kind: str) -> Any:
             continue
         values = numpy_helper.to_array(weight)
         if values.dtype == np.float32 and values.size >= SMALL:
-            widen = _as_halves if kind == "half" else _as_bytes
+            widen = _store_float16 if kind == "half" else _store_int8
             widening.append(widen(result.graph, weight, values, axes[weight.name]))
     nodes = [*widening, *result.graph.node]
     del result.graph.node[:]
@@ -64,7 +68,7 @@ def with_stored_weights(model: Any, kind: str) -> Any:
     return result
 
 
-def rounded(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+def quantize_weights(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
     """Return int8 of the weights' shape, and float32 [C], the scale of each channel.
 
     Args:
@@ -72,7 +76,7 @@ def rounded(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
         axis: of the channels. What comes back times its scale is off by half a scale at most.
 
     Example:
-        >>> whole, scales = rounded(np.float32([[0.5, -1.27], [0.0, 0.0]]), 0)
+        >>> whole, scales = quantize_weights(np.float32([[0.5, -1.27], [0.0, 0.0]]), 0)
         >>> whole.tolist(), [round(float(scale), 4) for scale in scales]
         ([[50, -127], [0, 0]], [0.01, 1.0])
     """
@@ -100,15 +104,15 @@ def _axis(node: Any) -> int:
     return 0 if turned else _WEIGHTS[node.op_type]
 
 
-def _as_halves(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+def _store_float16(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
     name = weight.name
     weight.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_half"))
     return onnx.helper.make_node("Cast", [f"{name}_half"], [name], to=onnx.TensorProto.FLOAT)
 
 
-def _as_bytes(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
+def _store_int8(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
     name = weight.name
-    whole, scales = rounded(values, axis)
+    whole, scales = quantize_weights(values, axis)
     weight.CopyFrom(numpy_helper.from_array(whole, f"{name}_int8"))
     graph.initializer.append(numpy_helper.from_array(scales, f"{name}_scales"))
     return onnx.helper.make_node(
@@ -119,9 +123,7 @@ def _as_bytes(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
     )
 
 
-
-
-class Exported(NamedTuple):
+class ExportReport(NamedTuple):
     """What a written file came to, asked about one picture."""
 
     difference: float  # the most that a logit differs from the network's, weights whole
@@ -139,7 +141,7 @@ def export_network(
     *,
     weights: str = "float",
     seed: int = 0,
-) -> Exported:
+) -> ExportReport:
     """Write a network as ONNX, and return how much the file's answers differ.
 
     Args:
@@ -156,32 +158,32 @@ def export_network(
     """
     _check_onnx()
 
-    example = _question(facts, np.random.default_rng(seed))
+    example = _random_inputs(facts, np.random.default_rng(seed))
     trained = network.training
     network.eval()
     try:
         with torch.no_grad():
             said = network(example).logits.float().cpu().numpy()
-            model = _traced(network, example, facts)
+            model = _export_traced(network, example, facts)
     finally:
         network.train(trained)
-    whole = _asked(model.SerializeToString(), example)
+    whole = _run_onnx(model.SerializeToString(), example)
     difference = float(np.abs(whole - said).max())
-    if not difference <= MOST_DIFFERENCE:  # Holds for what is no number too.
+    if not difference <= MAX_DIFFERENCE:  # Holds for what is no number too.
         raise OutputError(
             path,
             f"the ONNX file's logits would differ by {difference:.3g} from the network's, and "
-            f"{MOST_DIFFERENCE:g} is the most; no file is written",
+            f"{MAX_DIFFERENCE:g} is the most; no file is written",
         )
-    data = with_stored_weights(model, weights).SerializeToString()
-    stored = whole if weights == "float" else _asked(data, example)
+    data = compress_weights(model, weights).SerializeToString()
+    stored = whole if weights == "float" else _run_onnx(data, example)
     if not np.isfinite(stored).all():
         raise OutputError(path, f"weights stored as {weights} would give what is no number")
     write_bytes(Path(path), data)
-    return Exported(difference, *_moves(whole, stored), len(data))
+    return ExportReport(difference, *_logit_change(whole, stored), len(data))
 
 
-def _moves(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, float, float]:
+def _logit_change(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, float, float]:
     moved = np.abs(stored - whole)
     renamed = stored.argmax(axis=1) != whole.argmax(axis=1)
     return float(moved.max()), float(moved.mean()), float(whole.std()), float(renamed.mean())
@@ -214,7 +216,7 @@ def _check_onnx() -> None:
         raise MissingExtraError("writing ONNX files", "train")
 
 
-def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
+def _export_traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
     """Return the network as an ``onnx.ModelProto``."""
     import onnx  # noqa: PLC0415
 
@@ -236,7 +238,7 @@ def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
     return model
 
 
-def _asked(data: bytes, example: OccInput) -> np.ndarray:
+def _run_onnx(data: bytes, example: OccInput) -> np.ndarray:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 3
@@ -255,7 +257,7 @@ def _by_name(example: OccInput) -> dict[str, Tensor]:
     return given if example.depth_m is None else {**given, "depth_m": example.depth_m}
 
 
-def _question(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:
+def _random_inputs(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:
     """Return a picture of noise by a camera in the middle of the grid's near side."""
     width, height = facts.image_size_px
     lens = np.array([[0.81 * width, 0, width / 2], [0, 0.81 * width, height / 2], [0, 0, 1]])

@@ -88,7 +88,7 @@ class SavedPredictions:
             InputError: there are none of this key. DamagedFileError: they have other cells.
         """
         values, path = self._array(key)
-        values = _of_scene(values, shape)
+        values = _reshape_scene(values, shape)
         labels = self._understood(values, path, self._order or "xyz")
         if labels.shape != shape:
             raise DamagedFileError(
@@ -98,14 +98,14 @@ class SavedPredictions:
 
     def _array(self, key: str) -> tuple[np.ndarray, Path]:
         if self.is_single:
-            return _frame_array(self.path), self.path
+            return _read_frame_array(self.path), self.path
         if self._members:
             if key not in self._members:
                 raise InputError(self.path, f"holds no array {key}")
             return read_npz(self.path, (key,))[key], self.path
         if key not in self._files:
             raise InputError(self.path, f"holds no {key}.npz, .npy or .pkl")
-        return _frame_array(self._files[key]), self._files[key]
+        return _read_frame_array(self._files[key]), self._files[key]
 
     def _understood(self, values: np.ndarray, path: Path, order: str = "") -> np.ndarray:
         classes = self._classes
@@ -121,7 +121,7 @@ class SavedPredictions:
         if not np.array_equal(labels, values):
             raise DamagedFileError(path, "has values that are no class ids")
         if classes == "embodied":
-            labels = of_embodied(labels, path)
+            labels = from_embodied_classes(labels, path)
         if np.any((labels >= CLASS_COUNT) & (labels != UNKNOWN)):
             raise DamagedFileError(
                 path,
@@ -131,7 +131,7 @@ class SavedPredictions:
         return np.ascontiguousarray(labels.transpose(ORDERS[order or _order_of(labels)]))
 
 
-def _of_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def _reshape_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """Return labels [X, Y, Z] or scores [C, X, Y, Z], where values are some form of these."""
     if values.ndim in (2, 3, 5) and values.shape[0] == 1 != shape[0]:
         values = values[0]  # A batch of one.
@@ -143,7 +143,7 @@ def _of_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     return np.moveaxis(values, -1, 0) if values.ndim == 4 and values.shape[:3] == shape else values
 
 
-def of_embodied(labels: np.ndarray, path: Path) -> np.ndarray:
+def from_embodied_classes(labels: np.ndarray, path: Path) -> np.ndarray:
     """Return ours of EmbodiedOcc's own classes: its 0 is unknown, its 12 empty."""
     if labels.max(initial=0) > EMBODIED_EMPTY:
         raise DamagedFileError(path, f"has the class {labels.max()}; EmbodiedOcc's end at 12")
@@ -152,7 +152,7 @@ def of_embodied(labels: np.ndarray, path: Path) -> np.ndarray:
     return table[labels]
 
 
-def grid_like(labels: np.ndarray, path: Path) -> Grid:
+def grid_of_labels(labels: np.ndarray, path: Path) -> Grid:
     """Return the grid that has as many cells. Raises DamagedFileError."""
     for grid in GRIDS.values():
         if grid.shape == labels.shape:
@@ -181,11 +181,11 @@ def _channels(values: np.ndarray, path: Path) -> int:
     raise DamagedFileError(path, f"has scores of {values.shape}; 12 or 13 channels are known")
 
 
-def _frame_array(path: Path) -> np.ndarray:
+def _read_frame_array(path: Path) -> np.ndarray:
     if path.suffix == ".npy":
         return read_npy(path)
     if path.suffix == ".pkl":
-        return _named(dict(read_pickle(path)), path)
+        return _find_array(dict(read_pickle(path)), path)
     names = array_names(path)
     wanted = next((name for name in NAMES if name in names), names[0] if len(names) == 1 else "")
     if not wanted:
@@ -193,7 +193,7 @@ def _frame_array(path: Path) -> np.ndarray:
     return read_npz(path, (wanted,))[wanted]
 
 
-def _named(held: dict[str, Any], path: Path) -> np.ndarray:
+def _find_array(held: dict[str, Any], path: Path) -> np.ndarray:
     for name in (*NAMES, *held):
         value = held.get(name)
         if isinstance(value, np.ndarray) and math.prod(value.shape) > 1:

@@ -16,19 +16,19 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import count_scene
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import GRIDS, RunConfig
 from world2minecraft.networks.data.cache import Frames
-from world2minecraft.networks.data.frames import known_cells
+from world2minecraft.networks.data.frames import cells_with_masks
 from world2minecraft.networks.models.embodied import Embodied, SceneStream
-from world2minecraft.networks.scene_voting import SceneFrame, assembled, lattice_of
-from world2minecraft.networks.scoring import MEMORY, of_scenes
+from world2minecraft.networks.scene_voting import SceneFrame, align_frames, merge_truth
+from world2minecraft.networks.scoring import MEMORY, summarise_scenes
 
 FINE = GRIDS["0.08"]
 
 
-class TrueScene(NamedTuple):
+class SceneTruth(NamedTuple):
     """What is true of a scene, along the room's axes."""
 
     labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
@@ -59,43 +59,43 @@ def memory_scores(
         by_scene.setdefault(frames.scenes[row], []).append(row)
     counts = []
     for done, (scene, held) in enumerate(sorted(by_scene.items()), 1):
-        truth, reason = true_scene(found, [frames.keys[row] for row in held], config)
+        truth, reason = assemble_truth(found, [frames.keys[row] for row in held], config)
         if truth is None:
             return [], reason
-        said = remembered(network, frames, held, truth, config)
+        said = predict_scene(network, frames, held, truth, config)
         counts.append(FrameScore(scene, count_scene(said, truth.labels, [truth.seen])))
         progress("scenes", done, len(by_scene))
     return counts, ""
 
 
-def true_scene(
+def assemble_truth(
     found: ImportedSet, keys: Sequence[str], config: RunConfig
-) -> tuple[TrueScene | None, str]:
+) -> tuple[SceneTruth | None, str]:
     """Return what is true of the scene of some frames, in the cells of a run."""
     boxes = []
     for key in keys:
         sample = found[key]
-        known = known_cells(sample, FINE)
+        known = cells_with_masks(sample, FINE)
         boxes.append(
             SceneFrame.packed(
                 sample.scene_id, known.labels, known, sample.occ.region.region_to_room
             )
         )
-    lattice, reason = lattice_of(boxes, FINE.voxel_m)
+    lattice, reason = align_frames(boxes, FINE.voxel_m)
     if lattice is None:
         return None, reason
     factor = round(config.cells.voxel_m / FINE.voxel_m)
-    labels, seen = assembled(lattice)
+    labels, seen = merge_truth(lattice)
     if factor > 1:
         spare = [(0, -side % factor) for side in labels.shape]
-        labels = downsampled(np.pad(labels, spare, constant_values=UNKNOWN), factor)
+        labels = downsample_labels(np.pad(labels, spare, constant_values=UNKNOWN), factor)
         blocks = [part for side in labels.shape for part in (side, factor)]
         seen = np.asarray(np.pad(seen, spare).reshape(blocks).any(axis=(1, 3, 5)))
-    return TrueScene(labels, seen, lattice.origin_m), ""
+    return SceneTruth(labels, seen, lattice.origin_m), ""
 
 
-def remembered(
-    network: Embodied, frames: Frames, rows: Sequence[int], truth: TrueScene, config: RunConfig
+def predict_scene(
+    network: Embodied, frames: Frames, rows: Sequence[int], truth: SceneTruth, config: RunConfig
 ) -> np.ndarray:
     """Return the labels of a scene after the network saw some frames, uint8 [X, Y, Z]."""
     x, y, z = truth.labels.shape
@@ -133,4 +133,4 @@ def add_memory_scores(
     if reason:
         scores["left_out"][MEMORY] = reason
     else:
-        scores["protocols"][MEMORY] = of_scenes(counts, "; the network fuses them", seed)
+        scores["protocols"][MEMORY] = summarise_scenes(counts, "; the network fuses them", seed)

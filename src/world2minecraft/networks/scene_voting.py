@@ -15,9 +15,9 @@ from world2minecraft.core.coordinates import apply, turn_grid
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import KnownCells, ProtocolCounts, count_scene
 
-SLACK_CELLS = 0.02  # So far a box's corner may be off the lattice.
-SLACK_DEG = 0.01
-MOST_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
+TOLERANCE_CELLS = 0.02  # So far a box's corner may be off the lattice.
+TOLERANCE_DEG = 0.01
+MAX_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
 
 
 class SceneFrame(NamedTuple):
@@ -50,10 +50,10 @@ def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[Fra
         by_scene.setdefault(frame.scene_id, []).append(frame)
     found = []
     for scene_id in sorted(by_scene):
-        lattice, reason = lattice_of(by_scene[scene_id], voxel_m)
+        lattice, reason = align_frames(by_scene[scene_id], voxel_m)
         if lattice is None:
             return [], reason
-        found.append(FrameScore(scene_id, _voted(lattice)))
+        found.append(FrameScore(scene_id, _count_votes(lattice)))
     return found, ""
 
 
@@ -66,15 +66,15 @@ class Lattice(NamedTuple):
     origin_m: np.ndarray  # float64 [3], minimum corner in the room
 
 
-def lattice_of(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | None, str]:
+def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | None, str]:
     """Return the boxes of one scene's frames on their lattice, or None and why there is none."""
     scene_id = frames[0].scene_id
-    places = [_placed(frame, voxel_m) for frame in frames]
+    places = [_align_to_axes(frame, voxel_m) for frame in frames]
     if any(place is None for place in places):
         return None, f"a box of {scene_id} is not along the room's axes"
     corners = np.array([place[1] for place in places if place is not None])
     steps = (corners - corners[0]) / voxel_m
-    if np.abs(steps - np.round(steps)).max() > SLACK_CELLS:
+    if np.abs(steps - np.round(steps)).max() > TOLERANCE_CELLS:
         return None, (
             f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
         )
@@ -82,18 +82,18 @@ def lattice_of(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | 
     cells = np.round(steps - least).astype(int)
     grids = [place[0] for place in places if place is not None]
     shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
-    if np.prod(shape, dtype=float) > MOST_CELLS:
+    if np.prod(shape, dtype=float) > MAX_CELLS:
         return None, f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
     return Lattice(grids, cells, shape, corners[0] + least * voxel_m), ""
 
 
-def _placed(
+def _align_to_axes(
     frame: SceneFrame, voxel_m: float
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None:
     """Return said, truth and mask along the room's axes, and their corner in the room."""
     turn_deg = np.degrees(np.arctan2(frame.grid_to_room[1, 0], frame.grid_to_room[0, 0]))
     quarters = round(turn_deg / 90)
-    if abs(turn_deg - 90 * quarters) > SLACK_DEG:
+    if abs(turn_deg - 90 * quarters) > TOLERANCE_DEG:
         return None
     ends = np.array([[0.0, 0, 0], frame.said.shape]) * voxel_m
     corner_m = apply(frame.grid_to_room, ends).min(axis=0)
@@ -103,7 +103,7 @@ def _placed(
     return (said, truth, mask), corner_m
 
 
-def assembled(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
+def merge_truth(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
     """Return a scene's true labels uint8 [X, Y, Z], 255 where no frame knows, and what was seen."""
     labels = np.full(lattice.shape, UNKNOWN, np.uint8)
     seen = np.zeros(lattice.shape, bool)
@@ -114,7 +114,7 @@ def assembled(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
     return labels, seen
 
 
-def _voted(lattice: Lattice) -> ProtocolCounts:
+def _count_votes(lattice: Lattice) -> ProtocolCounts:
     votes = np.zeros((*lattice.shape, CLASS_COUNT), np.uint8)
     for (said, _, mask), first in zip(lattice.grids, lattice.cells, strict=True):
         box = tuple(slice(at, at + side) for at, side in zip(first, said.shape, strict=True))
@@ -122,5 +122,5 @@ def _voted(lattice: Lattice) -> ProtocolCounts:
         held = votes[box]
         held[(*at, said[at])] = np.minimum(held[(*at, said[at])], 254) + 1
     labels = np.where(votes.any(axis=-1), votes.argmax(axis=-1), UNKNOWN).astype(np.uint8)
-    truth, seen = assembled(lattice)
+    truth, seen = merge_truth(lattice)
     return count_scene(labels, truth, [seen])

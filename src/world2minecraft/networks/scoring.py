@@ -1,7 +1,8 @@
-"""Scores of a network, of an ONNX file or of saved predictions, by any of the protocols.
+"""Score a network, an ONNX file or saved predictions, by any of the protocols.
 
-In: what is said of frames and what is true of them. Out: ``Scores``, a dictionary for JSON. What a
-set cannot answer, as ``ssc`` without depth, is left out and told.
+In: predictions of frames and their truth. Out: a dictionary for JSON, also as rows of a LaTeX table
+in the columns of the paper. What a set cannot answer, as ``ssc`` without depth, is left out, with
+the reason.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -25,8 +26,8 @@ from world2minecraft.minecraftocc.importers.embodied import SceneSet
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import Grid
 from world2minecraft.networks.data.cache import Frames
-from world2minecraft.networks.data.frames import known_cells
-from world2minecraft.networks.saved_predictions import SavedPredictions, grid_like
+from world2minecraft.networks.data.frames import cells_with_masks
+from world2minecraft.networks.saved_predictions import SavedPredictions, grid_of_labels
 from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
 
 _SPECIAL = {"_": r"\_", "%": r"\%", "&": r"\&", "#": r"\#", "$": r"\$", "{": r"\{", "}": r"\}"}
@@ -58,7 +59,7 @@ def _escaped(text: str) -> str:
     return "".join(_SPECIAL.get(sign, sign) for sign in text)
 
 
-class SaidOfFrame(NamedTuple):
+class PredictedFrame(NamedTuple):
     """One frame: what is said of its cells, and what is true."""
 
     scene_id: str
@@ -68,7 +69,7 @@ class SaidOfFrame(NamedTuple):
 
 
 def protocol_scores(
-    frames: Iterable[SaidOfFrame],
+    frames: Iterable[PredictedFrame],
     voxel_m: float,
     protocols: Sequence[str] = (),
     *,
@@ -118,11 +119,11 @@ def protocol_scores(
         if reason:
             left_out[SCENES] = reason
         else:
-            result[SCENES] = of_scenes(by_scene, "; frames vote", seed)
+            result[SCENES] = summarise_scenes(by_scene, "; frames vote", seed)
     return {"protocols": result, "left_out": left_out}
 
 
-def of_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
+def summarise_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
     """Return what ``summarise`` does of scenes, with what was counted in words."""
     words = {
         "counts": f"of each scene those that any of its frames has in view{how}",
@@ -160,7 +161,7 @@ def saved_scene_scores(
         labels = saved.scene_labels(name, truth.labels.shape)
         counts.append(FrameScore(name, count_scene(labels, truth.labels, [truth.seen])))
         progress("score", done, len(names))
-    return {"protocols": {SCENES: of_scenes(counts, "", seed)}, "left_out": {}}
+    return {"protocols": {SCENES: summarise_scenes(counts, "", seed)}, "left_out": {}}
 
 
 def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None) -> list[str]:
@@ -169,18 +170,18 @@ def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None
     return [name for name, of in scenes.splits.items() if name in known and split in (None, of)]
 
 
-def said_by_network(
+def network_predictions(
     frames: Frames, rows: Sequence[int], said: Iterator[np.ndarray]
-) -> Iterator[SaidOfFrame]:
+) -> Iterator[PredictedFrame]:
     """Pair what a network says of rows with what is true of them."""
     for row, labels in zip(rows, said, strict=True):
         frame = frames[row]
-        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+        yield PredictedFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
 
 
-def said_by_onnx(
+def onnx_predictions(
     path: Path, frames: Frames, rows: Sequence[int], progress: Progress = silent
-) -> Iterator[SaidOfFrame]:
+) -> Iterator[PredictedFrame]:
     """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
     from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork  # noqa: PLC0415
 
@@ -191,13 +192,13 @@ def said_by_onnx(
         depth_m = frame.depth_m if network.facts.wants_depth else None
         found = network.probabilities(image, frame.intrinsics, frame.camera_to_grid, depth_m)
         labels = found.argmax(axis=-1).astype(np.uint8)
-        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+        yield PredictedFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
         progress("score", done, len(rows))
 
 
-def said_by_files(
+def file_predictions(
     saved: SavedPredictions, truth: ImportedSet, keys: Sequence[str], progress: Progress = silent
-) -> Iterator[SaidOfFrame]:
+) -> Iterator[PredictedFrame]:
     """Pair saved predictions with the samples of the same keys.
 
     Raises:
@@ -206,11 +207,11 @@ def said_by_files(
     grid: Grid | None = None
     for done, key in enumerate(keys, 1):
         labels, sample = saved.labels(key), truth[key]
-        grid = grid or grid_like(labels, saved.path)
+        grid = grid or grid_of_labels(labels, saved.path)
         if labels.shape != grid.shape:
             raise InputError(saved.path, f"{key} has {labels.shape} cells, others {grid.shape}")
-        known = known_cells(sample, grid)
-        yield SaidOfFrame(sample.scene_id, labels, known, sample.occ.region.region_to_room)
+        known = cells_with_masks(sample, grid)
+        yield PredictedFrame(sample.scene_id, labels, known, sample.occ.region.region_to_room)
         progress("score", done, len(keys))
 
 

@@ -33,37 +33,37 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.importers import open_occupancy
-from world2minecraft.networks.callbacks import CHECKPOINT, LAST, WEIGHTS, Keeper, RunState
+from world2minecraft.networks.callbacks import CHECKPOINT, LAST, WEIGHTS, RunState, TrainingCallback
 from world2minecraft.networks.checkpoints import (
     load_checkpoint,
     load_weights,
     read_facts,
     write_weights,
 )
-from world2minecraft.networks.config import OWN_FRAMES, RunConfig, read_config, write_config
-from world2minecraft.networks.data.batches import drawn_batches, plan_draws
+from world2minecraft.networks.config import DEFAULT_FRAMES, RunConfig, read_config, write_config
+from world2minecraft.networks.data.batches import plan_draws, training_loader
 from world2minecraft.networks.data.class_weights import class_weights
-from world2minecraft.networks.data.run_data import CachePlace, RunData, open_run_data
-from world2minecraft.networks.data.splits import evenly
-from world2minecraft.networks.lightning_module import Steps
+from world2minecraft.networks.data.run_data import CacheLocation, RunData, open_run_data
+from world2minecraft.networks.data.splits import take_evenly
+from world2minecraft.networks.lightning_module import OccupancyModule
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.scene_memory import add_memory_scores
-from world2minecraft.networks.scoring import protocol_scores, said_by_network
+from world2minecraft.networks.scoring import network_predictions, protocol_scores
 from world2minecraft.networks.validation import (
-    device_named,
-    precision_here,
-    said_labels,
-    validated,
+    predict_labels,
+    resolve_device,
+    resolve_precision,
+    validate,
 )
 
 RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
 LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.
-LIGHTNING = {"bf16": "bf16-mixed", "32": "32-true"}
+LIGHTNING_PRECISION = {"bf16": "bf16-mixed", "32": "32-true"}
 # Settings that may change between tries: they move no result.
-FREE = ("threads", "workers", "checkpoint_every")
+FREE_SETTINGS = ("threads", "workers", "checkpoint_every")
 
 
-class Trained(NamedTuple):
+class TrainedRun(NamedTuple):
     """What a run came to."""
 
     folder: Path
@@ -71,7 +71,7 @@ class Trained(NamedTuple):
     data: RunData
 
 
-def network_of(config: RunConfig) -> nn.Module:
+def build_network(config: RunConfig) -> nn.Module:
     """Return the network of a run with its first weights. Raises what ``make_network`` does."""
     return make_network(
         config.network,
@@ -88,9 +88,9 @@ def train_run(
     folder: Path,
     *,
     device: str = "auto",
-    cache: CachePlace | None = None,
+    cache: CacheLocation | None = None,
     progress: Progress = silent,
-) -> Trained:
+) -> TrainedRun:
     """Train, or go on with a run of the same settings in the same folder.
 
     Args:
@@ -105,7 +105,7 @@ def train_run(
         InputError, UsageError: the sets or the settings cannot be used, or the loss came to be no
         number.
     """
-    if config.frames > 1 and config.network not in OWN_FRAMES:
+    if config.frames > 1 and config.network not in DEFAULT_FRAMES:
         raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -116,8 +116,8 @@ def train_run(
             torch.set_num_threads(config.threads)
         data = open_run_data(config, cache, progress)
         write_config(folder / RUN, config)  # Only of what can be trained.
-        state = _fit(config, folder, data, device_named(device), progress)
-        return Trained(folder, state, data)
+        state = _fit(config, folder, data, resolve_device(device), progress)
+        return TrainedRun(folder, state, data)
     finally:
         lock.remove()
         with suppress(OSError):
@@ -129,18 +129,18 @@ def check_folder(config: RunConfig, folder: Path) -> None:
     if not (folder / RUN).is_file():
         return
     held = read_config(folder / RUN)
-    same = replace(held, **{name: getattr(config, name) for name in FREE})
+    same = replace(held, **{name: getattr(config, name) for name in FREE_SETTINGS})
     if same == config:
         return
     names = [name for name in vars(config) if getattr(same, name) != getattr(config, name)]
     told = ", ".join(
-        f"{name} is {_said(getattr(held, name))}, not {_said(getattr(config, name))}"
+        f"{name} is {_describe_setting(getattr(held, name))}, not {_describe_setting(getattr(config, name))}"
         for name in names
     )
     raise ConflictError(folder, f"holds a run of other settings ({told}); choose another --out")
 
 
-def _said(value: Any) -> str:
+def _describe_setting(value: Any) -> str:
     if isinstance(value, tuple):
         return " ".join(str(getattr(one, "path", one)) for one in value)
     return str(value)
@@ -149,31 +149,31 @@ def _said(value: Any) -> str:
 def _fit(
     config: RunConfig, folder: Path, data: RunData, device: torch.device, progress: Progress
 ) -> RunState:
-    state = _state_of(folder / CHECKPOINT)
+    state = _read_state(folder / CHECKPOINT)
     if state.step >= config.steps or state.stopped:
         if not (folder / LAST).is_file() or not (folder / FACTS).is_file():
             _finish_again(config, folder, device, state)
         return state
-    network = network_of(config)
+    network = build_network(config)
     weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
-    steps = Steps(network, config, weights)
+    steps = OccupancyModule(network, config, weights)
     steps.first_step = state.step
-    rows = evenly(data.split.val, config.validate_frames)
-    keeper = Keeper(
-        folder, config, state, lambda: validated(network, data.target, rows, config), progress
+    rows = take_evenly(data.split.val, config.validate_frames)
+    keeper = TrainingCallback(
+        folder, config, state, lambda: validate(network, data.target, rows, config), progress
     )
     sizes = [len(part.rows) for part in data.parts]
     draws = plan_draws(sizes, data.weights, config.steps * config.batch, config.seed)
-    batches = drawn_batches(data.parts, draws, config, state.step)
+    batches = training_loader(data.parts, draws, config, state.step)
     began = time.monotonic()
     with _quiet():
         trainer = lightning.Trainer(
             accelerator=device.type if device.type == "cpu" else "gpu",
             devices=1,
-            precision=LIGHTNING[precision_here(config.precision, device)],  # type: ignore[arg-type]
+            precision=LIGHTNING_PRECISION[resolve_precision(config.precision, device)],  # type: ignore[arg-type]
             max_epochs=1,
             gradient_clip_val=config.clip_norm or None,
-            callbacks=[keeper, _Loader(folder)],
+            callbacks=[keeper, _CheckpointLoader(folder)],
             logger=False,
             enable_checkpointing=False,
             enable_progress_bar=False,
@@ -189,7 +189,7 @@ def _fit(
     return keeper.state
 
 
-def _state_of(checkpoint: Path) -> RunState:
+def _read_state(checkpoint: Path) -> RunState:
     """Return where a run stands; at its beginning where there is no checkpoint."""
     if not checkpoint.is_file():
         return RunState()
@@ -203,13 +203,13 @@ def _state_of(checkpoint: Path) -> RunState:
 
 def _finish_again(config: RunConfig, folder: Path, device: torch.device, state: RunState) -> None:
     """Write what comes after the last checkpoint, of a run that was ended between the two."""
-    network = network_of(config)
+    network = build_network(config)
     load_checkpoint(folder / CHECKPOINT, network)
     write_weights(folder / LAST, network, config)
     _write_facts(folder, config, network, device, state, 0.0)
 
 
-class _Loader(lightning.Callback):
+class _CheckpointLoader(lightning.Callback):
     """Puts a checkpoint into network and optimiser, once both are on their device."""
 
     def __init__(self, folder: Path):
@@ -221,7 +221,7 @@ class _Loader(lightning.Callback):
 
 
 def score_run(
-    trained: Trained,
+    trained: TrainedRun,
     config: RunConfig,
     device: str = "auto",
     progress: Progress = silent,
@@ -235,10 +235,10 @@ def score_run(
     on, which flatters: ``split`` says so.
     """
     data, folder = trained.data, trained.folder
-    network = trained_network(folder, config, device, last=last)
+    network = load_trained_network(folder, config, device, last=last)
     rows = data.split.scored
-    said = said_labels(network, data.target, rows, config, progress=progress)
-    frames = said_by_network(data.target, rows, said)
+    said = predict_labels(network, data.target, rows, config, progress=progress)
+    frames = network_predictions(data.target, rows, said)
     scores = protocol_scores(frames, config.cells.voxel_m)
     found = open_occupancy(config.data[0].path)
     add_memory_scores(scores, network, found, data.target, rows, config, progress=progress)
@@ -252,13 +252,13 @@ def score_run(
     return scores
 
 
-def trained_network(
+def load_trained_network(
     folder: Path, config: RunConfig, device: str = "auto", *, last: bool = False
 ) -> nn.Module:
     """Return the network of a run with its best weights, or its last. Raises InputError."""
-    network = network_of(config)
+    network = build_network(config)
     load_weights(folder / (LAST if last else WEIGHTS), network)
-    return network.to(device_named(device)).eval()
+    return network.to(resolve_device(device)).eval()
 
 
 def _write_facts(
@@ -279,9 +279,9 @@ def _write_facts(
         "stopped_early": state.stopped,
         "parameters": sum(one.numel() for one in network.parameters()),
         "device": device.type,
-        "hardware": hardware_of(device),
+        "hardware": describe_hardware(device),
         "threads": torch.get_num_threads(),
-        "precision": precision_here(config.precision, device),
+        "precision": resolve_precision(config.precision, device),
         "versions": {
             "world2minecraft": __version__,
             "torch": torch.__version__,
@@ -294,7 +294,7 @@ def _write_facts(
     write_json(folder / FACTS, facts)
 
 
-def hardware_of(device: torch.device) -> str:
+def describe_hardware(device: torch.device) -> str:
     """Return what a device is, in words."""
     if device.type == "cuda":
         return torch.cuda.get_device_name()

@@ -12,11 +12,11 @@ from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.networks.config import RunConfig
-from world2minecraft.networks.data.batches import ordered_batches
+from world2minecraft.networks.data.batches import ordered_loader
 from world2minecraft.networks.data.cache import Frames
 
 
-def precision_here(precision: str, device: torch.device) -> str:
+def resolve_precision(precision: str, device: torch.device) -> str:
     """Return ``bf16`` or ``32``: what ``auto`` means on a device.
 
     bfloat16 where the device multiplies it in hardware: new graphics cards, and processors with
@@ -31,13 +31,13 @@ def precision_here(precision: str, device: torch.device) -> str:
     return "bf16" if device.type == "cpu" and has_amx() else "32"
 
 
-def autocast_of(precision: str, device: torch.device) -> AbstractContextManager[Any]:
+def autocast(precision: str, device: torch.device) -> AbstractContextManager[Any]:
     """Return the context in which a network computes."""
-    wanted = precision_here(precision, device) == "bf16"
+    wanted = resolve_precision(precision, device) == "bf16"
     return torch.autocast(device.type, torch.bfloat16, enabled=wanted)
 
 
-def device_named(name: str) -> torch.device:
+def resolve_device(name: str) -> torch.device:
     """Return what ``auto``, ``cpu`` or ``cuda`` means here. Raises MissingExtraError for no GPU."""
     if name == "cuda" and not torch.cuda.is_available():
         raise MissingExtraError("training on a GPU, which this torch does not see,", "train")
@@ -46,7 +46,7 @@ def device_named(name: str) -> torch.device:
     return torch.device(name)
 
 
-def said_labels(
+def predict_labels(
     network: nn.Module,
     frames: Frames,
     rows: Sequence[int],
@@ -64,8 +64,8 @@ def said_labels(
     network.eval()
     done = 0
     try:
-        for batch in ordered_batches(frames, rows, config):
-            with torch.inference_mode(), autocast_of(config.precision, device):
+        for batch in ordered_loader(frames, rows, config):
+            with torch.inference_mode(), autocast(config.precision, device):
                 logits = network(batch.inputs.to(device)).logits
             for labels in logits.argmax(dim=1).to(torch.uint8).cpu().numpy():
                 yield labels
@@ -75,12 +75,12 @@ def said_labels(
         network.train(was_training)
 
 
-def validated(
+def validate(
     network: nn.Module, frames: Frames, rows: Sequence[int], config: RunConfig
 ) -> OccupancyCounts:
     """Return the counts of some frames, by the protocol ``monoscene``."""
     total = OccupancyCounts()
-    said = said_labels(network, frames, rows, config)
+    said = predict_labels(network, frames, rows, config)
     for row, labels in zip(rows, said, strict=True):
         total = total + count_occupancy(labels, frames[row].labels)
     return total

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from string import ascii_lowercase, ascii_uppercase
 from typing import Any
 
-from world2minecraft.minecraftocc.statistics.tables import escape
+from world2minecraft.minecraftocc.statistics.tables import escape_latex
 from world2minecraft.navigation.running.tables import format_markdown
 from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable
 
@@ -159,15 +159,15 @@ def as_latex(table: PaperTable, ours: Mapping[str, Ours]) -> str:
     width = len(grid.rows[0])
     kinds = "l" * grid.left + "r" * (width - grid.left)
     kinds = "l" + "p{3cm}" * (width - 1) if table.is_beside else kinds
-    lines = [r"\begin{table}", rf"\caption{{{escape(table.about)}}}"]
+    lines = [r"\begin{table}", rf"\caption{{{escape_latex(table.about)}}}"]
     lines += [rf"\begin{{tabular}}{{{kinds}}}", r"\toprule"]
     for n, row in enumerate(grid.rows):
-        cells = [escape(cell.strip()) for cell in row]
+        cells = [escape_latex(cell.strip()) for cell in row]
         cells = [rf"\textit{{{cell}}}" if cell and n in grid.ours else cell for cell in cells]
         lines.append(" & ".join(_guarded(cells)) + r" \\")
         lines += [r"\midrule"] if n == 0 else []
     lines += [r"\bottomrule", r"\end{tabular}", ""]
-    lines += [rf"{{\footnotesize {escape(note)}\par}}" for note in grid.notes]
+    lines += [rf"{{\footnotesize {escape_latex(note)}\par}}" for note in grid.notes]
     return "\n".join([*lines, r"\end{table}"])
 
 

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture import (realign, write_plain)
-from world2minecraft.capture import open_scan
+from world2minecraft.capture import open_scan, realign, write_plain
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.sources import find_capture
@@ -28,7 +27,7 @@ from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.reconstruction.fusion import EvidenceMap, read_out, remove_floaters
+from world2minecraft.reconstruction.fusion import EvidenceMap, extract_grid, remove_floaters
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
@@ -193,7 +192,7 @@ def show(live: LiveMap, out: Path) -> None:
         CaptureError: no frame gave evidence yet. OutputError: the folder cannot be written.
     """
     chosen, evidence = live.parameters, live.fused()
-    grid = labelled(remove_floaters(read_out(evidence), chosen.clean), evidence, chosen)
+    grid = labelled(remove_floaters(extract_grid(evidence), chosen.clean), evidence, chosen)
     write_room(out / "room.npz", grid, evidence.scan_to_room)
     volume = build_volume(
         grid, (), (), blocks_per_metre=chosen.blocks_per_metre, parameters=chosen.build

@@ -18,7 +18,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from world2minecraft import __version__
-from world2minecraft.capture import realign, settled
+from world2minecraft.capture import realign, skip_damaged_frames
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.run_arrays import write_evidence
@@ -91,7 +91,10 @@ def reconstruct(
     if used is not None and run.needs("fuse"):
         with run.stage("fuse"):
             rules = chosen.fuse.suited(scan.depth_kind)
-            evidence, scan = fuse_views(used.predict(scan), scan, rules, progress), settled(scan)
+            evidence, scan = (
+                fuse_views(used.predict(scan), scan, rules, progress),
+                skip_damaged_frames(scan),
+            )
             scan = replace(scan, notes=(*scan.notes, *notes_of(used)))
             if chosen.plan:
                 evidence, told_of_plan = voted_by_plan(evidence, Path(chosen.plan))

@@ -36,7 +36,7 @@ from world2minecraft.reconstruction.fusion import (
     calibrate,
     close_structure,
     confidence_table,
-    read_out,
+    extract_grid,
     remove_floaters,
 )
 from world2minecraft.reconstruction.instances import find_objects
@@ -54,7 +54,7 @@ from world2minecraft.reconstruction.semantics.completion import LEARNT_VOXEL_M, 
 def label_stage(folder: Path, chosen: Parameters) -> None:
     """``evidence.npz`` -> ``room.npz``, what each cell is, cleaned; ``layout.json``, the rooms."""
     evidence = read_evidence(folder / "evidence.npz")
-    grid = remove_floaters(read_out(evidence), chosen.clean)
+    grid = remove_floaters(extract_grid(evidence), chosen.clean)
     rooms = find_structure(grid, evidence)
     write_layouts(folder / "layout.json", rooms)
     from_photos = read_depth_kind(folder / "scan.json") == "stereo"

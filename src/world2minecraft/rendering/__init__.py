@@ -6,10 +6,10 @@ its scene once, with ``prepare_scene`` or ``prepare_voxels``.
 """
 
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, NEUTRAL
 from world2minecraft.rendering.picture import Picture, render_parallel, render_volume
 from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.shading_parameters import DAY, NEUTRAL
 from world2minecraft.rendering.voxel_camera import (
     VoxelHits,
     VoxelScene,

@@ -13,9 +13,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.rendering.light_parameters import NEUTRAL
 from world2minecraft.rendering.picture import render_parallel
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 TILE_PX = 150
 COLUMNS = 4  # Cards a row.

@@ -49,7 +49,7 @@ class PlacedElement:
         """Element to grid, float64 [4, 4]."""
         return np.eye(4) if self.element.turn is None else self.element.turn
 
-    def moved(self, shift: np.ndarray) -> "Guest":
+    def moved(self, shift: np.ndarray) -> "PlacedElement":
         """Return the guest moved by a shift, float64 [3]."""
         matrix = self.matrix.copy()
         matrix[:3, 3] += shift

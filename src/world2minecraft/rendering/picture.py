@@ -8,9 +8,9 @@ import numpy as np
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
 OUTPUTS = ("colour", "depth", "semantic", "instance", "opaque", "normal", "free")
 DEFAULT_OUTPUTS = ("colour", "depth", "semantic", "instance")

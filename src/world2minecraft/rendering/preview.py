@@ -11,10 +11,10 @@ from world2minecraft.rendering.cutaway import (
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.light_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_parallel, render_volume
 from world2minecraft.rendering.plain_models import PlainModels
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL
 
 ELEVATION_DEG = 48.0  # Steep enough to see over the furniture, flat enough to see its fronts.
 TURN_DEG = 34.0  # Off the diagonal, so that the two far walls do not mirror each other.

@@ -22,7 +22,7 @@ from world2minecraft.capture.sfm.features import sharpness
 from world2minecraft.capture.sfm.incremental_mapping import merge_models
 from world2minecraft.capture.sfm.matching import match_descriptors, select_pairs
 from world2minecraft.capture.sfm.pose_verification import find_outliers, sampson_errors
-from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 from world2minecraft.core.types import Camera
 
@@ -89,7 +89,7 @@ def test_seeing_undoes_what_a_bent_lens_does():
     ],
 )
 def test_cameras_come_back_from_colmap_and_see_alike(camera):
-    with colmap.colmap() as pycolmap:
+    with colmap.pycolmap_session() as pycolmap:
         made = to_colmap(pycolmap, camera, 1, simple=False)
         assert from_colmap(made) == camera
         points = np.random.default_rng(0).uniform([-1, -1, 2], [1, 1, 4], (20, 3))
@@ -148,7 +148,7 @@ def test_models_that_share_photos_are_joined():
 
 def test_progress_never_falls_and_ends():
     told = []
-    steps = Steps(lambda *a: told.append(a), {"a": 3, "b": 10, "c": 2})
+    steps = ProgressSteps(lambda *a: told.append(a), {"a": 3, "b": 10, "c": 2})
     for _ in range(5):
         steps.done("a")
     steps.done("b", 1, 4)
@@ -169,7 +169,7 @@ def test_pycolmap_is_optional(monkeypatch):
 
 
 def test_failures_of_colmap_are_one_line():
-    with pytest.raises(CaptureError) as caught, colmap.colmap():
+    with pytest.raises(CaptureError) as caught, colmap.pycolmap_session():
         raise RuntimeError("[x.cc:1] Check failed\nand more")
     assert str(caught.value) == (
         "photos: their places could not be found ([x.cc:1] Check failed); "
@@ -178,7 +178,7 @@ def test_failures_of_colmap_are_one_line():
 
 
 def test_a_few_placed_photos_are_no_room():
-    assert str(reasons.too_few(6, 40)) == (
+    assert str(reasons.too_few_error(6, 40)) == (
         "photos: only 6 of 40 could be placed, too few to trust; walk sideways around the room, "
         "with most of each picture in the next, and stand back so that furniture and corners are "
         "seen"

@@ -11,11 +11,9 @@ from tests.reconstruction.opening.test_prepare import scene_of
 from world2minecraft.capture.stereo import network_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import DepthMap, Photo, Scan
-from world2minecraft.reconstruction.fusion import FuseParameters, fuse_views
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import FuseParameters, extract_grid, fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
-from world2minecraft.reconstruction.registration import RegisterParameters, register
-from world2minecraft.reconstruction.registration import corrected
+from world2minecraft.reconstruction.registration import RegisterParameters, corrected, register
 
 ROOM = BoxRoom((7.0, 5.5, 2.7))  # So large that 5 % of a wall's distance is more than a voxel.
 OFF = 0.05  # Up to so much, as monocular networks are known for.
@@ -69,7 +67,7 @@ def scan_of(views, kind="network") -> Scan:
 def cells_of(scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     fused = fuse_views(predictor("depth").predict(scan), scan, FuseParameters().suited("network"))
     low = np.round(fused.origin_m / fused.voxel_m).astype(int)
-    return np.argwhere(read_out(fused).occupied) + low, low
+    return np.argwhere(extract_grid(fused).occupied) + low, low
 
 
 def within_one_voxel(scan: Scan, true: Scan) -> tuple[float, float]:

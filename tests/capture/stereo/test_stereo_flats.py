@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.capture.stereo.planar_regions import flattened
+from world2minecraft.capture.stereo.planar_regions import fill_planar_regions
 
 RANGE_M = (0.5, 9.0)
 
@@ -20,7 +20,7 @@ def wall_with_a_plain_patch():
 
 def test_a_hole_of_one_colour_is_filled_by_the_plane_of_its_rim():
     colour, depth_m, true_m = wall_with_a_plain_patch()
-    guess_m, guessed = flattened(colour, depth_m, depth_m > 0, RANGE_M)
+    guess_m, guessed = fill_planar_regions(colour, depth_m, depth_m > 0, RANGE_M)
     assert guessed[23:37, 28:57].all()
     np.testing.assert_allclose(guess_m[guessed], true_m[guessed], rtol=1e-4)
 
@@ -28,7 +28,7 @@ def test_a_hole_of_one_colour_is_filled_by_the_plane_of_its_rim():
 def test_what_is_mirrored_behind_a_patch_is_put_on_it():
     colour, depth_m, true_m = wall_with_a_plain_patch()
     depth_m[26:34, 35:50] = 1.5 * true_m[26:34, 35:50]
-    guess_m, guessed = flattened(colour, depth_m, depth_m > 0, RANGE_M)
+    guess_m, guessed = fill_planar_regions(colour, depth_m, depth_m > 0, RANGE_M)
     assert guessed[26:34, 35:50].all()
     np.testing.assert_allclose(guess_m[26:34, 35:50], true_m[26:34, 35:50], rtol=1e-4)
 
@@ -36,7 +36,7 @@ def test_what_is_mirrored_behind_a_patch_is_put_on_it():
 def test_what_stands_before_a_patch_or_around_it_is_never_touched():
     colour, depth_m, true_m = wall_with_a_plain_patch()
     depth_m[26:34, 35:50] = 0.7 * true_m[26:34, 35:50]
-    guess_m, guessed = flattened(colour, depth_m, depth_m > 0, RANGE_M)
+    guess_m, guessed = fill_planar_regions(colour, depth_m, depth_m > 0, RANGE_M)
     known = depth_m > 0
     assert not guessed[known].any()
     np.testing.assert_array_equal(guess_m[known], depth_m[known])
@@ -54,6 +54,6 @@ def test_nothing_is_guessed_without_reason(case):
         sure = np.zeros_like(sure)
     else:
         range_m = (5.0, 9.0)
-    guess_m, guessed = flattened(colour, depth_m, sure, range_m)
+    guess_m, guessed = fill_planar_regions(colour, depth_m, sure, range_m)
     assert not guessed.any()
     np.testing.assert_array_equal(guess_m, depth_m)

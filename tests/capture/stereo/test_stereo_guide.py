@@ -6,9 +6,9 @@ import pytest
 from world2minecraft.capture.stereo.monocular_depth import (
     DEPTH_MODELS,
     FILLED_TRUST,
-    _inverse_line,
-    depth_model,
-    filled,
+    _fit_inverse_depth,
+    fill_holes,
+    load_depth_model,
 )
 from world2minecraft.core.errors import UnknownNameError, UsageError
 
@@ -41,7 +41,7 @@ def with_hole(true_m):
 def test_an_exact_network_is_laid_on_exactly(kind, said):
     true_m = slanted()
     depth_m, trust = with_hole(true_m)
-    got_m, got = filled(depth_m, trust, said(true_m).astype(np.float32), kind, NO_PX, NO_M)
+    got_m, got = fill_holes(depth_m, trust, said(true_m).astype(np.float32), kind, NO_PX, NO_M)
     np.testing.assert_allclose(got_m, true_m, rtol=1e-3)
     assert (got == np.where(depth_m == 0, FILLED_TRUST, 255)).all()
 
@@ -52,7 +52,7 @@ def test_sparse_points_do_where_stereo_found_nothing():
     at = rng.uniform([0, 0], [80, 60], (60, 2))
     guide_m = true_m[at[:, 1].astype(int), at[:, 0].astype(int)].astype(np.float64)
     nothing = np.zeros_like(true_m)
-    got_m, got = filled(nothing, nothing.astype(np.uint8), true_m * 3, "metric", at, guide_m)
+    got_m, got = fill_holes(nothing, nothing.astype(np.uint8), true_m * 3, "metric", at, guide_m)
     assert (got == FILLED_TRUST).mean() > 0.9
     np.testing.assert_allclose(got_m[got > 0], true_m[got > 0], rtol=1e-4)
 
@@ -62,7 +62,7 @@ def test_a_third_of_wrong_points_does_not_move_it():
     rng = np.random.default_rng(4)
     guess = 3 / true_m.ravel().astype(np.float64) + 1
     wrong = true_m.ravel() * np.where(rng.random(true_m.size) < 0.3, 1.9, 1.0)
-    by, plus = _inverse_line(guess, wrong, np.ones(len(guess)))
+    by, plus = _fit_inverse_depth(guess, wrong, np.ones(len(guess)))
     np.testing.assert_allclose(guess * by + plus, 1 / true_m.ravel(), rtol=0.01)
 
 
@@ -81,7 +81,7 @@ def test_a_wrong_network_fills_nothing(kind, said):
     true_m = slanted()
     depth_m, trust = with_hole(true_m)
     predicted = said(true_m if kind == "metric" else 1 / true_m).astype(np.float32)
-    got_m, got = filled(depth_m, trust, predicted, kind, NO_PX, NO_M)
+    got_m, got = fill_holes(depth_m, trust, predicted, kind, NO_PX, NO_M)
     assert (got_m == depth_m).all()
     assert (got == trust).all()
 
@@ -94,7 +94,7 @@ def test_a_network_that_errs_here_fills_there():
     trust[depth_m == 0] = 0
     predicted = true_m.copy()
     predicted[:, 100:] *= np.random.default_rng(2).choice([0.8, 1.25], (60, 60))
-    _, got = filled(depth_m, trust, predicted, "metric", NO_PX, NO_M)
+    _, got = fill_holes(depth_m, trust, predicted, "metric", NO_PX, NO_M)
     assert (got[20:40, 20:40] == FILLED_TRUST).all()
     assert (got[20:40, 120:140] == 0).all()
 
@@ -104,7 +104,7 @@ def test_stereo_is_never_overwritten():
     true_m = slanted()
     depth_m = (true_m * (rng.random(true_m.shape) > 0.4)).astype(np.float32)
     trust = np.where(depth_m > 0, rng.choice([40, 255], true_m.shape), 0).astype(np.uint8)
-    got_m, got = filled(depth_m, trust, true_m * 2, "metric", NO_PX, NO_M)
+    got_m, got = fill_holes(depth_m, trust, true_m * 2, "metric", NO_PX, NO_M)
     had = depth_m > 0
     assert (got_m[had] == depth_m[had]).all()
     assert (got[had] == trust[had]).all()
@@ -113,7 +113,7 @@ def test_stereo_is_never_overwritten():
 
 def test_nothing_measured_fills_nothing():
     nothing = np.zeros((60, 80), np.float32)
-    got_m, got = filled(nothing, nothing.astype(np.uint8), slanted(), "metric", NO_PX, NO_M)
+    got_m, got = fill_holes(nothing, nothing.astype(np.uint8), slanted(), "metric", NO_PX, NO_M)
     assert not got_m.any()
     assert not got.any()
 
@@ -121,14 +121,14 @@ def test_nothing_measured_fills_nothing():
 def test_what_is_no_map_is_refused():
     depth_m, trust = with_hole(slanted())
     with pytest.raises(ValueError, match="one size"):
-        filled(depth_m, trust, depth_m[1:], "metric", NO_PX, NO_M)
+        fill_holes(depth_m, trust, depth_m[1:], "metric", NO_PX, NO_M)
     with pytest.raises(ValueError, match="'metric' or 'inverse'"):
-        filled(depth_m, trust, depth_m, "relative", NO_PX, NO_M)
+        fill_holes(depth_m, trust, depth_m, "relative", NO_PX, NO_M)
 
 
 def test_names_are_checked_in_one_line():
     assert DEPTH_MODELS.names()[0] == "hf"
     with pytest.raises(UnknownNameError, match="no depth_model is named 'hg'; known: hf"):
-        depth_model("hg:a/b")
+        load_depth_model("hg:a/b")
     with pytest.raises(UsageError, match="type hf:ORG/NAME"):
-        depth_model("hf")
+        load_depth_model("hf")

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from world2minecraft.capture.stereo.monocular_depth import depth_model
+from world2minecraft.capture.stereo.monocular_depth import load_depth_model
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError
 from world2minecraft.core.types import Camera
 from world2minecraft.external_models.transformers_hub import preprocess, preprocessed_size
@@ -46,13 +46,13 @@ def change(path, **entries):
 def test_a_network_in_a_folder_predicts_the_same_twice(folder):
     import torch
 
-    model = depth_model(f"hf:{folder}")
+    model = load_depth_model(f"hf:{folder}")
     assert model.kind == "inverse"
     threads = torch.get_num_threads()
     first = model.predict(COLOUR, CAMERA)
     assert (first.shape, first.dtype) == ((40, 60), np.float32)
     assert np.isfinite(first).all()
-    assert first.tobytes() == depth_model(f"hf:{folder}").predict(COLOUR, CAMERA).tobytes()
+    assert first.tobytes() == load_depth_model(f"hf:{folder}").predict(COLOUR, CAMERA).tobytes()
     assert torch.get_num_threads() == threads
 
 
@@ -67,13 +67,13 @@ def test_it_is_what_the_library_says(folder):
     with torch.no_grad():
         pixels = torch.tensor(values.transpose(2, 0, 1)[None], dtype=torch.float32)
         expected = network(pixels).predicted_depth[0].numpy()
-    got = depth_model(f"hf:{folder}").predict(colour, Camera(42, 42, 50.0, 50.0, 21.0, 21.0))
+    got = load_depth_model(f"hf:{folder}").predict(colour, Camera(42, 42, 50.0, 50.0, 21.0, 21.0))
     np.testing.assert_allclose(got, expected, rtol=1e-4, atol=1e-6)
 
 
 def test_a_metric_network_is_known_by_its_config(folder):
     change(folder / "config.json", depth_estimation_type="metric", max_depth=20)
-    assert depth_model(f"hf:{folder}").kind == "metric"
+    assert load_depth_model(f"hf:{folder}").kind == "metric"
 
 
 def test_lacking_weights_are_not_drawn_by_chance(folder):
@@ -84,7 +84,7 @@ def test_lacking_weights_are_not_drawn_by_chance(folder):
     del weights["head.conv3.weight"]
     save_file(weights, path, metadata={"format": "pt"})
     with pytest.raises(DamagedFileError, match="weights lack head"):
-        depth_model(f"hf:{folder}")
+        load_depth_model(f"hf:{folder}")
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_lacking_weights_are_not_drawn_by_chance(folder):
 def test_what_is_damaged_is_refused_in_one_line(folder, file, content):
     (folder / file).write_bytes(content)
     with pytest.raises(InputError) as caught:
-        depth_model(f"hf:{folder}")
+        load_depth_model(f"hf:{folder}")
     assert "\n" not in str(caught.value)
 
 
@@ -109,13 +109,13 @@ def test_no_folder_and_no_name_is_refused():
     pytest.importorskip("torch")
     pytest.importorskip("transformers")
     with pytest.raises(InputError, match="neither a folder nor the name of a model"):
-        depth_model("hf:../nowhere/at/all")
+        load_depth_model("hf:../nowhere/at/all")
 
 
 def test_without_the_libraries_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
     with pytest.raises(MissingExtraError, match=r"pip install 'world2minecraft\[hf\]'"):
-        depth_model("hf:a/b")
+        load_depth_model("hf:a/b")
 
 
 @pytest.mark.parametrize(

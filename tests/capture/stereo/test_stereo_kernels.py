@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from world2minecraft.capture.stereo.consistency import confirm, without_islands
-from world2minecraft.capture.stereo.plane_sweep import best_planes, sum_paths, sweep_costs
+from world2minecraft.capture.stereo.consistency import check_consistency, filter_speckles
+from world2minecraft.capture.stereo.plane_sweep import aggregate_costs, select_planes, sweep_costs
 
 
 def halves(rng, *shape):
@@ -96,13 +96,13 @@ def slow_paths(costs, small, large):
 def test_paths_carry_the_least_cost_of_what_lies_behind_them():
     rng = np.random.default_rng(1)
     costs = rng.integers(0, 255, (6, 7, 9)).astype(np.uint8)
-    np.testing.assert_array_equal(sum_paths(costs, 20.0, 90.0), slow_paths(costs, 20, 90))
+    np.testing.assert_array_equal(aggregate_costs(costs, 20.0, 90.0), slow_paths(costs, 20, 90))
 
 
 def test_the_best_plane_is_found_between_planes():
     at = np.arange(12)
     total = np.array([[(at - 4.3) ** 2, (at - 0.2) ** 2, (at - 20.0) ** 2]], np.float32)
-    np.testing.assert_allclose(best_planes(total), [[4.3, 0, 11]], atol=1e-5)
+    np.testing.assert_allclose(select_planes(total), [[4.3, 0, 11]], atol=1e-5)
 
 
 def slow_confirm(depth, rays, others, to_others, cameras, tolerance):
@@ -134,7 +134,7 @@ def test_others_confirm_what_they_see_at_the_same_distance():
     poses = np.tile(np.eye(4), (3, 1, 1))
     poses[:, :3, 3] = rng.normal(0, 0.1, (3, 3))
     cameras = np.tile([15.0, 15.0, 8.0, 6.0], (3, 1))
-    votes, mean = confirm(depth, rays, others, poses, cameras, 0.05)
+    votes, mean = check_consistency(depth, rays, others, poses, cameras, 0.05)
     slow_votes, slow_mean = slow_confirm(depth, rays, others, poses, cameras, 0.05)
     np.testing.assert_array_equal(votes, slow_votes)
     np.testing.assert_allclose(mean, slow_mean, rtol=1e-6)
@@ -152,4 +152,4 @@ def test_islands_are_pieces_that_jumps_and_holes_cut_off():
             if (pieces == piece).sum() < 9:
                 expected[pieces == piece] = 0
     assert 0 < (expected > 0).sum() < (depth > 0).sum()
-    np.testing.assert_array_equal(without_islands(depth, 9, 0.2), expected)
+    np.testing.assert_array_equal(filter_speckles(depth, 9, 0.2), expected)

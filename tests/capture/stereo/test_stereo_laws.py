@@ -56,7 +56,7 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
     photos, _ = row_of_photos(0.2, 4)
     scene = scene_of(photos, 0.2)
     one = found(photos, scene)
-    monkeypatch.setattr(maps, "AT_ONCE", 1)
+    monkeypatch.setattr(maps, "PARALLEL_PHOTOS", 1)
     other = found(photos, scene)
     for name in one:
         assert one[name].depth_m.tobytes() == other[name].depth_m.tobytes()

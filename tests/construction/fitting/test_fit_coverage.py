@@ -5,11 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction.fitting.problem import (
-    as_blocks,
-    covered,
-    covered_blocks,
-    covered_by_boxes,
-    from_blocks,
+    cover_blocks,
+    cover_boxes,
+    cover_cells,
+    join_blocks,
+    split_into_blocks,
     thin_cells,
 )
 from world2minecraft.construction.fitting.shapes import SUB
@@ -27,7 +27,7 @@ def test_no_mass_is_lost_or_won(seed, side, start):
     solid = solid_of_seed(seed)
     edges = [start + np.arange(n + 1) * side for n in solid.shape]
     counts = [int(np.ceil(edge[-1])) for edge in edges]
-    shares = covered(solid, edges, counts)
+    shares = cover_cells(solid, edges, counts)
     assert shares.min() >= -1e-5
     assert shares.max() <= 1 + 1e-5
     assert abs(shares.sum() / SUB**3 - solid.sum() * side**3) < 1e-3
@@ -38,8 +38,8 @@ def test_only_blocks_that_are_met_are_given_and_all_of_those(seed):
     solid = solid_of_seed(seed, 0.05)
     edges = [np.arange(n + 1) * 0.32 for n in solid.shape]
     counts = [int(np.ceil(edge[-1] - 1e-9)) for edge in edges]
-    cells, (shares,) = covered_blocks([solid], edges, counts)
-    whole = as_blocks(covered(solid, edges, counts))
+    cells, (shares,) = cover_blocks([solid], edges, counts)
+    whole = split_into_blocks(cover_cells(solid, edges, counts))
     filled = {tuple(at) for at in np.argwhere(whole.any(3)).tolist()}
     assert filled <= {tuple(at) for at in cells.tolist()}
     assert np.allclose(whole[tuple(cells.T)], shares)
@@ -49,13 +49,13 @@ def test_a_cell_that_is_a_block_fills_it_exactly():
     solid = np.zeros((3, 3, 3), bool)
     solid[1, 1, 1] = True
     edges = [np.arange(4) * (12.5 * 0.08) - 0.0 for _ in range(3)]
-    assert np.array_equal(as_blocks(covered(solid, edges, (3, 3, 3))).mean(3), solid)
+    assert np.array_equal(split_into_blocks(cover_cells(solid, edges, (3, 3, 3))).mean(3), solid)
 
 
 @given(seed=SEEDS)
 def test_blocks_of_cells_and_back(seed):
     cells = np.random.default_rng(seed).random((16, 8, 24)).astype(np.float32)
-    assert np.array_equal(from_blocks(as_blocks(cells)), cells)
+    assert np.array_equal(join_blocks(split_into_blocks(cells)), cells)
 
 
 def test_boxes_cover_as_voxels_do():
@@ -66,7 +66,7 @@ def test_boxes_cover_as_voxels_do():
             tuple(slice(int(a * 16), int(b * 16)) for a, b in zip(box[:3], box[3:], strict=True))
         ] = True
     edges = [np.arange(n + 1) / 16 for n in fine.shape]
-    assert np.allclose(covered_by_boxes(boxes, (2, 1, 1)), covered(fine, edges, (2, 1, 1)))
+    assert np.allclose(cover_boxes(boxes, (2, 1, 1)), cover_cells(fine, edges, (2, 1, 1)))
 
 
 def slow_thin(solid: np.ndarray, side: int) -> np.ndarray:

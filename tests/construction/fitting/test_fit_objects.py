@@ -19,7 +19,7 @@ from world2minecraft.construction.fitting import (
     shape_set,
     solve,
 )
-from world2minecraft.construction.fitting.stabilization import parts_of_shapes, without_crumbs
+from world2minecraft.construction.fitting.stabilization import label_parts, remove_crumbs
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.rules.connections import connected
@@ -48,7 +48,7 @@ def falls(numbers: np.ndarray, shapes: ShapeSet) -> list:
 
 
 def hovering(numbers: np.ndarray, shapes: ShapeSet) -> int:
-    parts = parts_of_shapes(numbers, shapes)
+    parts = label_parts(numbers, shapes)
     return len(set(np.unique(parts[parts > 0])) - set(np.unique(parts[:, :, 0])))
 
 
@@ -82,7 +82,7 @@ def test_nothing_falls_or_hovers(seed):
     fit = fit_solid(random_target(seed), ALL, STANDS)
     assert fit.numbers.any()
     assert falls(fit.numbers, ALL) == []
-    parts = np.unique(parts_of_shapes(fit.numbers, ALL))
+    parts = np.unique(label_parts(fit.numbers, ALL))
     assert hovering(fit.numbers, ALL) == 0 or len(parts) == 2  # The empty one, and all there is.
 
 
@@ -142,9 +142,9 @@ def test_crumbs_are_left_out_and_what_a_wall_holds_stays():
     grid = np.zeros((4, 4, 4), np.intp)
     grid[0, 0, 0] = grid[3, 3, 3] = 1
     held = np.zeros(grid.shape, bool)
-    assert without_crumbs(grid, ALL, True)[3, 3, 3] == 0
+    assert remove_crumbs(grid, ALL, True)[3, 3, 3] == 0
     held[3, 3, 3] = True
-    assert without_crumbs(grid, ALL, True, held)[3, 3, 3] == 1
+    assert remove_crumbs(grid, ALL, True, held)[3, 3, 3] == 1
 
 
 CHAIR = np.array(

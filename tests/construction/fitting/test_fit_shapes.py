@@ -8,10 +8,10 @@ from world2minecraft.construction.fitting.shapes import (
     PROBES,
     SUB,
     Shape,
-    faces_of,
-    mask_of,
+    contact_faces,
+    probe_state,
     shape_set,
-    solid_of,
+    subcell_mask,
 )
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
@@ -35,18 +35,18 @@ def slow_solid(state: str) -> np.ndarray:
 @pytest.mark.parametrize("state", SAMPLES)
 def test_masks_are_the_boxes_in_room_axes(state):
     step = PROBES // 4
-    assert np.array_equal(solid_of(state)[3::step, 3::step, 3::step], slow_solid(state))
-    assert mask_of(state).mean() == pytest.approx(solid_of(state).mean())
+    assert np.array_equal(probe_state(state)[3::step, 3::step, 3::step], slow_solid(state))
+    assert subcell_mask(state).mean() == pytest.approx(probe_state(state).mean())
 
 
 def test_stairs_that_face_east_are_high_in_the_east():
-    mask = mask_of("minecraft:oak_stairs[facing=east,half=bottom,shape=straight]")
+    mask = subcell_mask("minecraft:oak_stairs[facing=east,half=bottom,shape=straight]")
     assert mask[SUB // 2 :].mean() == 1
     assert mask[: SUB // 2, :, SUB // 2 :].mean() == 0
 
 
 def test_faces_are_what_a_state_touches():
-    faces = faces_of("minecraft:oak_slab[type=top]")
+    faces = contact_faces("minecraft:oak_slab[type=top]")
     assert faces[2, 1].all()
     assert not faces[2, 0].any()
     assert not faces[0, 0, :, : SUB // 2].any()

@@ -76,7 +76,7 @@ def random_operation(draft: SceneDraft, rng: np.random.Generator) -> Operation:
         "time_s": float(rng.random() * 1e9),
     }
     after = random_cells(rng, len(cells))
-    return draft.planned("paint", cells, after, gone=gone, objects=changed, **told)
+    return draft.plan_operation("paint", cells, after, gone=gone, objects=changed, **told)
 
 
 def state(draft: SceneDraft) -> tuple:

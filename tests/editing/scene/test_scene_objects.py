@@ -61,7 +61,7 @@ def test_what_is_deleted_leaves_seen_and_empty_cells_and_the_floor():
     operation = done(draft, op="delete_objects", ids=[CHAIR, CHAIR])
     assert (operation.counts_as, operation.class_id) == ("delete", 5)
     assert CHAIR not in draft.objects and len(draft.cells_of(CHAIR)) == 0
-    held = draft.held(cells)
+    held = draft.contents(cells)
     assert not held.labels.any() and (held.source == 1).all() and (held.confidence == 1).all()
     assert np.array_equal((draft.labels > 0) & (draft.labels < 5), structure)
 
@@ -69,13 +69,13 @@ def test_what_is_deleted_leaves_seen_and_empty_cells_and_the_floor():
 def test_a_moved_object_takes_its_cells_and_furniture_along():
     draft = furnished_room()
     cells = draft.cells_of(CHAIR)
-    held = draft.held(cells)
+    held = draft.contents(cells)
     operation = done(draft, op="move_object", id=CHAIR, to_m=[0.7, 1.43, 0.25])
     assert operation.counts_as == "move"
     there = draft.cells_of(CHAIR)
     assert np.array_equal(there, cells + np.array([0, 7, 0]))
     for name in ("labels", "confidence", "colour", "source"):
-        assert np.array_equal(getattr(draft.held(there), name), getattr(held, name))
+        assert np.array_equal(getattr(draft.contents(there), name), getattr(held, name))
     one = draft.objects[CHAIR]
     assert one.center_m.tolist() == [0.7, 1.4, 0.25]
     assert one.placements[0].center_m.tolist() == [0.7, 1.4, 0.25]

@@ -61,7 +61,7 @@ def test_cells_that_hold_the_same_take_no_room():
     one = random_cells(np.random.default_rng(0), 1)
     fields = ("labels", "confidence", "colour", "source", "instance")
     after = type(one)(*(np.repeat(getattr(one, name), len(cells), axis=0) for name in fields))
-    operation = draft.planned("fill", cells, after)
+    operation = draft.plan_operation("fill", cells, after)
     assert read_nbt(pack_operation(operation, SHAPE), "j")[1]["after"]["colour"].nbytes == 3
 
 

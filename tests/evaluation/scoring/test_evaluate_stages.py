@@ -16,7 +16,7 @@ from world2minecraft.evaluation.scoring.stage_ablation import (
 )
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import extract_grid
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -57,7 +57,7 @@ def test_truth_put_in_scores_full_marks_from_there_on(stages):
 def test_true_evidence_reads_out_as_the_truth(run, capture):
     case = open_case(run, capture)
     evidence = true_evidence(case.room, case.scan.views, case.scan.scan_to_room)
-    grid = read_out(evidence)
+    grid = extract_grid(evidence)
     known = case.room.reached.scored & (case.room.labels != 255)
     assert np.array_equal(grid.labels != 255, known)
     assert np.array_equal((grid.labels > 0)[known], (case.room.labels > 0)[known])

@@ -11,7 +11,7 @@ from tests.minecraftocc.exchange import page_loader, synthetic
 from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
-from world2minecraft.minecraftocc.formats.sscnet import downsampled, read_bin
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.importers import ImportedSet
 
 KEY = "house_0001-t0-00000"
@@ -87,10 +87,10 @@ def test_projected_cells_meet_the_pixels_that_see_them(made, exported):
 
 
 def test_the_masks_of_view_are_the_same(made, exported):
-    from world2minecraft.minecraftocc.formats.label_boxes import box_in_image, region_box
+    from world2minecraft.minecraftocc.formats.label_boxes import box_cells_in_image, region_box
 
     loaded = page_loader.load_nyu(exported, "train", KEY)
-    ours = box_in_image(region_box(made), made.camera)
+    ours = box_cells_in_image(region_box(made), made.camera)
     assert np.mean(ours != loaded.in_view) < 1e-4  # Ties of rounding and float32.
 
 
@@ -105,8 +105,8 @@ def test_symphonies_and_iso_read_the_same_depth(made, exported):
 def test_preprocessing_the_bin_gives_the_pickle(exported):
     stored = page_loader.load_nyu(exported, "train", KEY).stored
     frame = read_bin(exported / "NYUtrain" / f"{KEY}.bin")
-    assert np.array_equal(downsampled(frame.labels, 4), stored["target_1_4"])
-    assert np.array_equal(downsampled(frame.labels, 16), stored["target_1_16"])
+    assert np.array_equal(downsample_labels(frame.labels, 4), stored["target_1_4"])
+    assert np.array_equal(downsample_labels(frame.labels, 16), stored["target_1_16"])
     assert np.array_equal(frame.camera_to_world, stored["cam_pose"])
     assert np.array_equal(frame.origin_m, stored["voxel_origin"])
 

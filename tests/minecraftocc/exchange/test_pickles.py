@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.minecraftocc.formats.safe_pickle import parse_pickle, pickle_bytes, read_pickle
+from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle, parse_pickle, read_pickle
 
 VALUES = {
     "name": "scene0000_00/00012 é",
@@ -40,17 +40,17 @@ def assert_same(found, expected):
 
 
 def test_python_opens_what_is_written():
-    assert_same(pickle.loads(pickle_bytes(VALUES)), VALUES)
+    assert_same(pickle.loads(dump_pickle(VALUES)), VALUES)
 
 
 def test_written_arrays_may_be_written_to():
-    labels = pickle.loads(pickle_bytes(VALUES))["labels"]
+    labels = pickle.loads(dump_pickle(VALUES))["labels"]
     labels[labels == 0] = 12  # As EmbodiedOcc's loader does.
     assert labels.flags.c_contiguous
 
 
 def test_only_names_of_numpy_1_are_written():
-    operations = list(pickletools.genops(pickle_bytes(VALUES)))
+    operations = list(pickletools.genops(dump_pickle(VALUES)))
     names = {argument for operation, argument, _ in operations if operation.name == "GLOBAL"}
     assert names == {"numpy.core.multiarray _reconstruct", "numpy ndarray", "numpy dtype"}
     assert operations[0][1] == 3  # Protocol 3: Python 3.0 and later.
@@ -75,14 +75,14 @@ def test_pickles_of_numpy_1_are_read(protocol):
 
 
 def test_what_is_written_is_read():
-    assert_same(parse_pickle(pickle_bytes(VALUES)), VALUES)
+    assert_same(parse_pickle(dump_pickle(VALUES)), VALUES)
 
 
 def test_fortran_order_and_big_endian_are_kept():
     turned = {"turned": np.asfortranarray(np.arange(6).reshape(2, 3))}
     values = turned | {"big": np.arange(3, dtype=">i4")}
     assert_same(parse_pickle(pickle.dumps(values)), values)
-    assert_same(pickle.loads(pickle_bytes(turned)), turned)
+    assert_same(pickle.loads(dump_pickle(turned)), turned)
 
 
 def test_an_ordered_dict_and_shared_arrays_are_read():
@@ -119,10 +119,10 @@ HOSTILE = {
     "an extension": b"\x82\x01.",
     "no dict": pickle.dumps([1, 2]),
     "a key that is a number": pickle.dumps({1: 2}),
-    "an array longer than its bytes": pickle_bytes({"x": np.zeros(8, np.uint8)}).replace(
+    "an array longer than its bytes": dump_pickle({"x": np.zeros(8, np.uint8)}).replace(
         b"J\x08\x00\x00\x00", struct.pack("<ci", b"J", 1 << 30)
     ),
-    "cut short": pickle_bytes(VALUES)[:-9],
+    "cut short": dump_pickle(VALUES)[:-9],
     "nothing": b"",
     "text": b"hello world",
     "a memo beyond memory": b"\x80\x03}r\xff\xff\xff\x7fNt.",
@@ -160,13 +160,13 @@ def test_a_program_of_many_steps_is_refused():
 def test_missing_and_large_files_are_named(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         read_pickle(tmp_path / "none.pkl")
-    (tmp_path / "x.pkl").write_bytes(pickle_bytes(VALUES))
+    (tmp_path / "x.pkl").write_bytes(dump_pickle(VALUES))
     with pytest.raises(LimitError, match="at most 10"):
         read_pickle(tmp_path / "x.pkl", limit_bytes=10)
 
 
 def test_values_of_other_kinds_are_not_written():
     with pytest.raises(TypeError, match="no set"):
-        pickle_bytes({"x": {1}})
+        dump_pickle({"x": {1}})
     with pytest.raises(TypeError, match="no array of object"):
-        pickle_bytes({"x": np.array([None])})
+        dump_pickle({"x": np.array([None])})

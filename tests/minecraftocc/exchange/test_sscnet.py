@@ -7,8 +7,8 @@ from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.sscnet import (
     CLASS_OF_CODE,
     CODE_OF_CLASS,
-    bin_bytes,
-    downsampled,
+    downsample_labels,
+    encode_bin,
     read_bin,
 )
 
@@ -35,22 +35,22 @@ def test_the_fast_rule_is_the_slow_one(share, factor):
     labels = np.where(chance.random((16, 8, 16)) < 0.5, 0, 255).astype(np.uint8)
     filled = chance.random(labels.shape) < share
     labels[filled] = chance.integers(1, 12, int(filled.sum()))
-    assert np.array_equal(downsampled(labels, factor), slow_downsampled(labels, factor))
+    assert np.array_equal(downsample_labels(labels, factor), slow_downsampled(labels, factor))
 
 
 def test_four_of_sixty_four_voxels_make_a_cell():
     block = np.zeros((4, 4, 4), np.uint8)
     block.reshape(-1)[:3] = 5
-    assert downsampled(block, 4)[0, 0, 0] == 0
+    assert downsample_labels(block, 4)[0, 0, 0] == 0
     block.reshape(-1)[:4] = 5
-    assert downsampled(block, 4)[0, 0, 0] == 5
+    assert downsample_labels(block, 4)[0, 0, 0] == 5
 
 
 def test_sixteenths_of_fine_voxels_are_quarters_of_cells():
     chance = np.random.default_rng(3)
     cells = chance.choice(np.array([0, 0, 0, 255, 3, 11], np.uint8), (8, 8, 8))
     fine = cells.repeat(4, 0).repeat(4, 1).repeat(4, 2)
-    assert np.array_equal(downsampled(fine, 16), downsampled(cells, 4))
+    assert np.array_equal(downsample_labels(fine, 16), downsample_labels(cells, 4))
 
 
 def test_a_grid_comes_back_from_its_bin(tmp_path):
@@ -58,10 +58,10 @@ def test_a_grid_comes_back_from_its_bin(tmp_path):
     cells = chance.choice(
         np.array([*range(12), 255], np.uint8), (60, 36, 60), p=[0.5, *[0.5 / 12] * 12]
     )
-    (tmp_path / "a.bin").write_bytes(bin_bytes(cells, np.array([0.1, -2, 3]), POSE))
+    (tmp_path / "a.bin").write_bytes(encode_bin(cells, np.array([0.1, -2, 3]), POSE))
     frame = read_bin(tmp_path / "a.bin")
     assert frame.labels.shape == (240, 144, 240)
-    assert np.array_equal(downsampled(frame.labels, 4), cells)
+    assert np.array_equal(downsample_labels(frame.labels, 4), cells)
     assert frame.origin_m.tolist() == np.array([0.1, -2, 3], np.float32).tolist()
     assert np.array_equal(frame.camera_to_world, POSE)
 
@@ -70,7 +70,7 @@ def test_a_bin_is_pairs_of_value_and_count():
     """Read back with numpy alone, as the page describes the file."""
     cells = np.zeros((60, 36, 60), np.uint8)
     cells[:, 0, :] = 2
-    data = bin_bytes(cells, np.zeros(3), POSE)
+    data = encode_bin(cells, np.zeros(3), POSE)
     assert np.frombuffer(data, "<f4", 19)[3:].tolist() == POSE.ravel().tolist()
     pairs = np.frombuffer(data, "<u4", offset=76).reshape(-1, 2)
     assert pairs[:, 1].sum() == 240 * 144 * 240

@@ -19,10 +19,10 @@ from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.store.sample_files import (
     FineTable,
     SampleFiles,
-    depth_of,
-    depth_png,
+    decode_depth,
+    encode_colour,
+    encode_depth,
     pack_sample,
-    picture_bytes,
     unpack_sample,
 )
 from world2minecraft.minecraftocc.store.shard import BLOCK, end_bytes, member_at, member_bytes
@@ -84,14 +84,14 @@ def test_depth_is_the_png_that_pillow_writes(height, width, seed):
     depth = (rng.uniform(0, 80, (height, width)) * (rng.random((height, width)) < 0.8)).astype(
         np.float32
     )
-    ours = np.asarray(Image.open(io.BytesIO(depth_png(depth))))
+    ours = np.asarray(Image.open(io.BytesIO(encode_depth(depth))))
     assert ours.dtype == np.uint16
     np.testing.assert_array_equal(
         ours, np.asarray(Image.open(io.BytesIO(depth_bytes(depth, ".png"))))
     )
     camera = Camera(width, height, 5.0, 5.0, 1.0, 1.0)
     far = np.minimum(depth, 65.535)
-    assert np.abs(depth_of(depth_png(depth), camera, "here") - far).max() <= 0.001
+    assert np.abs(decode_depth(encode_depth(depth), camera, "here") - far).max() <= 0.001
 
 
 # Tar.
@@ -199,13 +199,13 @@ def test_a_picture_that_says_it_is_huge_is_not_decoded():
     png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + chunk
     png += struct.pack(">I", zlib.crc32(chunk))
     with pytest.raises(DamagedFileError, match="a picture"):
-        depth_of(png, CAMERA, "here")
+        decode_depth(png, CAMERA, "here")
 
 
 def test_a_picture_of_another_kind_is_refused():
-    grey = picture_bytes(np.zeros((12, 16, 3), np.uint8), "png")
+    grey = encode_colour(np.zeros((12, 16, 3), np.uint8), "png")
     with pytest.raises(DamagedFileError, match="no grey picture"):
-        depth_of(grey, CAMERA, "here")
+        decode_depth(grey, CAMERA, "here")
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,10 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import BLOCK_CELLS, MAX_
 def test_a_cell_keeps_its_place_while_the_table_grows():
     blocks = Blocks()
     blocks.reserve_box(np.array([0, 0, 0]), np.array([9, 9, 9]), 0.08)
-    place = place_of(3, 8, 1, blocks.low, blocks.table, blocks.used)
+    place = place_of(3, 8, 1, blocks.by_cell)
     blocks.log_odds[place] = 2.5
     blocks.reserve_box(np.array([-400, -9, -100]), np.array([50, 50, 50]), 0.08)
-    assert place_of(3, 8, 1, blocks.low, blocks.table, blocks.used) == place
+    assert place_of(3, 8, 1, blocks.by_cell) == place
     assert blocks.log_odds[place] == 2.5 and blocks.used[0] == 1
 
 
@@ -27,7 +27,7 @@ def test_every_cell_of_a_block_has_a_place_of_its_own():
     blocks.reserve_box(np.array([-SIDE] * 3), np.array([SIDE] * 3), 0.08)
     ticks = range(-SIDE, SIDE)
     places = {
-        place_of(i, j, k, blocks.low, blocks.table, blocks.used)
+        place_of(i, j, k, blocks.by_cell)
         for i in ticks for j in ticks for k in ticks
     }  # fmt: skip
     assert places == set(range(BLOCK_CELLS, 9 * BLOCK_CELLS))
@@ -56,7 +56,7 @@ def test_places_are_found_at_both_ends_of_a_box_that_grew_on_every_side():
     places = []
     blocks.reserve_box(np.array(corners[1]), np.array(corners[2]) + 1, 0.08)
     for corner in corners:
-        places.append(place_of(*corner, blocks.low, blocks.table, blocks.used))
+        places.append(place_of(*corner, blocks.by_cell))
     numbers, first = blocks.cells_of_blocks()
     assert sorted(place // BLOCK_CELLS for place in places) == sorted(numbers) == [1, 2, 3]
     for corner, place in zip(corners, places, strict=True):
@@ -94,7 +94,7 @@ def test_what_was_seen_far_apart_is_refused_where_its_votes_could_not_be_read_ag
     side = round((share * MAX_ARRAY_BYTES / (2 * CLASS_COUNT)) ** (1 / 3) / SIDE) * SIDE
     for corner in (np.zeros(3, np.int64), np.full(3, side - 1)):
         map_.blocks.reserve_box(corner, corner + 1, 0.08)
-        place_of(*corner, map_.blocks.low, map_.blocks.table, map_.blocks.used)
+        place_of(*corner, map_.blocks.by_cell)
     if fits:
         assert map_._dense()[0].shape == (side,) * 3
     else:

@@ -5,8 +5,12 @@ import pytest
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import (
+    CleanParameters,
+    close_structure,
+    extract_grid,
+    remove_floaters,
+)
 from world2minecraft.reconstruction.fusion.cleaning import structure_layers
 
 
@@ -127,7 +131,7 @@ def evidence_of(log_odds, votes=None, hits=None, colour_sum=None) -> FusedEviden
 
 
 def test_log_odds_say_what_a_cell_is_and_how_surely():
-    grid = read_out(evidence_of([2.0, -2.0, 0.0, 0.001, -0.001]))
+    grid = extract_grid(evidence_of([2.0, -2.0, 0.0, 0.001, -0.001]))
     assert grid.labels.ravel().tolist() == [11, 0, 255, 11, 0]
     assert grid.source.ravel().tolist() == [1, 1, 0, 1, 1]
     assert not grid.instance.any()
@@ -142,14 +146,14 @@ def test_the_class_with_most_votes_names_a_cell_and_empty_has_no_vote():
     votes[1, 0, 0, 0] = 9
     votes[2, 0, 0, 1] = 0.01
     votes[3, 0, 0, 8] = 5
-    grid = read_out(evidence_of([1.0, 1.0, 1.0, -1.0], votes))
+    grid = extract_grid(evidence_of([1.0, 1.0, 1.0, -1.0], votes))
     assert grid.labels.ravel().tolist() == [8, 11, 1, 0]
 
 
 def test_a_colour_is_the_rounded_mean_of_the_points():
     hits = np.array([2, 0, 3], np.uint16).reshape(-1, 1, 1)
     colour_sum = np.array([[3, 511, 0], [7, 7, 7], [2, 1, 900]], np.float32).reshape(3, 1, 1, 3)
-    grid = read_out(evidence_of([1.0, 1.0, 1.0], hits=hits, colour_sum=colour_sum))
+    grid = extract_grid(evidence_of([1.0, 1.0, 1.0], hits=hits, colour_sum=colour_sum))
     assert grid.colour.reshape(3, 3).tolist() == [[2, 255, 0], [7, 7, 7], [1, 0, 255]]
 
 

@@ -10,9 +10,9 @@ from world2minecraft.reconstruction.fusion import (
     EvidenceMap,
     FuseParameters,
     close_structure,
+    extract_grid,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion import read_out
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 CAMERA = Camera(80, 60, 70.0, 70.0, 40.0, 30.0)
@@ -39,7 +39,7 @@ def cell(grid, point_m):
 
 
 def test_before_the_wall_is_free_the_wall_is_occupied_behind_it_is_unknown():
-    grid = read_out(fused(looking_at_wall(2.0)))
+    grid = extract_grid(fused(looking_at_wall(2.0)))
     assert grid.labels[cell(grid, (1.0, 0, 1.2))] == 0
     assert grid.labels[cell(grid, (2.02, 0, 1.2))] == 11
     assert grid.labels.shape[0] * grid.voxel_m + grid.origin_m[0] < 2.2, "nothing lies behind"
@@ -48,7 +48,7 @@ def test_before_the_wall_is_free_the_wall_is_occupied_behind_it_is_unknown():
 
 
 def test_a_noise_free_wall_on_a_cell_edge_is_one_layer():
-    grid = read_out(fused(looking_at_wall(2.0)))
+    grid = extract_grid(fused(looking_at_wall(2.0)))
     assert set(np.argwhere(grid.occupied)[:, 0]) == {cell(grid, (2.02, 0, 1.2))[0]}
 
 
@@ -64,14 +64,14 @@ def test_offsets_tell_the_surface_finer_than_a_cell():
 def test_a_ghost_seen_once_is_carved_away_by_later_views():
     ghost = looking_at_wall(1.0)
     later = [looking_at_wall(2.0, f"v{n}") for n in range(8)]
-    grid = read_out(fused(ghost, *later))
+    grid = extract_grid(fused(ghost, *later))
     assert grid.labels[cell(grid, (1.02, 0, 1.2))] == 0
     assert grid.labels[cell(grid, (2.02, 0, 1.2))] == 11
 
 
 def test_colour_is_the_mean_and_confidence_grows_with_views():
-    once, often = read_out(fused(looking_at_wall(2.0))), None
-    often = read_out(fused(*[looking_at_wall(2.0, f"v{n}") for n in range(5)]))
+    once, often = extract_grid(fused(looking_at_wall(2.0))), None
+    often = extract_grid(fused(*[looking_at_wall(2.0, f"v{n}") for n in range(5)]))
     at = cell(once, (2.02, 0, 1.2))
     assert tuple(once.colour[at]) == (200, 30, 20)
     assert often.confidence[cell(often, (2.02, 0, 1.2))] > once.confidence[at] > 0.6
@@ -123,7 +123,7 @@ def test_grid_evidence_of_a_network_joins_that_of_depth():
     pose[:3, 3] = [0.8, 0.16, 0.4]
     seen = np.ones((4, 4, 4), bool)
     seen[0, 0, 0] = False
-    grid = read_out(fused(GridEvidence("n", probabilities, seen, 0.08, pose)))
+    grid = extract_grid(fused(GridEvidence("n", probabilities, seen, 0.08, pose)))
     table = cell(grid, (0.8 + 0.12, 0.16 + 0.2, 0.4 + 0.28))
     assert grid.labels[table] == 8
     assert (grid.labels == 0).sum() == 62 and (grid.labels == 8).sum() == 1

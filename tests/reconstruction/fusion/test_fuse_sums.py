@@ -84,7 +84,7 @@ def slow_faces(cell, members, points_m, normals, item, camera_m, rules) -> np.nd
 
 def row_of(map_: EvidenceMap, cell) -> tuple[int, int]:
     """Where a cell's log-odds lie, and its record."""
-    place = place_of(*cell, map_.blocks.low, map_.blocks.table, map_.blocks.used)
+    place = place_of(*cell, map_.blocks.by_cell)
     return place, map_.blocks.record[place]
 
 
@@ -201,7 +201,7 @@ def test_what_was_hit_more_often_than_is_written_down_keeps_its_mean():
 )
 def test_a_share_of_a_cell_is_so_many_of_its_64_sub_cells(share, least):
     map_ = EvidenceMap(np.eye(4), FuseParameters(solid_share=share))
-    assert map_._settle_rules[0] == least
+    assert map_._surface_rules.min_sub_cells == least
 
 
 def test_the_map_tells_the_memory_of_its_arrays():

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import GridEvidence, PointEvidence
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters, extract_grid
 from world2minecraft.reconstruction.fusion.network_grids import EDGE, grid_gains
 
 SURE = float(np.log((1 - EDGE) / EDGE))
@@ -79,9 +78,9 @@ def test_a_sure_view_carves_as_one_ray_and_never_through_what_depth_saw():
     pose = np.eye(4)
     pose[:3, 3] = [-0.4, -0.4, 0.8]
     says_free = grid(3, (10, 10, 5), pose=pose, free=1.0)
-    alone, crossed = read_out(fused(wall())), read_out(fused(wall(), *[says_free] * 4))
+    alone, crossed = extract_grid(fused(wall())), extract_grid(fused(wall(), *[says_free] * 4))
     assert crossed.occupied.sum() == alone.occupied.sum() > 0
-    assert read_out(fused(wall(), *[says_free] * 30)).occupied.sum() == 0
+    assert extract_grid(fused(wall(), *[says_free] * 30)).occupied.sum() == 0
 
 
 def test_a_sure_view_is_soft_for_surfaces_too():

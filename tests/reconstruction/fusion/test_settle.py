@@ -116,6 +116,6 @@ def test_the_depth_of_the_solid_equals_sorting_all_sub_cells(point, normal, leas
     ticks = (np.arange(4) - 1.5) * 0.02
     sub_cells = np.stack(np.meshgrid(ticks, ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     depths = np.sort((np.array(point) - sub_cells) @ normal)[::-1]
-    found, whole = _depth_of_solid(np.array([*point, *normal, 0.0]), CELL_M, least)
+    found, whole = _depth_of_solid(np.array([*point, *normal]), CELL_M, least)
     assert abs(found - depths[least - 1]) < 1e-9
     assert abs(depths).min() < 1e-9 or whole == bool((depths > 0).all())

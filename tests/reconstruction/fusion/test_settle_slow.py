@@ -12,16 +12,17 @@ from world2minecraft.reconstruction.fusion.surface_decision import (
     SOLID,
     SPILL_BEFORE,
     SPILL_BEHIND,
+    SurfaceRules,
     _joined_plane,
     _spill_share,
     _weight_before,
-    inherit,
-    settle,
+    decide_surface,
+    move_sums,
 )
 
 VOXEL_M = 0.08
 LEAST, MERGE_M, MERGE_SIGMAS, SURE_M = 4, 0.016, 3.0, 0.003
-RULES = np.array([LEAST, MERGE_M, MERGE_SIGMAS, SURE_M])
+RULES = SurfaceRules(LEAST, MERGE_M, MERGE_SIGMAS, SURE_M)
 SHAPE = (3, 4, 2)
 TICKS_M = (np.arange(4) - 1.5) * VOXEL_M / 4
 SUB_CELLS_M = np.stack(np.meshgrid(*[TICKS_M] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -159,7 +160,7 @@ def slow_settle(known: Scene) -> tuple[np.ndarray, np.ndarray, dict]:
 @given(seeds)
 def test_every_cell_is_settled_as_the_slow_reading_says(seed):
     known = scene(seed)
-    settled, heir = settle(*known, VOXEL_M, RULES)
+    settled, heir = decide_surface(*known, VOXEL_M, RULES)
     expected, expected_heir, _ = slow_settle(known)
     np.testing.assert_allclose(settled, expected, atol=2e-3)
     np.testing.assert_array_equal(heir, expected_heir)
@@ -170,8 +171,8 @@ def test_every_cell_is_settled_as_the_slow_reading_says(seed):
 def test_room_around_the_map_changes_nothing(seed):
     """No cell at the map's edge looks for its neighbour beyond it, or at the other end."""
     known = scene(seed, (2, 2, 2))
-    settled, heir = settle(*known, VOXEL_M, RULES)
-    wide, wide_heir = settle(
+    settled, heir = decide_surface(*known, VOXEL_M, RULES)
+    wide, wide_heir = decide_surface(
         np.pad(known.log_odds, 1), np.pad(known.record, 1), known.faces, VOXEL_M, RULES
     )
     np.testing.assert_array_equal(wide, np.pad(settled, 1))
@@ -184,7 +185,7 @@ def test_a_surface_at_the_edge_of_the_map_has_nothing_before_it(face):
     faces = np.zeros((2, 6, 8), np.float32)
     faces[1, face] = plane(np.random.default_rng(0), face, 0.06, 1.0)
     record, log_odds = np.ones((1, 1, 1), np.int32), np.full((1, 1, 1), 2.5, np.float32)
-    settled, heir = settle(log_odds, record, faces, VOXEL_M, RULES)
+    settled, heir = decide_surface(log_odds, record, faces, VOXEL_M, RULES)
     assert settled.item() == 2.5 and heir.item() == 1
 
 
@@ -198,7 +199,7 @@ def test_the_two_ends_of_the_map_are_no_neighbours(face):
         faces[row, face] = 1e4 * np.array([1, *(depth_m * along), *along, 0.01])
     line = np.moveaxis(record[::looks].reshape(3, 1, 1), 0, axis)
     log_odds = np.where(line > 0, 6, 0).astype(np.float32)
-    settled, heir = settle(log_odds, np.ascontiguousarray(line), faces, VOXEL_M, RULES)
+    settled, heir = decide_surface(log_odds, np.ascontiguousarray(line), faces, VOXEL_M, RULES)
     assert heir[line == 1].item() == 0 and heir[line == 2].item() == 2
     assert settled[line == 1].item() == pytest.approx((-0.038 + 0.03) / SURE_M, abs=1e-3)
 
@@ -233,8 +234,10 @@ def test_no_side_of_a_room_is_settled_by_another_rule(axes, flips):
         for m, source in enumerate(axes):
             faces[:, face, 1 + m] = sums[:, 1 + source] * flips[source]
             faces[:, face, 4 + m] = sums[:, 4 + source] * flips[source]
-    settled, heir = settle(*known, VOXEL_M, RULES)
-    turned, turned_heir = settle(image(known.log_odds), image(known.record), faces, VOXEL_M, RULES)
+    settled, heir = decide_surface(*known, VOXEL_M, RULES)
+    turned, turned_heir = decide_surface(
+        image(known.log_odds), image(known.record), faces, VOXEL_M, RULES
+    )
     np.testing.assert_allclose(turned, image(settled), atol=1e-3)
     np.testing.assert_array_equal(turned_heir, image(heir))
 
@@ -244,7 +247,7 @@ def test_no_side_of_a_room_is_settled_by_another_rule(axes, flips):
 def test_points_of_spill_keep_their_number_and_their_place(seed):
     """What an heir takes over stands where it stood: an offset is from the heir's centre now."""
     known, random = scene(seed, (2, 4, 3)), np.random.default_rng(seed)
-    _, heir = settle(*known, VOXEL_M, RULES)
+    _, heir = decide_surface(*known, VOXEL_M, RULES)
     rows = len(known.faces)
     votes = random.integers(0, 9, (rows, 12)).astype(np.float32)
     colour_sum = random.integers(0, 999, (rows, 3)).astype(np.float32)
@@ -267,7 +270,7 @@ def test_points_of_spill_keep_their_number_and_their_place(seed):
         return expected
 
     expected = of_heirs()
-    inherit(known.record, heir, VOXEL_M, votes, colour_sum, offset_sum, hits)
+    move_sums(known.record, heir, VOXEL_M, votes, colour_sum, offset_sum, hits)
     for cell in np.ndindex(heir.shape):
         row = known.record[cell]
         if row not in expected:
@@ -297,7 +300,7 @@ def test_planes_of_neighbours_join_as_near_as_noise_explains(axis, sigmas_m, gap
         faces[number, face, 0], faces[number, face, 7] = 1.0, sigma_m
         faces[number, face, 4 + axis] = 1.0
     faces[2, face, 1 + axis] = gap_m - VOXEL_M
-    plane = np.zeros(7)
+    plane = np.zeros(6)
     _joined_plane(1, 1, 1, face, record, faces, VOXEL_M, RULES, plane)
     joined = gap_m < MERGE_M + MERGE_SIGMAS * max(sigmas_m)
     assert plane[axis] == pytest.approx(gap_m / 2 if joined else 0.0)

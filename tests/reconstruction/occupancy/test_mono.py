@@ -13,8 +13,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_of
-from world2minecraft.reconstruction.fusion import read_out
-from world2minecraft.reconstruction.fusion import fuse_views
+from world2minecraft.reconstruction.fusion import extract_grid, fuse_views
 from world2minecraft.reconstruction.occupancy import monocular as mono
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.occupancy.monocular import (
@@ -176,7 +175,7 @@ def test_a_scan_becomes_a_map_whatever_the_order_of_its_views(network):
         maps.append(fuse_views(used.predict(scan), scan))
     np.testing.assert_allclose(maps[0].log_odds, maps[1].log_odds, atol=2e-3)
     np.testing.assert_allclose(maps[0].votes, maps[1].votes, rtol=2e-3, atol=2e-3)
-    grid = read_out(maps[0])
+    grid = extract_grid(maps[0])
     assert grid.occupied.any() and grid.colour[grid.occupied].any()
 
 

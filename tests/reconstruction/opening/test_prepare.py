@@ -10,7 +10,7 @@ from tests.exact_room import BoxRoom
 
 from world2minecraft.capture import open_scan, write_plain
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
@@ -269,7 +269,7 @@ def test_what_a_plain_capture_states_is_checked(tmp_path, views, key, value, wor
 def test_clicked_points_of_photos_with_dots_in_their_names(tmp_path, views, stood_in):
     named = [replace(view, name=f"2024.05.{n:02d}") for n, view in enumerate(views)]
     write_posed(tmp_path / "in", named)
-    judged = judge_capture(tmp_path / "in", ScanOptions())
+    judged = validate_capture(tmp_path / "in", ScanOptions())
     pair = [f"{view.name}{suffix}:10,20" for view, suffix in zip(named, ("", ".jpg"), strict=False)]
     found = clicked(*pair, 1.0, judged, lambda name: (640, 480))
     assert (found.image_a, found.image_b) == ("2024.05.00", "2024.05.01")

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import extract_grid
 
 VOXEL_M = 0.08
 MARGIN = 2  # Cells around the inner box.
@@ -60,7 +60,7 @@ class SmallRoom:
             scan_to_room=np.eye(4),
         )
         truth = np.where(occupied, voted.argmax(axis=3), 0).astype(np.uint8)
-        return read_out(evidence), evidence, truth
+        return extract_grid(evidence), evidence, truth
 
     def _faces(self):
         """Return the points of all seen faces, 2 cm apart, normals outward from matter."""

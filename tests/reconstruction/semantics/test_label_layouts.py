@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.reconstruction.fusion import read_out
+from world2minecraft.reconstruction.fusion import extract_grid
 from world2minecraft.reconstruction.layout.room_layouts import outline_of
 from world2minecraft.reconstruction.semantics import find_structure
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
@@ -92,7 +92,7 @@ def stacked(lower, upper):
         for name in names
     }
     evidence = replace(first, **arrays)
-    return read_out(evidence), evidence
+    return extract_grid(evidence), evidence
 
 
 def test_storeys_are_found_and_each_has_its_rooms():

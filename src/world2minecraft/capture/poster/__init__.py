@@ -3,4 +3,4 @@
 from world2minecraft.capture.poster.page import draw_poster, poster_png
 from world2minecraft.capture.poster_marker import is_poster
 
-__all__ = ["is_poster", "draw_poster", "poster_png"]
+__all__ = ["draw_poster", "is_poster", "poster_png"]

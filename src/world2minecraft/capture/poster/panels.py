@@ -21,7 +21,7 @@ from world2minecraft.capture.poster.canvas import (
 from world2minecraft.capture.quality.picture_quality import Picture
 from world2minecraft.capture.quality.top_view import TopView
 from world2minecraft.capture.quality.view_directions import ViewDirections
-from world2minecraft.capture.validation import spread_over
+from world2minecraft.capture.validation import evenly_spaced
 
 # The chart of looks: how many pictures cover each heading and each height of look.
 
@@ -95,10 +95,10 @@ def select_pictures(
 ) -> list[Picture]:
     """Return evenly spread pictures; up to a quarter of the places go to doubtful ones."""
     doubtful = [picture for picture in pictures if picture.index in marks]
-    kept = spread_over(doubtful, min(len(doubtful), count // 4)) if doubtful else []
+    kept = evenly_spaced(doubtful, min(len(doubtful), count // 4)) if doubtful else []
     names = {picture.index for picture in kept}
     others = [picture for picture in pictures if picture.index not in names]
-    others = spread_over(others, count - len(kept)) if others else []
+    others = evenly_spaced(others, count - len(kept)) if others else []
     return sorted([*kept, *others], key=lambda picture: picture.index)
 
 

@@ -9,7 +9,7 @@ from PIL import Image, ImageFilter
 
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header, read_small
-from world2minecraft.capture.validation import spread_over
+from world2minecraft.capture.validation import evenly_spaced
 from world2minecraft.core.errors import InputError
 
 WORK_PX = 640  # Blur that hurts at the 1024 px of posing shows at this size too.
@@ -48,7 +48,7 @@ def sample_pictures(frames: Sequence[FrameFiles], most: int = MAX_PICTURES) -> l
     """
     shown = [(index, frame) for index, frame in enumerate(frames) if frame.colour_path]
     pictures = []
-    for index, frame in spread_over(shown, _affordable([frame for _, frame in shown], most)):
+    for index, frame in evenly_spaced(shown, _affordable([frame for _, frame in shown], most)):
         try:
             colour = read_small(frame.colour_path, WORK_PX) if frame.colour_path else None
         except InputError:

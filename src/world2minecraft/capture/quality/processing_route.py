@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from world2minecraft.capture.validation import JudgedCapture
+from world2minecraft.capture.validation import ValidatedCapture
 
 Kind = Literal["rgbd", "posed photos", "photos", "video", "unposed rgbd", "solid"]
 # Seconds on two cores: rgbd from the kitchen's 40 frames (10 s in all), pictures from 100 of a
@@ -51,7 +51,7 @@ _DESCRIPTIONS = {
 }
 
 
-def choose_route(judged: JudgedCapture) -> Route:
+def choose_route(judged: ValidatedCapture) -> Route:
     """Return the route of a judged capture."""
     kind = _kind(judged)
     each = FRAME_S
@@ -62,7 +62,7 @@ def choose_route(judged: JudgedCapture) -> Route:
     return Route(kind, _INPUT_NAMES[kind], _DESCRIPTIONS[kind], BUILD_S + each * len(judged.frames))
 
 
-def _kind(judged: JudgedCapture) -> Kind:
+def _kind(judged: ValidatedCapture) -> Kind:
     source = judged.capture.source
     if source.startswith("solid"):  # Rendered sequences have exact depth too, and are frames.
         return "solid"

@@ -11,7 +11,7 @@ from world2minecraft.capture.quality.picture_quality import (
 )
 from world2minecraft.capture.quality.top_view import TopView, make_top_view
 from world2minecraft.capture.quality.view_directions import ViewDirections, count_view_directions
-from world2minecraft.capture.validation import JudgedCapture
+from world2minecraft.capture.validation import ValidatedCapture
 
 PICTURES_POSED = 40  # Where poses tell what was seen, pictures are judged by a sample.
 
@@ -24,14 +24,14 @@ class Survey:
     where that is not known. ``plan`` and ``directions`` are None where there are no poses.
     """
 
-    judged: JudgedCapture
+    judged: ValidatedCapture
     pictures: tuple[Picture, ...]
     shares: np.ndarray
     plan: TopView | None
     directions: ViewDirections | None
 
 
-def survey_capture(judged: JudgedCapture) -> Survey:
+def survey_capture(judged: ValidatedCapture) -> Survey:
     """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
     if judged.posed:
         pictures = sample_pictures(judged.frames, PICTURES_POSED)

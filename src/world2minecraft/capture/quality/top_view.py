@@ -14,7 +14,7 @@ from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleR
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.open_scan import ALIGNMENT_FRAMES
 from world2minecraft.capture.quality.view_directions import estimate_up
-from world2minecraft.capture.validation import JudgedCapture, spread_over
+from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced
 from world2minecraft.capture.view_stream import CaptureViews
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
@@ -59,13 +59,13 @@ class TopView:
     trust: float | None = None
 
 
-def make_top_view(judged: JudgedCapture) -> TopView:
+def make_top_view(judged: ValidatedCapture) -> TopView:
     """Lay some frames of a posed capture into a plan; without depth, the cameras alone."""
     poses = np.array([np.asarray(frame.camera_to_world) for frame in judged.frames])
     with_depth = [frame for frame in judged.frames if frame.depth_path]
     if not with_depth:
         return _camera_top_view(judged, poses)
-    gathered = _PointCollector(judged, spread_over(with_depth, ALIGNMENT_FRAMES))
+    gathered = _PointCollector(judged, evenly_spaced(with_depth, ALIGNMENT_FRAMES))
     problem, found = "", None
     try:
         found = align(gathered.views(), judged.capture.world_up)
@@ -84,7 +84,7 @@ def make_top_view(judged: JudgedCapture) -> TopView:
 class _PointCollector:
     """Reads views once for ``align`` and keeps some coloured points of each on the way."""
 
-    def __init__(self, judged: JudgedCapture, frames: Sequence[FrameFiles]):
+    def __init__(self, judged: ValidatedCapture, frames: Sequence[FrameFiles]):
         self._stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
         self._frames = frames
         self.points: list[np.ndarray] = [np.zeros((0, 3), np.float32)]
@@ -128,7 +128,7 @@ def _sample_colours(view: View, points: np.ndarray) -> np.ndarray:
     return colours
 
 
-def _level_frame(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
+def _level_frame(judged: ValidatedCapture, poses: np.ndarray) -> np.ndarray:
     """Return a turn that sets the scan upright, first look to the north, from what is known."""
     up = judged.capture.world_up
     turned = np.eye(4)
@@ -142,7 +142,7 @@ def _level_frame(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
     return turned
 
 
-def _camera_top_view(judged: JudgedCapture, poses: np.ndarray) -> TopView:
+def _camera_top_view(judged: ValidatedCapture, poses: np.ndarray) -> TopView:
     cameras = _level_frame(judged, poses) @ poses
     places = cameras[:, :2, 3]
     low, high = places.min(axis=0), places.max(axis=0)

@@ -15,12 +15,12 @@ from world2minecraft.capture.scale.known_lengths import (
 from world2minecraft.capture.scale.measurements import collect_unscaled, scale_points
 
 __all__ = [
-    "Known",
-    "KnownPoints",
+    "KnownDistance",
+    "KnownLength",
     "ScaleEstimate",
     "collect_unscaled",
     "estimate_scale",
     "length_between",
-    "parse_known",
+    "parse_known_length",
     "scale_points",
 ]

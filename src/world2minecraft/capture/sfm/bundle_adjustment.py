@@ -19,7 +19,7 @@ from world2minecraft.capture.sfm.camera_groups import (
 from world2minecraft.capture.sfm.features import Features, pixel_unit
 from world2minecraft.capture.sfm.matching import MatchGraph
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.pycolmap_session import colmap
+from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
 from world2minecraft.core.types import Camera
 
 # Stated poses hold photos that see too little to place themselves.
@@ -135,7 +135,7 @@ def triangulate_and_adjust(
     """
     unit = pixel_unit(photos)
     gate_px = gate_px * unit
-    with colmap() as pycolmap:
+    with pycolmap_session() as pycolmap:
         model = _build_model(pycolmap, photos, poses, lenses, free)
         graph = _build_graph(pycolmap, photos, links, poses)
         manager = pycolmap.ObservationManager(model, graph)

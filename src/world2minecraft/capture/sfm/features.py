@@ -7,8 +7,8 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.progress import Steps
-from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
+from world2minecraft.capture.sfm.progress import ProgressSteps
+from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_session
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream
@@ -49,7 +49,7 @@ def pixel_unit(photos: list[Features]) -> float:
 
 
 def extract_features(
-    photos: PhotoStream, parameters: SfmParameters, steps: Steps
+    photos: PhotoStream, parameters: SfmParameters, steps: ProgressSteps
 ) -> list[Features]:
     """Return the features of all photos, in their order.
 
@@ -59,10 +59,10 @@ def extract_features(
     """
     if len(photos) > MAX_PHOTOS:
         raise LimitError(
-            PLACE, f"are {len(photos)}, over {MAX_PHOTOS}; take fewer: --set capture.every=10"
+            PHOTOS, f"are {len(photos)}, over {MAX_PHOTOS}; take fewer: --set capture.every=10"
         )
     gathered: list[Features] = []
-    with colmap() as pycolmap:
+    with pycolmap_session() as pycolmap:
         extractor = _extractor(pycolmap, parameters)
         for photo in photos:
             gathered.append(_extract_photo(photo, extractor, pycolmap, parameters))
@@ -70,7 +70,7 @@ def extract_features(
     names = [photo.name for photo in gathered]
     if len(set(names)) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise CaptureError(PLACE, f"two are named {twice!r}; give each a name of its own")
+        raise CaptureError(PHOTOS, f"two are named {twice!r}; give each a name of its own")
     return gathered
 
 

@@ -26,9 +26,9 @@ from world2minecraft.capture.sfm.camera_groups import (
 from world2minecraft.capture.sfm.features import Features, extract_features
 from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.progress import Steps
-from world2minecraft.capture.sfm.pycolmap_session import colmap
-from world2minecraft.capture.sfm.results import middle_depth, scene
+from world2minecraft.capture.sfm.progress import ProgressSteps
+from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
+from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera, SparseScene
@@ -44,14 +44,14 @@ def run_mapper(
     links: MatchGraph,
     lenses: list[CameraGroup],
     parameters: SfmParameters,
-    steps: Steps,
+    steps: ProgressSteps,
 ) -> list[Model]:
     """Return the models that the links give, the one of most photos first.
 
     A model maps photo numbers to camera-to-world float64 [4, 4], in a frame of its own, and to the
     camera found. Photos may be in several.
     """
-    with colmap() as pycolmap:
+    with pycolmap_session() as pycolmap:
         pycolmap.set_random_seed(parameters.seed)
         cache = _database_cache(pycolmap, photos, links, lenses)
         manager = pycolmap.ReconstructionManager()
@@ -197,22 +197,24 @@ def find_poses(
     """
     chosen = parameters or SfmParameters()
     count = len(photos)
-    steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
+    steps = ProgressSteps(
+        progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1}
+    )
     features = extract_features(photos, chosen, steps)
     reasons.check_enough(features, MIN_PHOTOS)
     lenses = group_cameras(features)
     links = match_photos(features, lenses, chosen, steps)
     found, notes, models = map_from_scratch(features, lenses, links, chosen, steps)
     if len(found.poses) < MIN_PLACED_SHARE * len(features):
-        raise reasons.too_few(len(found.poses), len(features))
+        raise reasons.too_few_error(len(found.poses), len(features))
     steps.end()
     change = Similarity(
-        MEDIAN_DEPTH / middle_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
+        MEDIAN_DEPTH / median_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
     )
-    out = reasons.left_out(features, found.poses, links)
+    out = reasons.explain_left_out(features, found.poses, links)
     if len(found.poses) < ENOUGH_SHARE * len(features):
         notes.append(f"only {len(found.poses)} of {len(features)} photos could be placed")
-    return scene(
+    return to_sparse_scene(
         features,
         found,
         change,
@@ -227,7 +229,7 @@ def map_from_scratch(
     lenses: list[CameraGroup],
     links: MatchGraph,
     parameters: SfmParameters,
-    steps: Steps,
+    steps: ProgressSteps,
 ) -> tuple[SparseModel, list[str], int]:
     """Return the photos placed from their links alone, notes, and how many models there were.
 
@@ -236,7 +238,7 @@ def map_from_scratch(
     """
     models, lenses = _best_trial(photos, lenses, links, parameters, steps)
     if not models or len(models[0]) < MIN_PHOTOS:
-        raise reasons.refuse(photos, links, camera_by_photo(lenses))
+        raise reasons.no_model_error(photos, links, camera_by_photo(lenses))
     whole, count = merge_models(models)
     notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
     poses = {i: pose for i, (pose, _) in sorted(whole.items())}
@@ -244,7 +246,7 @@ def map_from_scratch(
     gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
     found = refine_poses(photos, links, poses, replace_cameras(lenses, cameras), gates, parameters)
     if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
-        raise reasons.refuse(photos, links, camera_by_photo(lenses))
+        raise reasons.no_model_error(photos, links, camera_by_photo(lenses))
     if any(lens.is_fixed for lens in lenses):
         notes.append("the photos cannot tell their lens: a usual one was assumed")
     return found, notes, len(models)
@@ -255,7 +257,7 @@ def _best_trial(
     lenses: list[CameraGroup],
     links: MatchGraph,
     parameters: SfmParameters,
-    steps: Steps,
+    steps: ProgressSteps,
 ) -> tuple[list[Model], list[CameraGroup]]:
     """Return the models, and the lenses that they began from.
 

@@ -11,8 +11,8 @@ from threadpoolctl import threadpool_limits
 from world2minecraft.capture.sfm.camera_groups import CameraGroup, to_colmap
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.progress import Steps
-from world2minecraft.capture.sfm.pycolmap_session import colmap
+from world2minecraft.capture.sfm.progress import ProgressSteps
+from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 
@@ -51,7 +51,7 @@ def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def count_common_features(
-    photos: list[Features], parameters: SfmParameters, steps: Steps
+    photos: list[Features], parameters: SfmParameters, steps: ProgressSteps
 ) -> np.ndarray:
     """Return int [N, N]: how many of their largest features each two photos share.
 
@@ -172,7 +172,10 @@ class MatchGraph:
 
 
 def match_photos(
-    photos: list[Features], lenses: list[CameraGroup], parameters: SfmParameters, steps: Steps
+    photos: list[Features],
+    lenses: list[CameraGroup],
+    parameters: SfmParameters,
+    steps: ProgressSteps,
 ) -> MatchGraph:
     """Return the links of photos whose lenses are about right."""
     with threadpool_limits(1, "blas"):  # Small products: our threads are enough.
@@ -180,13 +183,16 @@ def match_photos(
 
 
 def _match_and_verify(
-    photos: list[Features], lenses: list[CameraGroup], parameters: SfmParameters, steps: Steps
+    photos: list[Features],
+    lenses: list[CameraGroup],
+    parameters: SfmParameters,
+    steps: ProgressSteps,
 ) -> MatchGraph:
     alike = count_common_features(photos, parameters, steps)
     pairs = select_pairs(alike, parameters)
     found: dict[Pair, np.ndarray] = {}
     geometry: dict[Pair, Any] = {}
-    with colmap() as pycolmap:
+    with pycolmap_session() as pycolmap:
         cameras = {
             i: to_colmap(pycolmap, lens.camera, number + 1, simple=False)
             for number, lens in enumerate(lenses)

@@ -22,9 +22,9 @@ from world2minecraft.capture.sfm.incremental_mapping import (
 )
 from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.progress import Steps
-from world2minecraft.capture.sfm.pycolmap_session import PLACE, colmap
-from world2minecraft.capture.sfm.results import middle_depth, scene
+from world2minecraft.capture.sfm.progress import ProgressSteps
+from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_session
+from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
@@ -105,7 +105,7 @@ def register_photo(
     if len(pairs) < MIN_INLIERS:
         return None
     rows = np.array(sorted(pairs))
-    with colmap() as pycolmap:
+    with pycolmap_session() as pycolmap:
         options = pycolmap.AbsolutePoseEstimationOptions()
         options.ransac.random_seed = parameters.seed
         options.ransac.max_error = 4.0 * pixel_unit(photos)
@@ -161,7 +161,9 @@ def check_poses(
     """
     chosen = parameters or SfmParameters()
     count = len(photos)
-    steps = Steps(progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1})
+    steps = ProgressSteps(
+        progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1}
+    )
     features = extract_features(photos, chosen, steps)
     reasons.check_enough(features, 2)
     lenses = group_cameras(features)
@@ -176,7 +178,7 @@ def check_poses(
     measured = _triangulate_stated(stated, cameras)
     if len(measured.points) < MIN_POINTS and len(links.matches) < 2:
         raise CaptureError(
-            PLACE,
+            PHOTOS,
             f"share too few details to check their poses ({len(measured.points)} points); "
             "take pictures that overlap, with the lights on",
         )
@@ -263,7 +265,7 @@ def _keep_stated(
 
 
 def _refine_stated(
-    stated: StatedPoses, measured: SparseModel, before: float, steps: Steps
+    stated: StatedPoses, measured: SparseModel, before: float, steps: ProgressSteps
 ) -> SparseScene:
     """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
     notes = stated.notes
@@ -300,7 +302,7 @@ def _scale_correction(
     """Return how much deeper everything is now than by the stated poses."""
     if len(measured.points) < MIN_POINTS:
         return None
-    return round(change.scale * middle_depth(found) / middle_depth(measured), 4)
+    return round(change.scale * median_depth(found) / median_depth(measured), 4)
 
 
 def _is_poor(stated: StatedPoses, measured: SparseModel, before: float) -> bool:
@@ -346,11 +348,11 @@ def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarit
             return plain, set(shared)
         mounted = align_similarity(given, wanted, mounted=True)
         better = np.median(mounted.off_m) < MAX_MOUNT_RATIO * np.median(plain.off_m)
-        near = np.linalg.norm(mounted.mount_m) < MAX_MOUNT_SHARE * plain.scale * middle_depth(found)
+        near = np.linalg.norm(mounted.mount_m) < MAX_MOUNT_SHARE * plain.scale * median_depth(found)
         return mounted if better and near else plain, set(shared)
     except ValueError as error:
         raise CaptureError(
-            PLACE, f"cannot be carried to the stated frame ({error}); leave the poses out"
+            PHOTOS, f"cannot be carried to the stated frame ({error}); leave the poses out"
         ) from error
 
 
@@ -366,12 +368,12 @@ def _to_scene(stated, found, change, kept, fresh, facts) -> SparseScene:
     for i in wrong:
         how = "found anew" if i in fresh else "left out"
         notes.append(f"the stated pose of {photos[i].name} contradicts the pictures: {how}")
-    out = dict(reasons.left_out(photos, placed, stated.links))
+    out = dict(reasons.explain_left_out(photos, placed, stated.links))
     for i in wrong:
         if i not in placed:
             out[photos[i].name] = "its stated pose contradicts the pictures; take it again"
     facts = {"stated_wrong": len(wrong), **facts}
-    return scene(
+    return to_sparse_scene(
         photos, found, change, kept,
         left_out=tuple(out.items()), notes=tuple(notes), facts=facts,
     )  # fmt: skip

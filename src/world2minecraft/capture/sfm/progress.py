@@ -8,7 +8,7 @@ STAGE = "poses"
 
 
 @dataclass
-class Steps:
+class ProgressSteps:
     """Counts the steps of all parts as one row. Parts that turn out shorter are made up for."""
 
     progress: Progress

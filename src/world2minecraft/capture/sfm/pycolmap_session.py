@@ -7,18 +7,18 @@ from typing import Any
 
 from world2minecraft.core.errors import CaptureError, MissingExtraError
 
-PLACE = "photos"  # What an error names: a stream of photos has no path.
+PHOTOS = "photos"  # What an error names: a stream of photos has no path.
 
 
 @contextmanager
-def colmap() -> Iterator[Any]:
+def pycolmap_session() -> Iterator[Any]:
     """Give the module, without its log lines; what it raises becomes a CaptureError.
 
     Raises:
         MissingExtraError: pycolmap is not installed.
         CaptureError: it has failed inside the block.
     """
-    module = loaded()
+    module = import_pycolmap()
     before = module.logging.minloglevel
     module.logging.minloglevel = 3  # Its errors are raised as well as written.
     try:
@@ -28,12 +28,12 @@ def colmap() -> Iterator[Any]:
             raise  # Ours; those of its own checks begin with its source file.
         first = (str(error).splitlines() or ["no reason given"])[0][:200]
         reason = f"their places could not be found ({first}); leave out odd photos and try again"
-        raise CaptureError(PLACE, reason) from error
+        raise CaptureError(PHOTOS, reason) from error
     finally:
         module.logging.minloglevel = before
 
 
-def loaded() -> Any:
+def import_pycolmap() -> Any:
     """Return pycolmap. Raises MissingExtraError where it is not installed."""
     try:
         return import_module("pycolmap")

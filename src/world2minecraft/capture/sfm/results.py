@@ -8,20 +8,20 @@ import numpy as np
 from world2minecraft.capture.sfm.bundle_adjustment import SparseModel
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.matching import MatchGraph
-from world2minecraft.capture.sfm.pycolmap_session import PLACE
+from world2minecraft.capture.sfm.pycolmap_session import PHOTOS
 from world2minecraft.capture.sfm.similarity_transform import Similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, SparseScene
 
 # Why photos could not be placed, in words that tell what to do.
 
-FEW_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
-CHANCE = 6  # So many features match by chance.
-BLURRED = 0.5  # Times the usual sharpness.
-HABIT = "walk sideways around the room, with most of each picture in the next"
+MIN_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
+CHANCE_MATCHES = 6  # So many features match by chance.
+BLURRED_SHARE = 0.5  # Times the usual sharpness.
+CAPTURE_ADVICE = "walk sideways around the room, with most of each picture in the next"
 
 
-def left_out(
+def explain_left_out(
     photos: list[Features], placed: Iterable[int], links: MatchGraph
 ) -> list[tuple[str, str]]:
     """Return name and reason of each photo that is not among those placed."""
@@ -38,14 +38,18 @@ def _reason(
     i: int, photos: list[Features], inside: set[int], links: MatchGraph, usual: float
 ) -> str:
     photo = photos[i]
-    blurred = photo.sharpness < BLURRED * usual
-    if len(photo.pixels) < FEW_FEATURES:
+    blurred = photo.sharpness < BLURRED_SHARE * usual
+    if len(photo.pixels) < MIN_FEATURES:
         return f"shows only {len(photo.pixels)} details ({'blurred' if blurred else 'bare'})"
     if blurred:
         return "is blurred: hold the camera still for each picture, with more light"
     partners = links.of(i)
     near = _nearest(i, inside, links)
-    advice = f"take more pictures between {photo.name} and {photos[near].name}" if inside else HABIT
+    advice = (
+        f"take more pictures between {photo.name} and {photos[near].name}"
+        if inside
+        else CAPTURE_ADVICE
+    )
     if not partners:
         return f"shares nothing with the other photos; {advice}"
     if not inside & set(partners):
@@ -57,7 +61,7 @@ def _nearest(i: int, inside: set[int], links: MatchGraph) -> int:
     """Return the placed photo that is most like one, by what both show, then by order."""
     if not inside:
         return i
-    shared = np.maximum(links.alike[i] - CHANCE, 0)
+    shared = np.maximum(links.alike[i] - CHANCE_MATCHES, 0)
     return min(inside, key=lambda j: (-shared[j], abs(i - j), j))
 
 
@@ -65,30 +69,32 @@ def check_enough(photos: list[Features], least: int) -> None:
     """Raise CaptureError where there are too few photos, or too few that show anything."""
     if len(photos) < least:
         count = "there is no photo" if not photos else f"only {len(photos)} were given"
-        raise CaptureError(PLACE, f"{count}; take 20 to 60 of the room: {HABIT}")
-    bare = sum(len(photo.pixels) < FEW_FEATURES for photo in photos)
+        raise CaptureError(PHOTOS, f"{count}; take 20 to 60 of the room: {CAPTURE_ADVICE}")
+    bare = sum(len(photo.pixels) < MIN_FEATURES for photo in photos)
     if len(photos) - bare < least:
         raise CaptureError(
-            PLACE,
+            PHOTOS,
             f"{bare} of {len(photos)} show too few details to be placed (blank, blurred or dark); "
             "turn on the lights, step back so that furniture and corners are seen",
         )
 
 
-def too_few(placed: int, given: int) -> CaptureError:
+def too_few_error(placed: int, given: int) -> CaptureError:
     """Return the error for photos of which only a few could be placed."""
     return CaptureError(
-        PLACE,
-        f"only {placed} of {given} could be placed, too few to trust; {HABIT}, and stand back so "
+        PHOTOS,
+        f"only {placed} of {given} could be placed, too few to trust; {CAPTURE_ADVICE}, and stand back so "
         "that furniture and corners are seen",
     )
 
 
-def refuse(photos: list[Features], links: MatchGraph, cameras: dict[int, Camera]) -> CaptureError:
+def no_model_error(
+    photos: list[Features], links: MatchGraph, cameras: dict[int, Camera]
+) -> CaptureError:
     """Return the error for photos that make no model at all."""
     linked = {i for pair in links.matches for i in pair}
     if len(linked) < 3:
-        reason = f"no three of the {len(photos)} show the same things; {HABIT}"
+        reason = f"no three of the {len(photos)} show the same things; {CAPTURE_ADVICE}"
     elif links.turned(cameras) > 0.5:
         reason = (
             "the camera turned on one spot, which shows no depth; "
@@ -102,15 +108,15 @@ def refuse(photos: list[Features], links: MatchGraph, cameras: dict[int, Camera]
     else:
         reason = (
             f"{len(linked)} of the {len(photos)} share details, but too few to tell where they "
-            f"were taken; {HABIT}"
+            f"were taken; {CAPTURE_ADVICE}"
         )
-    return CaptureError(PLACE, reason)
+    return CaptureError(PHOTOS, reason)
 
 
 DIGITS = 9  # What is left of rounding in sums; a nanometre.
 
 
-def scene(
+def to_sparse_scene(
     photos: list[Features],
     found: SparseModel,
     change: Similarity | None = None,
@@ -124,7 +130,7 @@ def scene(
         found: poses and points.
         change: carries these to the wanted frame.
         kept: cameras and poses by number that are given out as they are, not rounded.
-        told: ``left_out``, ``notes`` and ``facts``.
+        told: ``explain_left_out``, ``notes`` and ``facts``.
     """
     kept = kept or {}
     order = sorted({*found.poses, *kept})
@@ -144,7 +150,7 @@ def scene(
         "photos_placed": len(order),
         "error_px": round(found.median_px, 4) if len(found.error_px) else None,
         "points": len(points),
-        "triangulation_deg": round(middle_angle_deg(found), 3),
+        "triangulation_deg": round(median_triangulation_angle_deg(found), 3),
         **told.pop("facts", {}),
     }
     return SparseScene(
@@ -162,7 +168,7 @@ def scene(
     )
 
 
-def middle_depth(found: SparseModel) -> float:
+def median_depth(found: SparseModel) -> float:
     """Return the median distance along the view from a photo to a point that it sees."""
     depths = []
     for i, pose in sorted(found.poses.items()):
@@ -171,7 +177,7 @@ def middle_depth(found: SparseModel) -> float:
     return float(np.median(np.concatenate(depths)))
 
 
-def middle_angle_deg(found: SparseModel) -> float:
+def median_triangulation_angle_deg(found: SparseModel) -> float:
     """Return the median over points of the widest angle between the first ray and another."""
     if len(found.points) == 0:
         return 0.0

@@ -18,8 +18,8 @@ from scipy.optimize import least_squares
 from world2minecraft.core.types import checks
 from world2minecraft.geometry.rotations import rotation_from_vector
 
-USUAL_TURN = 0.1  # Radians: sensors on one device look nearly the same way.
-ROUNDS = 60  # It settles to 1e-9 in about ten, with a mount in thirty.
+MOUNT_ROTATION_SIGMA = 0.1  # Radians: sensors on one device look nearly the same way.
+MAX_ITERATIONS = 60  # It settles to 1e-9 in about ten, with a mount in thirty.
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +77,17 @@ def align_similarity(given: np.ndarray, wanted: np.ndarray, mounted: bool = Fals
         raise ValueError("all cameras stand in one place: no scale can be found")
     turns = wanted[:, :3, :3] @ given[:, :3, :3].transpose(0, 2, 1)
     a, b, axes = given[:, :3, 3], wanted[:, :3, 3], wanted[:, :3, :3]
-    rotation, scale, shift = _start(turns, a, b)
+    rotation, scale, shift = _initial_similarity(turns, a, b)
     mount = np.zeros(3)
-    for _ in range(ROUNDS):
-        near, turned = _weights(turns, a, b - axes @ mount, (rotation, scale, shift), reach[1])
+    for _ in range(MAX_ITERATIONS):
+        near, turned = _robust_weights(
+            turns, a, b - axes @ mount, (rotation, scale, shift), reach[1]
+        )
         before = np.concatenate([rotation.ravel(), [scale], mount])
-        rotation = _rotation(turns, a, b - axes @ mount, scale, near, turned)
-        scale, shift, mount = _rest(a @ rotation.T, b, axes if mounted else None, near, scale)
+        rotation = _fit_rotation(turns, a, b - axes @ mount, scale, near, turned)
+        scale, shift, mount = _fit_scale_and_shift(
+            a @ rotation.T, b, axes if mounted else None, near, scale
+        )
         after = np.concatenate([rotation.ravel(), [scale], mount])
         if np.allclose(before, after, rtol=1e-12, atol=1e-12):
             break
@@ -95,10 +99,10 @@ def align_similarity(given: np.ndarray, wanted: np.ndarray, mounted: bool = Fals
         np.degrees(_angles(turns, rotation)),
         mount,
     )
-    return _turned_mount(given, wanted, found, reach[1]) if mounted else found
+    return _fit_mount_rotation(given, wanted, found, reach[1]) if mounted else found
 
 
-def _turned_mount(
+def _fit_mount_rotation(
     given: np.ndarray, wanted: np.ndarray, start: Similarity, reach_m: float
 ) -> Similarity:
     """Return a similarity with the sensor's turn found too, by least squares over all at once.
@@ -122,7 +126,7 @@ def _turned_mount(
         between = wanted[:, :3, :3].transpose(0, 2, 1) @ rotation @ given[:, :3, :3] @ turn.T
         skew = between - between.transpose(0, 2, 1)
         apart = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1) / 2
-        usual = values[10:13] / USUAL_TURN
+        usual = values[10:13] / MOUNT_ROTATION_SIGMA
         return np.concatenate([(off / sigma_m).ravel(), (apart / sigma).ravel(), usual])
 
     first = np.concatenate([np.zeros(7), start.mount_m / reach_m, np.zeros(3)])
@@ -135,7 +139,7 @@ def _turned_mount(
     return Similarity(float(scale), rotation, shift, off_m, off_deg, mount, turn)
 
 
-def _start(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):
+def _initial_similarity(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):
     """Return the rotation that half of the poses agree with best, and scale and shift by it."""
     medians = [np.median(_angles(turns, turn)) for turn in turns]
     rotation = turns[int(np.argmin(medians))]
@@ -152,7 +156,7 @@ def _start(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):
     return rotation, scale, np.median(b - scale * a, axis=0)
 
 
-def _weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, np.ndarray]:
+def _robust_weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, np.ndarray]:
     """Return what centres and rotations weigh, by the square of Cauchy's weight over variance."""
     rotation, scale, shift = found
     off_m = _distances(given, wanted, rotation, scale, shift)
@@ -163,7 +167,7 @@ def _weights(turns, given, wanted, found, reach_m) -> tuple[np.ndarray, np.ndarr
     return near, 1 / (1 + (angles / sigma) ** 2) ** 2 / sigma**2
 
 
-def _rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
+def _fit_rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
     """Return the rotation that both the centres and the poses' own rotations pull to."""
     a = given - np.average(given, axis=0, weights=near)
     b = wanted - np.average(wanted, axis=0, weights=near)
@@ -172,7 +176,7 @@ def _rotation(turns, given, wanted, scale, near, turned) -> np.ndarray:
     return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
 
 
-def _rest(turned, wanted, axes, near, scale) -> tuple[float, np.ndarray, np.ndarray]:
+def _fit_scale_and_shift(turned, wanted, axes, near, scale) -> tuple[float, np.ndarray, np.ndarray]:
     """Return scale, shift and mount by weighted least squares, the rotation being known."""
     count = len(turned)
     columns = [turned.reshape(-1, 1), np.tile(np.eye(3), (count, 1))]

@@ -4,7 +4,7 @@ from world2minecraft.capture.stereo.depth_maps import depth_maps
 from world2minecraft.capture.stereo.monocular_depth import (
     DEPTH_MODELS,
     DepthModel,
-    depth_model,
+    load_depth_model,
     network_maps,
 )
 from world2minecraft.capture.stereo.parameters import StereoParameters
@@ -14,6 +14,6 @@ __all__ = [
     "DepthModel",
     "StereoParameters",
     "depth_maps",
-    "depth_model",
+    "load_depth_model",
     "network_maps",
 ]

@@ -8,7 +8,7 @@ from world2minecraft.core.jit import njit
 
 
 @njit
-def confirm(depth, rays, others, to_others, cameras, tolerance):
+def check_consistency(depth, rays, others, to_others, cameras, tolerance):
     """Ask other depth maps about each pixel.
 
     Args:
@@ -53,7 +53,7 @@ def confirm(depth, rays, others, to_others, cameras, tolerance):
 
 
 @njit
-def without_islands(depth, least_px, step):
+def filter_speckles(depth, least_px, step):
     """Return the depth map without islands of under ``least_px`` pixels, 0 in their place.
 
     Args:

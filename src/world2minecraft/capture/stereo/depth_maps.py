@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from world2minecraft.capture.stereo.consistency import confirm, without_islands
-from world2minecraft.capture.stereo.monocular_depth import DepthModel, filled
+from world2minecraft.capture.stereo.consistency import check_consistency, filter_speckles
+from world2minecraft.capture.stereo.monocular_depth import DepthModel, fill_holes
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.planar_regions import flattened
-from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep
-from world2minecraft.capture.stereo.stereo_photos import SmallPhoto, small_photos
+from world2minecraft.capture.stereo.planar_regions import fill_planar_regions
+from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep_depth
+from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
@@ -19,13 +19,13 @@ from world2minecraft.rendering.thread_pool import run_parallel
 
 # Which photos each is compared with: those that see the same things at a good angle.
 
-ASKED = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.
+SAMPLE_GRID = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.
 DEPTH_PERCENTILES = (20, 50, 80)
-MANY_SHARED = 20  # So many points in common prove that nothing stands between.
+MIN_SHARED_POINTS = 20  # So many points in common prove that nothing stands between.
 
 
-def chosen_neighbours(
-    photos: list[SmallPhoto], depths_m: np.ndarray, count: int, angle_deg: float
+def select_neighbours(
+    photos: list[StereoPhoto], depths_m: np.ndarray, count: int, angle_deg: float
 ) -> list[np.ndarray]:
     """Return for each photo the numbers of up to ``count`` others, the best first.
 
@@ -39,10 +39,12 @@ def chosen_neighbours(
     poses = np.array([photo.camera_to_scan for photo in photos])
     to_cameras = np.array([invert_rigid(pose) for pose in poses])
     for number, photo in enumerate(photos):
-        points_m, depth_m = _asked_points(photo, depths_m[number])
+        points_m, depth_m = _sample_points(photo, depths_m[number])
         scores = np.array(
             [
-                _score(photo, photos[other], to_cameras[other], points_m, depth_m, angle_deg)
+                _neighbour_score(
+                    photo, photos[other], to_cameras[other], points_m, depth_m, angle_deg
+                )
                 if other != number
                 else 0.0
                 for other in range(len(photos))
@@ -53,12 +55,12 @@ def chosen_neighbours(
     return result
 
 
-def _asked_points(photo: SmallPhoto, depths_m: np.ndarray):
+def _sample_points(photo: StereoPhoto, depths_m: np.ndarray):
     """Return points [P, 3] of the scan frame that the photo may see, and their depth."""
     camera = photo.camera
     u, v = np.meshgrid(
-        (np.arange(ASKED) + 0.5) / ASKED * camera.width_px,
-        (np.arange(ASKED) + 0.5) / ASKED * camera.height_px,
+        (np.arange(SAMPLE_GRID) + 0.5) / SAMPLE_GRID * camera.width_px,
+        (np.arange(SAMPLE_GRID) + 0.5) / SAMPLE_GRID * camera.height_px,
     )
     x, y = (u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px
     rays = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
@@ -66,7 +68,7 @@ def _asked_points(photo: SmallPhoto, depths_m: np.ndarray):
     return apply(photo.camera_to_scan, points_m), np.repeat(depths_m, len(rays))
 
 
-def _score(photo, other, to_other, points_m, depth_m, angle_deg) -> float:
+def _neighbour_score(photo, other, to_other, points_m, depth_m, angle_deg) -> float:
     """Return how much of the points the other sees, each counted by its angle and distance."""
     seen_m = apply(to_other, points_m)
     z = seen_m[:, 2]
@@ -85,15 +87,15 @@ def _score(photo, other, to_other, points_m, depth_m, angle_deg) -> float:
     distance = np.log2(z[inside] / depth_m[inside])
     worth = np.exp(-0.5 * octaves**2 - 0.5 * (distance / 0.5) ** 2)
     shared = len(np.intersect1d(photo.guide_point, other.guide_point, assume_unique=True))
-    return float(worth.sum() / len(points_m) * (0.2 + 0.8 * min(1.0, shared / MANY_SHARED)))
+    return float(worth.sum() / len(points_m) * (0.2 + 0.8 * min(1.0, shared / MIN_SHARED_POINTS)))
 
 
-AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
+PARALLEL_PHOTOS = 2  # Photos swept side by side; each needs about 60 MB.
 TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
-DECIDING = 160  # Trust of depth that may decide where a flat patch lies.
-GUESSED = np.uint8(96)
-GUESSES_AGREEING = 2  # Two photos may guess alike by chance; three hardly.
-LEAST_GUIDES = 20
+SURE_TRUST = 160  # Trust of depth that may decide where a flat patch lies.
+PLANE_TRUST = np.uint8(96)
+MIN_PLANE_VOTES = 2  # Two photos may guess alike by chance; three hardly.
+MIN_SPARSE_POINTS = 20
 STAGE = "stereo"
 
 
@@ -117,56 +119,56 @@ def depth_maps(
         CaptureError: no photo has another that sees the same, or one is missing.
     """
     values = parameters or StereoParameters()
-    small = small_photos(photos, scene, values.width_px, silent)
-    swept, neighbours = swept_depths(small, values, progress)
-    found = [confirmed(n, small, swept, neighbours, values) for n in range(len(small))]
+    small = prepare_stereo_photos(photos, scene, values.width_px, silent)
+    swept, neighbours = sweep_photos(small, values, progress)
+    found = [filter_consistent(n, small, swept, neighbours, values) for n in range(len(small))]
     every_m = np.concatenate([photo.guide_m for photo in small])
-    guesses = [_flattened(one, p, every_m) for one, p in zip(found, small, strict=True)]
+    guesses = [_fill_planes(one, p, every_m) for one, p in zip(found, small, strict=True)]
     guesses_m = [guess_m for guess_m, _ in guesses]
     for number, photo in enumerate(small):
-        votes, _ = votes_of(number, small, guesses_m, neighbours[number], values.agreement)
-        agreed = votes >= max(values.agreeing, GUESSES_AGREEING)
-        result = _with_guess(found[number], *guesses[number], agreed)
-        yield result if guide is None else _guided(result, photo, guide)
+        votes, _ = count_votes(number, small, guesses_m, neighbours[number], values.agreement)
+        agreed = votes >= max(values.agreeing, MIN_PLANE_VOTES)
+        result = _merge_planes(found[number], *guesses[number], agreed)
+        yield result if guide is None else _fill_from_network(result, photo, guide)
         progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
 
 
-def _flattened(
-    found: DepthMap, photo: SmallPhoto, every_m: np.ndarray
+def _fill_planes(
+    found: DepthMap, photo: StereoPhoto, every_m: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a guess at flat patches; see flats.py."""
-    sure = found.trust >= DECIDING
-    return flattened(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
+    sure = found.trust >= SURE_TRUST
+    return fill_planar_regions(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
 
 
-def _with_guess(
+def _merge_planes(
     found: DepthMap, guess_m: np.ndarray, guessed: np.ndarray, agreed: np.ndarray
 ) -> DepthMap:
     """Take the guess where others agree; where they do not, what it contradicts goes too."""
     depth_m = np.where(guessed, np.where(agreed, guess_m, np.float32(0)), found.depth_m)
-    trust = np.where(guessed, np.where(agreed, GUESSED, np.uint8(0)), found.trust)
+    trust = np.where(guessed, np.where(agreed, PLANE_TRUST, np.uint8(0)), found.trust)
     return DepthMap(found.name, found.camera, depth_m, trust)
 
 
-def _guided(found: DepthMap, photo: SmallPhoto, guide: DepthModel) -> DepthMap:
+def _fill_from_network(found: DepthMap, photo: StereoPhoto, guide: DepthModel) -> DepthMap:
     """Fill what is open by a network's guess."""
     guess = guide.predict(photo.colour, photo.camera)
-    depth_m, trust = filled(
+    depth_m, trust = fill_holes(
         found.depth_m, found.trust, guess, guide.kind, photo.guide_px, photo.guide_m
     )
     return DepthMap(found.name, found.camera, depth_m, trust)
 
 
-def swept_depths(
-    small: list[SmallPhoto], values: StereoParameters, progress: Progress = silent
+def sweep_photos(
+    small: list[StereoPhoto], values: StereoParameters, progress: Progress = silent
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return each photo's depth float32 [h, w] by itself, and the numbers of its neighbours."""
     every_m = np.concatenate([photo.guide_m for photo in small])
     if not len(every_m):
         raise CaptureError("photos", "share no points; depth cannot be found: take more, nearer")
-    known = [p.guide_m if len(p.guide_m) > LEAST_GUIDES else every_m for p in small]
+    known = [p.guide_m if len(p.guide_m) > MIN_SPARSE_POINTS else every_m for p in small]
     usual = np.array([np.percentile(found, DEPTH_PERCENTILES) for found in known])
-    neighbours = chosen_neighbours(small, usual, values.neighbours, values.angle_deg)
+    neighbours = select_neighbours(small, usual, values.neighbours, values.angle_deg)
     if not any(len(found) for found in neighbours):
         raise CaptureError(
             "photos", "no two see the same from places far enough apart: take steps aside"
@@ -175,44 +177,44 @@ def swept_depths(
 
     def one(number: int) -> None:
         others = [small[other] for other in neighbours[number]]
-        swept[number] = _swept(small[number], others, every_m, values)
+        swept[number] = _sweep_photo(small[number], others, every_m, values)
 
-    for first in range(0, len(small), AT_ONCE):
-        run_parallel(one, range(first, min(first + AT_ONCE, len(small))))
-        done = min(first + AT_ONCE, len(small))
+    for first in range(0, len(small), PARALLEL_PHOTOS):
+        run_parallel(one, range(first, min(first + PARALLEL_PHOTOS, len(small))))
+        done = min(first + PARALLEL_PHOTOS, len(small))
         progress(STAGE, done, 2 * len(small), small[done - 1].name)
     return swept, neighbours
 
 
-def _swept(
-    photo: SmallPhoto, others: list[SmallPhoto], every_m: np.ndarray, values: StereoParameters
+def _sweep_photo(
+    photo: StereoPhoto, others: list[StereoPhoto], every_m: np.ndarray, values: StereoParameters
 ) -> np.ndarray:
     if not others:
         return np.zeros((photo.camera.height_px, photo.camera.width_px), np.float32)
-    return sweep(photo, others, depth_range(photo, every_m), values)
+    return sweep_depth(photo, others, depth_range(photo, every_m), values)
 
 
-def confirmed(
+def filter_consistent(
     number: int,
-    small: list[SmallPhoto],
+    small: list[StereoPhoto],
     swept: list[np.ndarray],
     neighbours: list[np.ndarray],
     values: StereoParameters,
 ) -> DepthMap:
     """Return the depth of a photo that its neighbours' depths confirm."""
     photo = small[number]
-    votes, mean = votes_of(number, small, swept, neighbours[number], values.agreement)
+    votes, mean = count_votes(number, small, swept, neighbours[number], values.agreement)
     asked = max(1, len(neighbours[number]))
     depth_m = np.where(votes >= min(values.agreeing, asked), mean, np.float32(0))
     least_px = round(values.island_share * depth_m.size)
-    depth_m = without_islands(depth_m, least_px, values.island_step)
+    depth_m = filter_speckles(depth_m, least_px, values.island_step)
     trust = TRUST[np.clip(4 - min(asked, 4) + votes, 0, 4)]
     return DepthMap(photo.name, photo.camera, depth_m, np.where(depth_m > 0, trust, np.uint8(0)))
 
 
-def votes_of(
+def count_votes(
     number: int,
-    small: list[SmallPhoto],
+    small: list[StereoPhoto],
     swept: list[np.ndarray],
     others: np.ndarray,
     agreement: float,
@@ -227,17 +229,17 @@ def votes_of(
     total = np.zeros(votes.shape, np.float64)
     for shape in sorted({swept[other].shape for other in others}):
         same = [other for other in others if swept[other].shape == shape]
-        found, middle = confirm(
+        found, middle = check_consistency(
             swept[number], pixel_rays(photo.camera),
             np.stack([swept[other] for other in same]),
             np.array([invert_rigid(small[o].camera_to_scan) @ photo.camera_to_scan for o in same]),
-            np.array([_lens(small[other]) for other in same]), agreement,
+            np.array([_intrinsics(small[other]) for other in same]), agreement,
         )  # fmt: skip
         total += middle.astype(np.float64) * (found + 1.0) - swept[number]
         votes += found
     return votes, ((total + swept[number]) / (votes + 1.0)).astype(np.float32)
 
 
-def _lens(photo: SmallPhoto) -> list[float]:
+def _intrinsics(photo: StereoPhoto) -> list[float]:
     camera = photo.camera
     return [camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px]

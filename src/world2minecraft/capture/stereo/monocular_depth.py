@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.stereo_photos import small_photos
+from world2minecraft.capture.stereo.stereo_photos import prepare_stereo_photos
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.registry import Registry
@@ -29,13 +29,18 @@ Kind = Literal["metric", "inverse"]
 
 FILLED_TRUST = 96  # Below all that was measured.
 SURE_TRUST = 255
-WORST_FIT = 0.15  # Guess: beyond this a network has not understood the picture.
-WORST_NEARBY = 0.05  # Guess: about a voxel at two metres.
+MAX_FIT_ERROR = 0.15  # Guess: beyond this a network has not understood the picture.
+MAX_LOCAL_ERROR = 0.05  # Guess: about a voxel at two metres.
 POINT_WEIGHT = 9.0  # A sparse point counts as a sure patch of 3x3 pixels.
-FEWEST = 90.0  # Weight in the picture below which nothing is laid on anything.
-FEWEST_NEARBY = 45.0  # Likewise around a hole: five points.
-REACHES = (1 / 4, 1 / 8, 1 / 16, 1 / 32)  # Half widths of what is around, by the picture's width.
-LARGEST_LOG = 0.25  # One wrong point must not outweigh all that is right around it.
+MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is laid on anything.
+MIN_LOCAL_WEIGHT = 45.0  # Likewise around a hole: five points.
+WINDOW_SHARES = (
+    1 / 4,
+    1 / 8,
+    1 / 16,
+    1 / 32,
+)  # Half widths of what is around, by the picture's width.
+MAX_LOG_CORRECTION = 0.25  # One wrong point must not outweigh all that is right around it.
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest of what was measured.
 
 
@@ -59,7 +64,7 @@ DEPTH_MODELS = Registry(
 )
 
 
-def depth_model(name: str) -> DepthModel:
+def load_depth_model(name: str) -> DepthModel:
     """Return the network that ``FAMILY:MODEL`` names, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.
 
     Raises:
@@ -75,7 +80,7 @@ def depth_model(name: str) -> DepthModel:
     return make(model)
 
 
-def filled(
+def fill_holes(
     depth_m: np.ndarray,
     trust: np.ndarray,
     predicted: np.ndarray,
@@ -106,21 +111,21 @@ def filled(
         raise ValueError(
             f"maps of one size expected: {depth_m.shape}, {trust.shape}, {predicted.shape}"
         )
-    known_m, weight = _measured(depth_m, trust, guide_px, guide_m)
-    guess_m = _laid_on(predicted.astype(np.float64), kind, known_m, weight)
+    known_m, weight = _known_depths(depth_m, trust, guide_px, guide_m)
+    guess_m = _fit_to_known(predicted.astype(np.float64), kind, known_m, weight)
     if guess_m is None:
         return depth_m.copy(), trust.copy()
-    guess_m, spread = _nearby(guess_m, known_m, weight)
+    guess_m, spread = _fit_locally(guess_m, known_m, weight)
     near_m, far_m = np.percentile(known_m[weight > 0], [1, 99])
     inside = (guess_m >= near_m * NEAR_SHARE) & (guess_m <= far_m * FAR_SHARE)
-    fill = (depth_m == 0) & inside & (spread < WORST_NEARBY)
+    fill = (depth_m == 0) & inside & (spread < MAX_LOCAL_ERROR)
     return (
         np.where(fill, guess_m, depth_m).astype(np.float32),
         np.where(fill, FILLED_TRUST, trust).astype(np.uint8),
     )
 
 
-def laid_on_points(
+def align_to_points(
     predicted: np.ndarray, kind: Kind, guide_px: np.ndarray, guide_m: np.ndarray
 ) -> tuple[np.ndarray, float] | None:
     """Lay a network's depth on the sparse points of its picture, as a whole and then around each.
@@ -136,17 +141,17 @@ def laid_on_points(
         where points are few or the network fits them worse than 15 %.
     """
     nothing = np.zeros(predicted.shape, np.float32)
-    known_m, weight = _measured(nothing, nothing.astype(np.uint8), guide_px, guide_m)
-    guess_m = _laid_on(predicted.astype(np.float64), kind, known_m, weight)
+    known_m, weight = _known_depths(nothing, nothing.astype(np.uint8), guide_px, guide_m)
+    guess_m = _fit_to_known(predicted.astype(np.float64), kind, known_m, weight)
     if guess_m is None:
         return None
-    nearby_m, _ = _nearby(guess_m, known_m, weight)
+    nearby_m, _ = _fit_locally(guess_m, known_m, weight)
     usable = np.isfinite(nearby_m) & (predicted > 0)
     factor = float(np.median(nearby_m[usable] / predicted[usable])) if usable.any() else 1.0
     return nearby_m, factor
 
 
-def _measured(depth_m, trust, guide_px, guide_m):
+def _known_depths(depth_m, trust, guide_px, guide_m):
     """Return float64 [H, W] depths that count as known, and how much each counts, often 0."""
     weight = np.where((trust == SURE_TRUST) & (depth_m > 0), 1.0, 0.0)
     known_m = np.where(weight > 0, depth_m, 1.0).astype(np.float64)
@@ -160,17 +165,17 @@ def _measured(depth_m, trust, guide_px, guide_m):
     return known_m, weight
 
 
-def _laid_on(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
+def _fit_to_known(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
     """Return the network's depth in metres, NaN where it has none; None where it fits badly."""
     usable = np.isfinite(predicted) & ((predicted > 0) | (kind == "inverse"))
     asked = usable & (weight > 0)
     guess, true_m, much = predicted[asked], known_m[asked], weight[asked]
-    if much.sum() < FEWEST:
+    if much.sum() < MIN_WEIGHT:
         return None
     if kind == "metric":
         guess_m = predicted * _weighted_median(true_m / guess, much)
     else:
-        by, plus = _inverse_line(guess, true_m, much)
+        by, plus = _fit_inverse_depth(guess, true_m, much)
         if by <= 0:
             return None
         inverse = predicted * by + plus
@@ -178,10 +183,10 @@ def _laid_on(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
         guess_m = 1 / np.where(usable, inverse, 1.0)
     guess_m = np.where(usable, guess_m, np.nan)
     off = np.abs(np.nan_to_num(guess_m[asked], nan=0.0) / true_m - 1)
-    return guess_m if _weighted_median(off, much) <= WORST_FIT else None
+    return guess_m if _weighted_median(off, much) <= MAX_FIT_ERROR else None
 
 
-def _inverse_line(guess, true_m, weight) -> tuple[float, float]:
+def _fit_inverse_depth(guess, true_m, weight) -> tuple[float, float]:
     """Return the factor and shift of the least sum of relative errors ``|(a g + b) z - 1|``.
 
     Weighted least squares again and again, each time with less weight for what is far off.
@@ -200,7 +205,7 @@ def _inverse_line(guess, true_m, weight) -> tuple[float, float]:
     return float(line[0] / wide), float(line[1] - line[0] * middle / wide)
 
 
-def _nearby(guess_m, known_m, weight) -> tuple[np.ndarray, np.ndarray]:
+def _fit_locally(guess_m, known_m, weight) -> tuple[np.ndarray, np.ndarray]:
     """Return the guess moved to what was measured around each pixel, and how badly that fits.
 
     Both float64 [H, W]. The least window that holds enough decides; the second is infinite, and
@@ -208,13 +213,13 @@ def _nearby(guess_m, known_m, weight) -> tuple[np.ndarray, np.ndarray]:
     """
     counts = np.where(np.isfinite(guess_m), weight, 0.0)
     log = np.log(known_m / np.where(counts > 0, guess_m, known_m))
-    log = np.clip(log, -LARGEST_LOG, LARGEST_LOG)
+    log = np.clip(log, -MAX_LOG_CORRECTION, MAX_LOG_CORRECTION)
     shift = np.zeros_like(guess_m)
     spread = np.full_like(guess_m, np.inf)
-    for reach in REACHES:
+    for reach in WINDOW_SHARES:
         side = 2 * max(1, round(reach * guess_m.shape[1])) + 1
         total = _window_sum(counts, side)
-        enough = total >= FEWEST_NEARBY
+        enough = total >= MIN_LOCAL_WEIGHT
         total = np.where(enough, total, 1.0)
         mean = _window_sum(counts * log, side) / total
         off = _window_sum(counts * np.abs(log - mean), side) / total
@@ -232,7 +237,9 @@ def _weighted_median(values: np.ndarray, weight: np.ndarray) -> float:
     return float(values[order[np.searchsorted(rising, rising[-1] / 2)]])
 
 
-TRUST = 160  # More than half, so that it is registered; less than what several photos confirm.
+NETWORK_TRUST = (
+    160  # More than half, so that it is registered; less than what several photos confirm.
+)
 WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.
 STAGE = "stereo"
 
@@ -252,11 +259,11 @@ def network_maps(
         CaptureError: no photo has points enough to tell the network's scale.
     """
     width_px = max(WIDTH_PX, (parameters or StereoParameters()).width_px)
-    small = small_photos(photos, scene, width_px, silent)
+    small = prepare_stereo_photos(photos, scene, width_px, silent)
     found: list[tuple[np.ndarray, float]] = []
     for number, photo in enumerate(small):
         predicted = guide.predict(photo.colour, photo.camera)
-        laid = laid_on_points(predicted, guide.kind, photo.guide_px, photo.guide_m)
+        laid = align_to_points(predicted, guide.kind, photo.guide_px, photo.guide_m)
         found.append((predicted, np.nan) if laid is None else (laid[0].astype(np.float32), laid[1]))
         progress(STAGE, number + 1, len(small), photo.name)
     factors = [factor for _, factor in found if factor == factor]  # NaN is not itself.
@@ -272,10 +279,10 @@ def network_maps(
             depth_m = guess
         else:
             depth_m = guess * usual if guide.kind == "metric" else np.zeros_like(guess)
-        yield _as_map(photo.name, photo.camera, depth_m)
+        yield _to_depth_map(photo.name, photo.camera, depth_m)
 
 
-def _as_map(name: str, camera: Camera, depth_m: np.ndarray) -> DepthMap:
+def _to_depth_map(name: str, camera: Camera, depth_m: np.ndarray) -> DepthMap:
     known = np.isfinite(depth_m) & (depth_m > 0)
     depth = np.where(known, depth_m, 0).astype(np.float32)
-    return DepthMap(name, camera, depth, np.where(known, TRUST, 0).astype(np.uint8))
+    return DepthMap(name, camera, depth, np.where(known, NETWORK_TRUST, 0).astype(np.uint8))

@@ -8,17 +8,21 @@ What is guessed here counts only where other photos, guessing alike, agree.
 import numpy as np
 from scipy import ndimage
 
-RANGE = 20  # Levels between the brightest and darkest of 3x3 pixels that are of one colour.
-LEAST_SHARE = 0.002  # Of the picture: a smaller patch is not worth a plane.
+MAX_LEVEL_RANGE = (
+    20  # Levels between the brightest and darkest of 3x3 pixels that are of one colour.
+)
+MIN_PATCH_SHARE = 0.002  # Of the picture: a smaller patch is not worth a plane.
 RIM_PX = 3  # To either side of a patch's outline; windows reach no farther.
-LEAST_RIM_PX = 40
-HELD_SHARE = 0.5  # Of the rim's depths that must lie on the plane.
+MIN_RIM_PX = 40
+MIN_INLIER_SHARE = 0.5  # Of the rim's depths that must lie on the plane.
 TOLERANCE = 0.02  # Of the depth, likewise: less than what agrees with another photo.
-BEHIND = 0.04  # Of the depth: what is found so far behind the rim's plane is a reflection.
-TRIALS = 80  # A plane that holds half of the rim is missed once in 40,000.
+REFLECTION_SHARE = (
+    0.04  # Of the depth: what is found so far behind the rim's plane is a reflection.
+)
+RANSAC_TRIALS = 80  # A plane that holds half of the rim is missed once in 40,000.
 
 
-def flattened(
+def fill_planar_regions(
     colour: np.ndarray, depth_m: np.ndarray, sure: np.ndarray, range_m: tuple[float, float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lay patches of one colour on the planes of their rims.
@@ -34,14 +38,14 @@ def flattened(
         plane of its patch put there; and ``guessed`` bool [h, w], the pixels so changed.
     """
     guess_m, guessed = depth_m.copy(), np.zeros(depth_m.shape, bool)
-    patches, boxes = _patches(colour)
+    patches, boxes = _uniform_patches(colour)
     for number, box in boxes:
         mask = patches[box] == number
         rim = _rim(mask) & sure[box] & (depth_m[box] > 0)
-        if rim.sum() < LEAST_RIM_PX:
+        if rim.sum() < MIN_RIM_PX:
             continue
         v, u = np.nonzero(rim)
-        plane = _plane(u, v, 1 / depth_m[box][rim].astype(np.float64))
+        plane = _fit_plane(u, v, 1 / depth_m[box][rim].astype(np.float64))
         if plane is None:
             continue
         y, x = np.indices(mask.shape)
@@ -49,23 +53,23 @@ def flattened(
         inside = mask & (inverse > 1 / range_m[1]) & (inverse < 1 / range_m[0])
         plane_m = (1 / np.where(inside, inverse, 1)).astype(np.float32)
         here = depth_m[box]
-        change = inside & ((here == 0) | (here > plane_m * (1 + BEHIND)))
+        change = inside & ((here == 0) | (here > plane_m * (1 + REFLECTION_SHARE)))
         guess_m[box][change] = plane_m[change]
         guessed[box] |= change
     return guess_m, guessed
 
 
-def _patches(colour: np.ndarray):
+def _uniform_patches(colour: np.ndarray):
     """Return int [h, w], numbered patches of one colour; and the larger ones, with their boxes."""
     highest = np.asarray(ndimage.maximum_filter(colour, (3, 3, 1)), np.int16)
     lowest = np.asarray(ndimage.minimum_filter(colour, (3, 3, 1)), np.int16)
-    even = (highest - lowest).max(axis=2) < RANGE
+    even = (highest - lowest).max(axis=2) < MAX_LEVEL_RANGE
     patches = np.zeros(even.shape, np.int32)
     ndimage.label(even, output=patches)
     sizes = np.bincount(patches.reshape(-1))
     boxes = []
     for number, box in enumerate(ndimage.find_objects(patches), 1):
-        if sizes[number] >= LEAST_SHARE * patches.size:
+        if sizes[number] >= MIN_PATCH_SHARE * patches.size:
             wider = [slice(max(0, s.start - RIM_PX - 1), s.stop + RIM_PX + 1) for s in box]
             boxes.append((number, tuple(wider)))
     return patches, boxes
@@ -78,13 +82,13 @@ def _rim(mask: np.ndarray) -> np.ndarray:
     return outer & ~inner
 
 
-def _plane(u: np.ndarray, v: np.ndarray, inverse: np.ndarray) -> np.ndarray | None:
+def _fit_plane(u: np.ndarray, v: np.ndarray, inverse: np.ndarray) -> np.ndarray | None:
     """Return (a, b, c) of ``1/z = a u + b v + c`` that holds most of the pixels; None if none does.
 
     In inverse depth a plane is linear in the picture.
     """
     points = np.stack([u, v, np.ones(len(u))], axis=1)
-    chosen = np.random.default_rng(0).integers(0, len(u), (TRIALS, 3))
+    chosen = np.random.default_rng(0).integers(0, len(u), (RANSAC_TRIALS, 3))
     corners = points[chosen]
     proper = np.abs(np.linalg.det(corners)) > 1
     if not proper.any():
@@ -98,4 +102,4 @@ def _plane(u: np.ndarray, v: np.ndarray, inverse: np.ndarray) -> np.ndarray | No
             return None
         plane = np.linalg.lstsq(points[held], inverse[held], rcond=None)[0]
     held = np.abs(points @ plane - inverse) < TOLERANCE * inverse
-    return plane if held.mean() >= HELD_SHARE else None
+    return plane if held.mean() >= MIN_INLIER_SHARE else None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.stereo_photos import SmallPhoto
+from world2minecraft.capture.stereo.stereo_photos import StereoPhoto
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.jit import njit
 
@@ -36,7 +36,7 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
     count = len(sources)
     side = 2 * radius + 1
     costs = np.empty((high, wide, len(inverse)), np.uint8)
-    mean, spread = _own_windows(grey, radius, noise)
+    mean, spread = _window_statistics(grey, radius, noise)
     ring = np.zeros((count, side, wide + 2 * radius), np.float32)
     seen = np.zeros((count, side, wide), np.float32)
     padded = _padded(grey, radius)
@@ -53,19 +53,19 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
             y = row - radius
             for n in range(count):
                 if row >= radius + 1:
-                    _take(sums[n], ring[n, at], padded[row + radius - side], -1.0)
+                    _add_row(sums[n], ring[n, at], padded[row + radius - side], -1.0)
                 _warp_row(
                     sources[n], sizes[n], turns[n], shifts[n], inverse[d], inside, radius,
                     at_x, at_y, ring[n, at], seen[n, at],
                 )  # fmt: skip
-                _take(sums[n], ring[n, at], padded[row + radius], 1.0)
+                _add_row(sums[n], ring[n, at], padded[row + radius], 1.0)
                 if y >= 0:
                     _score_row(
                         sums[n], mean[y], spread[y], seen[n, (y + radius) % side], side, noise,
                         box, scores[n],
                     )  # fmt: skip
             if y >= 0:
-                _best_mean(scores, best, costs[y], d)
+                _mean_best_scores(scores, best, costs[y], d)
     return costs
 
 
@@ -82,7 +82,7 @@ def _padded(grey, radius):
 
 
 @njit
-def _own_windows(grey, radius, noise):
+def _window_statistics(grey, radius, noise):
     """The sum of each window of the photo, and one by the root of its variance."""
     high, wide = grey.shape
     padded = _padded(grey, radius)
@@ -137,7 +137,7 @@ def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values,
 
 
 @njit
-def _take(sums, values, own, sign):
+def _add_row(sums, values, own, sign):
     """Add a row to the sums of columns, or take it away."""
     for x in range(len(values)):
         value = values[x]
@@ -168,7 +168,7 @@ def _score_row(sums, mean, spread, seen, side, noise, box, scores):
 
 
 @njit
-def _best_mean(scores, best, costs, d):
+def _mean_best_scores(scores, best, costs, d):
     """Write the mean of the best scores of each pixel of a row as a cost."""
     count, wide = scores.shape
     most = len(best)
@@ -198,7 +198,7 @@ def _best_mean(scores, best, costs, d):
 
 
 @njit
-def sum_paths(costs, small_step, large_step):
+def aggregate_costs(costs, small_step, large_step):
     """Return float32 [h, w, D]: the sum of eight paths' costs; see the module.
 
     Args:
@@ -218,19 +218,19 @@ def sum_paths(costs, small_step, large_step):
         for row in range(high):
             y = row if way == 0 else high - 1 - row
             now, before = row % 2, 1 - row % 2
-            _start(paths, least, now)
+            _reset_paths(paths, least, now)
             along[:] = 0
             along[:, 0] = along[:, planes + 1] = np.inf
             along_least = np.float32(0)
             for column in range(wide):
                 x = column if way == 0 else wide - 1 - column
                 here = column % 2
-                along_least = _step(
+                along_least = _advance_path(
                     costs[y, x], along[1 - here], along_least, along[here], total[y, x],
                     small_step, large_step,
                 )  # fmt: skip
                 for k in range(3):
-                    least[k, now, x + 1] = _step(
+                    least[k, now, x + 1] = _advance_path(
                         costs[y, x], paths[k, before, x + k], least[k, before, x + k],
                         paths[k, now, x + 1], total[y, x], small_step, large_step,
                     )  # fmt: skip
@@ -238,7 +238,7 @@ def sum_paths(costs, small_step, large_step):
 
 
 @njit
-def _start(paths, least, now):
+def _reset_paths(paths, least, now):
     """Paths that come in from the sides begin with nothing."""
     wide, planes = paths.shape[2] - 2, paths.shape[3] - 2
     for k in range(3):
@@ -251,7 +251,7 @@ def _start(paths, least, now):
 
 
 @njit
-def _step(costs, before, before_least, here, total, small_step, large_step):
+def _advance_path(costs, before, before_least, here, total, small_step, large_step):
     """Carry a path on by one pixel and add it to the sum; return its least cost."""
     small, jump = np.float32(small_step), before_least + np.float32(large_step)
     smallest = np.float32(np.inf)
@@ -265,7 +265,7 @@ def _step(costs, before, before_least, here, total, small_step, large_step):
 
 
 @njit
-def best_planes(total):
+def select_planes(total):
     """Return float32 [h, w]: the plane of the least sum, between planes by a parabola."""
     high, wide, planes = total.shape
     found = np.empty((high, wide), np.float32)
@@ -287,16 +287,16 @@ def best_planes(total):
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse points.
 
 
-def depth_range(photo: SmallPhoto, all_m: np.ndarray) -> tuple[float, float]:
+def depth_range(photo: StereoPhoto, all_m: np.ndarray) -> tuple[float, float]:
     """Return the nearest and farthest z-depth that is tried."""
     known = photo.guide_m if len(photo.guide_m) >= 20 else all_m
     near, far = np.percentile(known, [1, 99])
     return float(near * NEAR_SHARE), float(far * FAR_SHARE)
 
 
-def sweep(
-    photo: SmallPhoto,
-    others: list[SmallPhoto],
+def sweep_depth(
+    photo: StereoPhoto,
+    others: list[StereoPhoto],
     depths_m: tuple[float, float],
     values: StereoParameters,
 ) -> np.ndarray:
@@ -305,18 +305,18 @@ def sweep(
     inverse = np.linspace(1 / far_m, 1 / near_m, values.planes)
     turns, shifts = _homographies(photo, others)
     costs = sweep_costs(
-        photo.grey, *_stacked([other.grey for other in others]), turns, shifts,
+        photo.grey, *_stack_images([other.grey for other in others]), turns, shifts,
         inverse.astype(np.float32), min(values.best_of, len(others)), values.window_px // 2,
         values.noise**2,
     )  # fmt: skip
     if values.guide_cost:
-        _lean_on_points(costs, photo, inverse, values.guide_cost)
-    plane = best_planes(sum_paths(costs, values.small_step, values.large_step))
+        _add_sparse_point_costs(costs, photo, inverse, values.guide_cost)
+    plane = select_planes(aggregate_costs(costs, values.small_step, values.large_step))
     step = (inverse[-1] - inverse[0]) / (values.planes - 1)
     return (1 / (inverse[0] + plane * step)).astype(np.float32)
 
 
-def _stacked(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def _stack_images(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Return pictures of any sizes as one array with room for all, and their sizes."""
     sizes = np.array([grey.shape for grey in greys], np.int64)
     stack = np.zeros((len(greys), *sizes.max(axis=0)), np.float32)
@@ -325,7 +325,7 @@ def _stacked(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     return stack, sizes
 
 
-def _lean_on_points(costs, photo, inverse, guide_cost):
+def _add_sparse_point_costs(costs, photo, inverse, guide_cost):
     """Raise the costs of planes far from a sparse point, in the pixels around it."""
     high, wide, planes = costs.shape
     at = (1 / photo.guide_m - inverse[0]) / (inverse[1] - inverse[0])
@@ -337,7 +337,7 @@ def _lean_on_points(costs, photo, inverse, guide_cost):
             costs[y, x] = np.minimum(costs[y, x] + away, 254).astype(np.uint8)
 
 
-def _homographies(photo: SmallPhoto, others: list[SmallPhoto]):
+def _homographies(photo: StereoPhoto, others: list[StereoPhoto]):
     """Return turns float32 [N, 3, 3] and shifts float32 [N, 3]; see cost.py."""
     back = np.linalg.inv(photo.camera.matrix)
     turns, shifts = [], []

@@ -12,11 +12,11 @@ from world2minecraft.core.types.photos import PhotoStream, SparseScene
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.geometry.unprojection import project
 
-LEAST_SIDE_PX = 16  # So that windows lie in it.
+MIN_SIDE_PX = 16  # So that windows lie in it.
 
 
 @dataclass(frozen=True, eq=False)
-class SmallPhoto:
+class StereoPhoto:
     """A photo of ``width_px`` without distortion, its pose, and what is known of its depths.
 
     ``guide_px`` float64 [G, 2] and ``guide_m`` float64 [G] are the sparse points that were seen in
@@ -37,20 +37,22 @@ class SmallPhoto:
         return self.colour.max(axis=2).astype(np.float32) - np.float32(128)
 
 
-def small_photos(
+def prepare_stereo_photos(
     photos: PhotoStream, scene: SparseScene, width_px: int, progress: Progress
-) -> list[SmallPhoto]:
+) -> list[StereoPhoto]:
     """Return the photos of a scene in its order, made small one after the other.
 
     Raises:
         CaptureError: a photo of the scene is missing, or is of another size than its camera.
     """
     order = {name: frame for frame, name in enumerate(scene.names)}
-    found: dict[str, SmallPhoto] = {}
+    found: dict[str, StereoPhoto] = {}
     for photo in photos:
         if photo.name not in order or photo.name in found:
             continue
-        found[photo.name] = _small(photo.name, photo.colour, scene, order[photo.name], width_px)
+        found[photo.name] = _prepare_photo(
+            photo.name, photo.colour, scene, order[photo.name], width_px
+        )
         progress("shrink", len(found), len(order), photo.name)
     missing = [name for name in scene.names if name not in found]
     if missing:
@@ -58,7 +60,7 @@ def small_photos(
     return [found[name] for name in scene.names]
 
 
-def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> SmallPhoto:
+def _prepare_photo(name, colour, scene: SparseScene, frame: int, width_px: int) -> StereoPhoto:
     camera, pose = scene.cameras[frame], scene.camera_to_scan[frame]
     if colour.shape[:2] != (camera.height_px, camera.width_px):
         raise CaptureError(
@@ -67,22 +69,22 @@ def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> Small
             f"but its camera is {camera.width_px}x{camera.height_px}",
         )
     target = pinhole_camera(camera, min(width_px, camera.width_px))
-    if min(target.width_px, target.height_px) < LEAST_SIDE_PX:
+    if min(target.width_px, target.height_px) < MIN_SIDE_PX:
         raise CaptureError(
-            name, f"the photo must have sides of {LEAST_SIDE_PX} pixels or more: give larger ones"
+            name, f"the photo must have sides of {MIN_SIDE_PX} pixels or more: give larger ones"
         )
     seen = np.unique(scene.track_point[scene.track_frame == frame])
-    points_m = _in_camera(scene.points_m[seen], pose)
+    points_m = _to_camera(scene.points_m[seen], pose)
     ahead = points_m[:, 2] > 0
     points_m, seen = points_m[ahead], seen[ahead]
     at_px = project(points_m, target)
     inside = ((at_px >= 0) & (at_px < (target.width_px, target.height_px))).all(axis=1)
-    return SmallPhoto(
+    return StereoPhoto(
         name, target, pose, undistort_image(colour, camera, target),
         at_px[inside], points_m[inside, 2], seen[inside],
     )  # fmt: skip
 
 
-def _in_camera(points_m: np.ndarray, camera_to_scan: np.ndarray) -> np.ndarray:
+def _to_camera(points_m: np.ndarray, camera_to_scan: np.ndarray) -> np.ndarray:
     scan_to_camera = invert_rigid(camera_to_scan)
     return points_m.astype(np.float64) @ scan_to_camera[:3, :3].T + scan_to_camera[:3, 3]

@@ -90,11 +90,11 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.minecraftocc.building import build_dataset
-    from world2minecraft.minecraftocc.engine import opened_engine
+    from world2minecraft.minecraftocc.engine import open_engine
 
     compiling_note()
     processes = usable_cores() if jobs is None else jobs
-    with opened_engine(engine, processes) as workers, shown() as progress:
+    with open_engine(engine, processes) as workers, shown() as progress:
         report = build_dataset(folder, plan, workers, progress)
     _say(folder, report)
 

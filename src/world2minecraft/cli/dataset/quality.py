@@ -65,18 +65,18 @@ def run(
     from world2minecraft.evaluation.metrics.image_quality import niqe_model
     from world2minecraft.evaluation.metrics.image_quality.niqe import available_variants
     from world2minecraft.minecraftocc.image_quality import (
-        choose,
         measure_quality,
-        pictures_at,
+        open_pictures,
+        parse_size,
         quality_json,
         quality_text,
-        size_of,
+        sample_keys,
     )
 
-    size = size_of(resize)
+    size = parse_size(resize)
     models = [niqe_model(name) for name in variant or available_variants()]
-    source = pictures_at(path)
-    keys = choose(source.keys, sample, seed, source.is_picture)
+    source = open_pictures(path)
+    keys = sample_keys(source.keys, sample, seed, source.is_picture)
     with shown() as progress:
         report = measure_quality(source.name, keys, source.read, models, size, progress=progress)
     print(quality_text(report))

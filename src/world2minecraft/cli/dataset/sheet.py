@@ -88,7 +88,7 @@ def _of_data(
 ) -> "Iterable[tuple[np.ndarray, str]]":
     from world2minecraft.core.errors import InputError
     from world2minecraft.minecraftocc.store import open_store
-    from world2minecraft.minecraftocc.visualization import labelled_picture
+    from world2minecraft.minecraftocc.visualization import overlay_labels
 
     store = open_store(folder)
     keys = store.keys(split or None)
@@ -99,7 +99,7 @@ def _of_data(
         elif not labels:
             raise InputError(folder, "has labels alone, no pictures; add --labels to see those")
         if labels:
-            yield labelled_picture(sample), f"{keys[number]} labels"
+            yield overlay_labels(sample), f"{keys[number]} labels"
 
 
 def _of_tour(

@@ -33,17 +33,17 @@ def run(
     """
     from world2minecraft.core.files import write_bytes
     from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.minecraftocc.visualization import sample_picture, seen_in_cells
+    from world2minecraft.minecraftocc.visualization import draw_sample, share_of_depth_in_cells
     from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)
     print(f"{source}: {found.described()}")
     sample = found[key or found.keys()[0]]
-    share = seen_in_cells(sample)
+    share = share_of_depth_in_cells(sample)
     if share is not None:
         print(f"{share:.1%} of the depth within the region lies in labelled cells")
     path = picture or Path(f"{sample.key}.png")
-    write_bytes(path, colour_bytes(sample_picture(sample), ".png"))
+    write_bytes(path, colour_bytes(draw_sample(sample), ".png"))
     print(f"picture: {path}")
     more = found.keys()[1:2]
     print(f"next: w2m dataset show {source} {more[0]}" if more and key is None else

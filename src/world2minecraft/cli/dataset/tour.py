@@ -135,13 +135,13 @@ def _write_recorded(
     out: Path,
 ) -> None:
     from world2minecraft.minecraftocc.screenshots import read_screenshots
-    from world2minecraft.minecraftocc.tours.pose_files import write_recorded
+    from world2minecraft.minecraftocc.tours.pose_files import write_recorded_views
 
     told = said_at(at)
     views = read_screenshots(
         folder, at=told, poses=poses, pattern=pattern, vertical_fov_deg=fov_deg or GAME_FOV_DEG
     )
-    write_recorded(out, views, source.volume().block_to_room, source.scene_id)
+    write_recorded_views(out, views, source.volume().block_to_room, source.scene_id)
     kinds = Counter(view.told_by for view in views)
     by = ", ".join(f"{number} by {kind}" for kind, number in kinds.items())
     print(f"{out}: {len(views)} screenshots ({by}), x, y, z taken as that of the {at}")

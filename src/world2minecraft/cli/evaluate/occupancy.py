@@ -136,28 +136,28 @@ class _Asked:
         return protocol_scores(frames, voxel_m, self.protocols, seed=self.seed)
 
     def _rows(self, frames: Any) -> list[int]:
-        from world2minecraft.networks.data.splits import evenly
+        from world2minecraft.networks.data.splits import take_evenly
 
         of = self.found.splits
         rows = [n for n, key in enumerate(frames.keys) if self.split in (None, of[key])]
-        return evenly(rows, self.limit or len(rows))
+        return take_evenly(rows, self.limit or len(rows))
 
     def _frames(self, grid: Any, size: tuple[int, int], progress: "Progress") -> Any:
         from world2minecraft.networks.data.frames import FrameRule
-        from world2minecraft.networks.data.run_data import CachePlace, open_frames
+        from world2minecraft.networks.data.run_data import CacheLocation, open_frames
 
-        place = CachePlace.named(self.cache)
+        place = CacheLocation.named(self.cache)
         return open_frames(self.found, FrameRule(grid, *size), place, progress)
 
     def _of_onnx(self, progress: "Progress") -> dict[str, Any]:
         from world2minecraft.networks.config import Grid
-        from world2minecraft.networks.scoring import said_by_onnx
+        from world2minecraft.networks.scoring import onnx_predictions
         from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork
 
         facts = OccupancyNetwork(self.said).facts
         grid = Grid(facts.grid_shape, facts.voxel_m)
         frames = self._frames(grid, facts.image_size_px, progress)
-        said = said_by_onnx(self.said, frames, self._rows(frames), progress)
+        said = onnx_predictions(self.said, frames, self._rows(frames), progress)
         return self._scored(said, grid.voxel_m)
 
     def _of_weights(self, progress: "Progress") -> dict[str, Any]:
@@ -165,20 +165,20 @@ class _Asked:
 
         check_extra()
         from world2minecraft.networks.callbacks import WEIGHTS
-        from world2minecraft.networks.checkpoints import load_weights, weights_config
-        from world2minecraft.networks.scoring import said_by_network
-        from world2minecraft.networks.training import network_of
-        from world2minecraft.networks.validation import device_named, said_labels
+        from world2minecraft.networks.checkpoints import load_weights, read_weights_config
+        from world2minecraft.networks.scoring import network_predictions
+        from world2minecraft.networks.training import build_network
+        from world2minecraft.networks.validation import predict_labels, resolve_device
 
         path = self.said / WEIGHTS if self.said.is_dir() else self.said
-        config = weights_config(path)
-        network = network_of(config)
+        config = read_weights_config(path)
+        network = build_network(config)
         load_weights(path, network)
-        network.to(device_named(self.device))
+        network.to(resolve_device(self.device))
         frames = self._frames(config.cells, config.image, progress)
         rows = self._rows(frames)
-        said = said_labels(network, frames, rows, config, progress=progress)
-        scores = self._scored(said_by_network(frames, rows, said), config.cells.voxel_m)
+        said = predict_labels(network, frames, rows, config, progress=progress)
+        scores = self._scored(network_predictions(frames, rows, said), config.cells.voxel_m)
         if not self.protocols or "embodied" in self.protocols:
             from world2minecraft.networks.scene_memory import add_memory_scores
 
@@ -188,17 +188,17 @@ class _Asked:
         return scores
 
     def _of_files(self, progress: "Progress") -> dict[str, Any]:
-        from world2minecraft.networks.data.splits import evenly
-        from world2minecraft.networks.saved_predictions import SavedPredictions, grid_like
-        from world2minecraft.networks.scoring import keys_to_score, said_by_files
+        from world2minecraft.networks.data.splits import take_evenly
+        from world2minecraft.networks.saved_predictions import SavedPredictions, grid_of_labels
+        from world2minecraft.networks.scoring import file_predictions, keys_to_score
 
         saved = SavedPredictions(self.said, self.order, self.classes)
         if (of_scenes := self._of_scenes(saved, progress)) is not None:
             return of_scenes
         keys = keys_to_score(saved, self.found, self.split)
-        keys = [keys[n] for n in evenly(list(range(len(keys))), self.limit or len(keys))]
-        grid = grid_like(saved.labels(keys[0]), self.said)
-        return self._scored(said_by_files(saved, self.found, keys, progress), grid.voxel_m)
+        keys = [keys[n] for n in take_evenly(list(range(len(keys))), self.limit or len(keys))]
+        grid = grid_of_labels(saved.labels(keys[0]), self.said)
+        return self._scored(file_predictions(saved, self.found, keys, progress), grid.voxel_m)
 
     def _of_scenes(self, saved: Any, progress: "Progress") -> dict[str, Any] | None:
         """Return scores of grids of whole scenes; None where none of the files is a scene's."""

@@ -114,8 +114,8 @@ class Look:
 
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
-        from world2minecraft.rendering.light_parameters import BACKDROP
         from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+        from world2minecraft.rendering.shading_parameters import BACKDROP
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above one sees no sky; a build stands out best on paper, but not at night.

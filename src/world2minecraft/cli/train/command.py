@@ -58,12 +58,12 @@ def run(
         changes["image"] = options.image_size(image)
     chosen = options.chosen_run(network, data or [], config, preset, changes)
     options.check_extra()
-    from world2minecraft.networks.data.run_data import CachePlace
+    from world2minecraft.networks.data.run_data import CacheLocation
     from world2minecraft.networks.training import score_run, train_run
 
     with shown() as progress:
         trained = train_run(
-            chosen, out, device=device, cache=CachePlace.named(cache), progress=progress
+            chosen, out, device=device, cache=CacheLocation.named(cache), progress=progress
         )
         scores = score_run(trained, chosen, device, progress)
     for line in trained.data.described:

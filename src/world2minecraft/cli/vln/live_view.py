@@ -24,23 +24,23 @@ class LinesLive:
     def __init__(self, stream: TextIO):
         self._stream = stream
 
-    def began(self, episode: "Episode", agent: str) -> None:
+    def on_begin(self, episode: "Episode", agent: str) -> None:
         """Say what is to be done."""
         self._say(f"{agent}: {episode.instruction.text}")
 
-    def decided(
+    def on_decision(
         self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
         """Say what was decided."""
         thought = f"   {decision.thought}" if decision.thought else ""
         self._say(f"  {sight.step:>4}  {told_moves(decision, made)}{thought}")
 
-    def stood(
+    def on_stance(
         self, stance: "Stance", step: int, decision: "Decision | None", move: "Move | None"
     ) -> None:
         """Say nothing: decisions tell it."""
 
-    def ended(self, walk: "EpisodeWalk") -> None:
+    def on_end(self, walk: "EpisodeWalk") -> None:
         """Say how it went."""
         from world2minecraft.navigation.running.film import end_text
 
@@ -59,12 +59,12 @@ class ScreenLive(LinesLive):
         self._head, self._foot = "", ""
         self._view: Any = None
 
-    def began(self, episode: "Episode", agent: str) -> None:
+    def on_begin(self, episode: "Episode", agent: str) -> None:
         """Begin with an empty table."""
         self._head, self._foot, self._rows = f"{agent}: {episode.instruction.text}", "", []
         self._draw()
 
-    def decided(
+    def on_decision(
         self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
         """Show the view and add a row."""
@@ -74,7 +74,7 @@ class ScreenLive(LinesLive):
         self._rows = [*self._rows, row][-ROWS_KEPT:]
         self._draw()
 
-    def ended(self, walk: "EpisodeWalk") -> None:
+    def on_end(self, walk: "EpisodeWalk") -> None:
         """Show how it went."""
         from world2minecraft.navigation.running.film import end_text
 
@@ -131,7 +131,7 @@ def told_moves(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str
     from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 
     if decision.outcome != "moves":
-        return f"{decision.outcome.upper()}: {decision.told.get('problem', '')}"
+        return f"{decision.outcome.upper()}: {decision.details.get('problem', '')}"
     words = [MOVE_NAMES[move] + (" (blocked)" if collided else "") for move, collided in made]
     return " ".join(words)
 

@@ -18,20 +18,20 @@ FLOOR_STANDS_M = 0.3  # The same of furniture that always stands on a floor.
 LIES_M = 0.2  # How far a thing's bottom may be from the top of what carries it.
 AT_WALL_M = 0.17  # A side this near to a wall's cells stood at the wall: two cells of 8 cm.
 AT_WALL_SHARE = 0.3  # Of a side that has a wall behind it.
-MOST_BLOCKS = 1.25  # A wall's blocks stand off its plane by less; more would be another wall.
+MAX_BLOCKS = 1.25  # A wall's blocks stand off its plane by less; more would be another wall.
 SUNK_COST = 8.0  # Blocks of way that a thing goes rather than lie wholly in a wall.
 WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 _EDGE = 1e-6
 
 
-class Settled(NamedTuple):
+class Alignment(NamedTuple):
     """An object in its place: where it was in the room, and where it went."""
 
     before: Frame
     after: Frame
 
 
-class Settler:
+class BlockAligner:
     """Finds the place of each object of a room whose shell stands."""
 
     def __init__(self, canvas: Canvas, grid: OccupancyGrid):
@@ -39,7 +39,7 @@ class Settler:
         self.solid = (canvas.states > 0) & ~canvas.mask_of(*UNSEEN_BLOCKS)
         self.grid = grid
         self.walls = np.isin(grid.labels, WALLS)
-        self.placed: list[Settled] = []
+        self.placed: list[Alignment] = []
 
     def settle(self, frame: Frame, mount: str, carried: bool) -> Frame:
         """Return a frame moved to its place, and remember it for what lies on it.
@@ -58,7 +58,7 @@ class Settler:
         else:
             moved = moved.moved(self._to_walls(moved))
         moved = moved.moved(self._out_of_walls(moved))
-        self.placed.append(Settled(frame, moved))
+        self.placed.append(Alignment(frame, moved))
         return moved
 
     def _rise(self, frame: Frame, mount: str) -> float:
@@ -78,12 +78,12 @@ class Settler:
         x, y, top = self.lattice.coordinates_of(top_m)
         column = np.clip([int(x), int(y)], 0, np.array(self.lattice.shape[:2]) - 1)
         layers = np.flatnonzero(self.solid[column[0], column[1]])
-        layers = layers[np.abs(layers - top) <= MOST_BLOCKS]
+        layers = layers[np.abs(layers - top) <= MAX_BLOCKS]
         if not len(layers):
             return 0.0
         return float(layers.min() - top) / self.lattice.blocks_per_metre
 
-    def _host_of(self, frame: Frame) -> Settled | None:
+    def _host_of(self, frame: Frame) -> Alignment | None:
         """Return the highest object under the middle of a frame on which it lies."""
         best = None
         for one in self.placed:
@@ -131,7 +131,7 @@ class Settler:
                 else int(np.floor(face + _EDGE)) - 1 - step
             )
             gap = layer - face if side > 0 else layer + 1 - face
-            if not 0 <= layer < self.solid.shape[axis] or abs(gap) > MOST_BLOCKS:
+            if not 0 <= layer < self.solid.shape[axis] or abs(gap) > MAX_BLOCKS:
                 return 0.0
             window = [slice(*_whole(low[n], high[n], self.solid.shape[n])) for n in range(3)]
             window[axis] = slice(layer, layer + 1)
@@ -182,7 +182,7 @@ def _ways(low: float, high: float) -> list[float]:
     """Return ways along an axis that bring a side to an edge of blocks, and none."""
     up, down = np.ceil(low - _EDGE) - low, np.floor(high + _EDGE) - high
     ways = [0.0, float(up), float(up) + 1, float(down), float(down) - 1]
-    return sorted({round(way, 9) for way in ways if abs(way) <= MOST_BLOCKS})
+    return sorted({round(way, 9) for way in ways if abs(way) <= MAX_BLOCKS})
 
 
 def _whole(low: float, high: float, count: int) -> tuple[int, int]:

@@ -17,7 +17,7 @@ from world2minecraft.furniture import Part
 from world2minecraft.geometry.box_decomposition import cover_boxes, partition_boxes, simplify_boxes
 from world2minecraft.minecraft.entities import block_display
 
-LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
+MIN_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
 FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
 SAME_M = 1e-6  # Planes nearer than this are one.
 # Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
@@ -26,7 +26,7 @@ INSET_BLOCKS = 0.0005
 Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-class Piece(NamedTuple):
+class DisplayBox(NamedTuple):
     """One box of an object: x0 y0 z0 x1 y1 z1 in metres of its own frame, and its block."""
 
     box_m: np.ndarray  # float64 [6]
@@ -67,7 +67,7 @@ class Frame:
         return replace(self, base_m=self.base_m + shift_m)
 
 
-def boxes_in_room(pieces: Sequence[Piece], frame: Frame) -> tuple[np.ndarray, np.ndarray]:
+def boxes_in_room(pieces: Sequence[DisplayBox], frame: Frame) -> tuple[np.ndarray, np.ndarray]:
     """Return the middles and the half sides, float64 [N, 3] both, of pieces.
 
     The middles are in the room; the half sides are along the object's own axes.
@@ -77,8 +77,8 @@ def boxes_in_room(pieces: Sequence[Piece], frame: Frame) -> tuple[np.ndarray, np
     return middles, (boxes[:, 1] - boxes[:, 0]) / 2
 
 
-def entities_of(
-    pieces: Sequence[Piece],
+def display_entities(
+    pieces: Sequence[DisplayBox],
     frame: Frame,
     corner_m: np.ndarray,
     blocks_per_metre: float,
@@ -125,15 +125,15 @@ def entities_of(
     return result
 
 
-def pieces_of(
+def template_boxes(
     parts: Sequence[Part], states: Sequence[str], most: int, blocks_per_metre: float
-) -> list[Piece]:
+) -> list[DisplayBox]:
     """Return few pieces that show parts, exactly where that takes at most ``most``.
 
     Args:
         parts: the boxes of a template in its own frame.
         states: the block of each part.
-        most: over so many pieces the shape is made coarser, to an IoU of ``LEAST_IOU``.
+        most: over so many pieces the shape is made coarser, to an IoU of ``MIN_IOU``.
         blocks_per_metre: the scale, by which pieces that overlap are kept apart.
     """
     names = sorted(set(states))
@@ -153,7 +153,7 @@ def pieces_of(
         box = np.array(corners, np.float64)
         # Nothing thinner than the inset is turned inside out by it.
         step = min(back, float((box[3:] - box[:3]).min()) / 4)
-        pieces.append(Piece(box + np.repeat([step, -step], 3), names[label - 1]))
+        pieces.append(DisplayBox(box + np.repeat([step, -step], 3), names[label - 1]))
     return pieces
 
 
@@ -208,7 +208,7 @@ def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, 
         middles = (edges[:-1] + edges[1:]) / 2
         picks.append(np.clip(np.searchsorted(each, middles) - 1, 0, len(each) - 2))
         fine.append(edges)
-    fewer = simplify_boxes(labels[np.ix_(*picks)], LEAST_IOU, enough=most)
+    fewer = simplify_boxes(labels[np.ix_(*picks)], MIN_IOU, enough=most)
     return fewer, (fine[0], fine[1], fine[2])
 
 
@@ -223,14 +223,14 @@ def _depths(boxes: np.ndarray) -> np.ndarray:
     return depths
 
 
-def heap_pieces(
+def voxel_boxes(
     labels: np.ndarray,
     open_cells: np.ndarray,
     names: Sequence[str],
     low_m: np.ndarray,
     cell_m: float,
-) -> list[Piece]:
-    """Return the pieces of an object's own cells, made coarser to an IoU of ``LEAST_IOU``.
+) -> list[DisplayBox]:
+    """Return the pieces of an object's own cells, made coarser to an IoU of ``MIN_IOU``.
 
     Args:
         labels: int [X, Y, Z], 0 where there is nothing, else 1 and more: which of ``names``.
@@ -239,12 +239,12 @@ def heap_pieces(
         low_m: float64 [3], the corner of cell (0, 0, 0) in the object's frame.
         cell_m: the side of a cell.
     """
-    boxes = simplify_boxes(labels, LEAST_IOU, open_cells)
+    boxes = simplify_boxes(labels, MIN_IOU, open_cells)
     exact = partition_boxes(labels)
     if len(exact) <= len(boxes):
         boxes = exact
     corners = np.tile(low_m, 2) + boxes[:, 1:] * cell_m
     return [
-        Piece(box, str(names[int(label) - 1]))
+        DisplayBox(box, str(names[int(label) - 1]))
         for label, box in zip(boxes[:, 0].tolist(), corners, strict=True)
     ]

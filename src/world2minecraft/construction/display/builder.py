@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.construction.canvas import UNSEEN_BLOCKS, Canvas
-from world2minecraft.construction.display.block_alignment import Settler
+from world2minecraft.construction.display.block_alignment import BlockAligner
 from world2minecraft.construction.display.boxes import (
+    DisplayBox,
     Frame,
-    Piece,
-    entities_of,
-    heap_pieces,
-    pieces_of,
+    display_entities,
+    template_boxes,
+    voxel_boxes,
 )
 from world2minecraft.construction.display.colliders import put_colliders
 from world2minecraft.construction.display.part_materials import (
@@ -29,9 +29,14 @@ from world2minecraft.construction.display.worktops import (
 )
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import chair_paints, painted
-from world2minecraft.construction.template_blocks import LAST, in_order
-from world2minecraft.construction.worktops import Worktop, find_worktop, joined, top_cells
+from world2minecraft.construction.surface_painting import chair_paints, paint_surface
+from world2minecraft.construction.template_blocks import LATE_RANKS, placement_order
+from world2minecraft.construction.worktops import (
+    Worktop,
+    find_worktop,
+    join_worktops,
+    missing_top_cells,
+)
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
@@ -42,10 +47,10 @@ from world2minecraft.geometry.morphology import dilate_faces
 from world2minecraft.minecraft.entities import VIEW_BLOCKS
 from world2minecraft.minecraft.visual_shapes import is_luminous
 
-MOST_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
+MAX_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
 # Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
-MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
-MOST_PIECES_ELSE, MOST_PIECES_ROUND = 8, 24
+MAX_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
+MAX_PIECES_ELSE, MAX_PIECES_ROUND = 8, 24
 ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
 LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
 FREE_SHARE = 0.5  # Cells: how finely a template is asked whether it stands in free space.
@@ -60,7 +65,7 @@ def frame_of_cells(cells: np.ndarray, grid: OccupancyGrid) -> Frame:
     return Frame(low + size * [0.5, 0.5, 0.0], size, 0.0)
 
 
-def pieces_of_cells(
+def boxes_of_cells(
     cells: np.ndarray,
     colours: np.ndarray,
     known: np.ndarray,
@@ -68,7 +73,7 @@ def pieces_of_cells(
     class_id: int,
     palette: Palette,
     parameters: BuildParameters,
-) -> list[Piece]:
+) -> list[DisplayBox]:
     """Return the pieces of an object's own cells in the frame of ``frame_of_cells``.
 
     Args:
@@ -88,8 +93,10 @@ def pieces_of_cells(
     tinted[at] = colours
     has_colour = np.zeros(mask.shape, bool)
     has_colour[at] = known
-    most = min(MOST_COLOURS, parameters.object_colours)
-    states = painted(mask, tinted, has_colour, class_id, palette, parameters, most).astype(str)
+    most = min(MAX_COLOURS, parameters.object_colours)
+    states = paint_surface(mask, tinted, has_colour, class_id, palette, parameters, most).astype(
+        str
+    )
     names, index = np.unique(states, return_inverse=True)
     labels = np.zeros(mask.shape, np.int32)
     labels[mask] = index + 1
@@ -97,7 +104,7 @@ def pieces_of_cells(
     unseen = np.asarray(grid.source[box] == UNSEEN) & ~mask
     size = (high - low) * grid.voxel_m
     low_m = np.array([-size[0] / 2, -size[1] / 2, 0.0])
-    return heap_pieces(labels, unseen & _between(mask), names.tolist(), low_m, grid.voxel_m)
+    return voxel_boxes(labels, unseen & _between(mask), names.tolist(), low_m, grid.voxel_m)
 
 
 def _between(mask: np.ndarray) -> np.ndarray:
@@ -110,7 +117,7 @@ def _between(mask: np.ndarray) -> np.ndarray:
     return np.asarray(count >= 2)
 
 
-def without_specks(cells: np.ndarray, least: int) -> np.ndarray:
+def remove_small_parts(cells: np.ndarray, least: int) -> np.ndarray:
     """Return cells, int [N, 3], without those whose connected part has fewer than ``least``."""
     if not len(cells):
         return cells
@@ -124,11 +131,11 @@ def without_specks(cells: np.ndarray, least: int) -> np.ndarray:
     return kept if len(kept) else cells
 
 
-def most_pieces(found: Template) -> int:
+def max_boxes(found: Template) -> int:
     """Return over how many pieces a template is made coarser."""
     if "round" in f"{found.name} {found.family}":
-        return MOST_PIECES_ROUND
-    return MOST_PIECES.get(found.class_id, MOST_PIECES_ELSE)
+        return MAX_PIECES_ROUND
+    return MAX_PIECES.get(found.class_id, MAX_PIECES_ELSE)
 
 
 class DisplayBuilder:
@@ -151,7 +158,7 @@ class DisplayBuilder:
         self.exposed = coloured & dilate_faces(free)
         self.paints = chair_paints(grid, colours, self.exposed, parameters.lightness_weight)
         self.instances = {one.id: one for one in instances}
-        self.settler = Settler(canvas, grid)
+        self.settler = BlockAligner(canvas, grid)
         self.shown = np.zeros(grid.shape, bool)
         self.plated = np.zeros(grid.shape[:2], bool)  # Columns under a counter's own plate.
         self.tops = self._worktops() if parameters.close_tops else {}
@@ -163,7 +170,7 @@ class DisplayBuilder:
         """Set every placement, then the cells of objects that none of them shows."""
         counts = Counter(one.object_id for one in placements)
         placements = [deepened(as_counter(one, self.tops), self.grid) for one in placements]
-        for placement in sorted(placements, key=in_order):
+        for placement in sorted(placements, key=placement_order):
             cells = own_cells(
                 replace(placement, size_m=placement.size_m + 2 * self.grid.voxel_m), self.grid
             )
@@ -194,7 +201,7 @@ class DisplayBuilder:
             top = find_worktop(self.grid, cells, self.colours, self.coloured, lattice)
             if top is not None:
                 found[number] = top
-        return joined(found)
+        return join_worktops(found)
 
     def put_template(
         self,
@@ -214,7 +221,7 @@ class DisplayBuilder:
             self.plated[first[0] : int(last[0]), first[1] : int(last[1])] = True
         states = states_of_parts(found, parts, colours, self.palette, self.parameters)
         scale = self.canvas.lattice.blocks_per_metre
-        pieces = pieces_of(parts, states, most_pieces(found), scale)
+        pieces = template_boxes(parts, states, max_boxes(found), scale)
         self._put(pieces, frame, placement.class_id, placement.object_id, found.mount)
 
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
@@ -223,29 +230,29 @@ class DisplayBuilder:
         if not len(cells):
             return
         self.shown[tuple(cells.T)] = True
-        cells = without_specks(cells, LEFT_CELLS)
+        cells = remove_small_parts(cells, LEFT_CELLS)
         tinted = cells
         if self.parameters.close_tops and class_id != SemanticClass.CHAIR:
-            added, alike = top_cells(self.grid, cells)
+            added, alike = missing_top_cells(self.grid, cells)
             cells, tinted = np.concatenate([cells, added]), np.concatenate([cells, alike])
         at = tuple(tinted.T)
         usable = self.exposed[at] if self.exposed[at].any() else self.coloured[at]
-        pieces = pieces_of_cells(
+        pieces = boxes_of_cells(
             cells, self.colours[at], usable, self.grid, class_id, self.palette, self.parameters
         )
         self._put(pieces, frame_of_cells(cells, self.grid), class_id, number, "any")
 
     def _put(
-        self, pieces: list[Piece], frame: Frame, class_id: int, number: int, mount: str
+        self, pieces: list[DisplayBox], frame: Frame, class_id: int, number: int, mount: str
     ) -> None:
         lattice = self.canvas.lattice
-        moved = self.settler.settle(frame, mount, class_id in LAST and mount != "floor")
+        moved = self.settler.settle(frame, mount, class_id in LATE_RANKS and mount != "floor")
         # Faces of two objects that lie in one plane would flicker.
         step = APART_BLOCKS * (self.set_count % APART_STEPS) / lattice.blocks_per_metre
         moved, self.set_count = moved.moved(np.full(3, step)), self.set_count + 1
         put_colliders(self.canvas, pieces, moved, class_id, number)
         dark = self._is_within_blocks(moved)
-        self.canvas.entities += entities_of(
+        self.canvas.entities += display_entities(
             pieces,
             moved,
             lattice.corner_m,

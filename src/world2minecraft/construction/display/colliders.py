@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.construction.canvas import BARRIER, LIGHT, Canvas
-from world2minecraft.construction.display.boxes import Frame, Piece, boxes_in_room
+from world2minecraft.construction.display.boxes import DisplayBox, Frame, boxes_in_room
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.minecraft.visual_shapes import is_luminous
 
@@ -19,7 +19,7 @@ FINE = 8  # Samples along the side of a block.
 COVERED = 0.25  # Share of a block's face, seen along its best axis; as objects from cells have it.
 FILLED = 0.06  # Share of a block's volume, under which its neighbour above or below stands for it.
 FLAT = 0.2  # Blocks: what lies on the floor and is lower, one walks over.
-MOST_SAMPLES = 1 << 24
+MAX_SAMPLES = 1 << 24
 MARK = "minecraft:light[level=0,waterlogged=false]"
 
 
@@ -32,7 +32,7 @@ class Cover(NamedTuple):
     height: np.ndarray  # float64 [X, Y, Z], how high in the block it reaches
 
 
-def cover_of(pieces: Sequence[Piece], frame: Frame, canvas: Canvas) -> Cover:
+def cover_of(pieces: Sequence[DisplayBox], frame: Frame, canvas: Canvas) -> Cover:
     """Return how much of each block the pieces of an object cover."""
     lattice = canvas.lattice
     middles_m, half_m = boxes_in_room(pieces, frame)
@@ -47,7 +47,7 @@ def cover_of(pieces: Sequence[Piece], frame: Frame, canvas: Canvas) -> Cover:
     if not size.all():
         empty = np.zeros(size)
         return Cover(low, empty, empty, empty)
-    fine = max(1, min(FINE, int((MOST_SAMPLES / size.prod()) ** (1 / 3))))
+    fine = max(1, min(FINE, int((MAX_SAMPLES / size.prod()) ** (1 / 3))))
     filled = np.zeros(size * fine, bool)
     for middle, sides, span in zip(middles, half, reach, strict=True):
         first = np.floor((middle - span - low) * fine).astype(int)
@@ -65,7 +65,7 @@ def cover_of(pieces: Sequence[Piece], frame: Frame, canvas: Canvas) -> Cover:
 
 
 def put_colliders(
-    canvas: Canvas, pieces: Sequence[Piece], frame: Frame, class_id: int, instance: int
+    canvas: Canvas, pieces: Sequence[DisplayBox], frame: Frame, class_id: int, instance: int
 ) -> int:
     """Set the colliders of an object where nothing stands; return how many are barriers."""
     cover = cover_of(pieces, frame, canvas)
@@ -108,7 +108,9 @@ def _is_flat(cover: Cover, canvas: Canvas) -> np.ndarray:
     return np.isin(layers, canvas.lattice.grounds) & (cover.height <= FLAT)
 
 
-def _glowing(pieces: Sequence[Piece], frame: Frame, canvas: Canvas, cover: Cover) -> np.ndarray:
+def _glowing(
+    pieces: Sequence[DisplayBox], frame: Frame, canvas: Canvas, cover: Cover
+) -> np.ndarray:
     """Return the blocks, bool [X, Y, Z], that hold a part which gives light."""
     result = np.zeros(cover.face.shape, bool)
     lit = [piece for piece in pieces if is_luminous(piece.state)]

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.construction.display.boxes import Frame
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import FADED, costs_of
+from world2minecraft.construction.surface_painting import FADED, colour_costs
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.furniture import Part, Template
 from world2minecraft.furniture.materials import FIXED, Material, swatches
@@ -19,7 +19,7 @@ from world2minecraft.minecraft.visual_shapes import is_luminous
 # block of all that its class may be of: so wood stays wood, and a red door turns red concrete.
 OWN_KIND = 0.12
 GLOWING = "minecraft:ochre_froglight[axis=y]"  # A warm white cube in the place of a small lantern.
-LEAST_CELLS = 3  # Fewer say nothing of a role's colour.
+MIN_CELLS = 3  # Fewer say nothing of a role's colour.
 SAME_ROLE = 0.07  # Oklab distance of two roles of one kind that are of one paint.
 BESIDE = 1.5  # Cells: how far from a part a cell may lie that colours it. Scans are that noisy.
 
@@ -101,7 +101,7 @@ def role_colours(
     roles = np.array([part.role for part in parts])[nearest]
     counts = {role: int(((roles == role) & near).sum()) for role in dict.fromkeys(roles.tolist())}
     for role in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[role] < LEAST_CELLS:
+        if counts[role] < MIN_CELLS:
             continue
         colour = np.median(colours[(roles == role) & near], axis=0)
         alike = (
@@ -120,7 +120,7 @@ def nearest_state(
 ) -> tuple[str, float]:
     """Return the block nearest to an Oklab colour, and how far it is."""
     none = np.zeros(len(choices))
-    costs = costs_of(colour[None], choices, parameters.lightness_weight, none, FADED)[0]
+    costs = colour_costs(colour[None], choices, parameters.lightness_weight, none, FADED)[0]
     best = int(costs.argmin())
     return choices[best], float(np.sqrt(costs[best]))
 

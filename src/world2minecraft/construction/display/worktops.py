@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.construction.display.block_alignment import WALLS
-from world2minecraft.construction.display.boxes import Frame, Piece
+from world2minecraft.construction.display.boxes import DisplayBox, Frame
 from world2minecraft.construction.worktops import Worktop
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
@@ -46,7 +46,7 @@ def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:
 
 def plate_pieces(
     top: Worktop, covered: np.ndarray, grid: OccupancyGrid, state: str
-) -> tuple[list[Piece], Frame] | None:
+) -> tuple[list[DisplayBox], Frame] | None:
     """Return the pieces of a worktop's plate and their frame; None where all of it is covered.
 
     Args:
@@ -65,7 +65,7 @@ def plate_pieces(
     for x0, y0, x1, y1 in boxes[:, [1, 2, 4, 5]].tolist():
         first = (np.array([x0, y0]) - low) * grid.voxel_m - size / 2
         last = (np.array([x1, y1]) - low) * grid.voxel_m - size / 2
-        pieces.append(Piece(np.array([*first, 0.0, *last, PLATE_M]), state))
+        pieces.append(DisplayBox(np.array([*first, 0.0, *last, PLATE_M]), state))
     return pieces, Frame(base, np.array([*size, PLATE_M]), 0.0)
 
 

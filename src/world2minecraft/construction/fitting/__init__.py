@@ -7,8 +7,8 @@ choose from a ``ShapeSet`` and give numbers of its shapes.
 from world2minecraft.construction.fitting.object_fitting import (
     Fit,
     PartsFit,
-    even_of,
-    fit_of,
+    evaluate_fit,
+    find_symmetry,
     fit_parts,
     fit_solid,
     solve,
@@ -17,13 +17,13 @@ from world2minecraft.construction.fitting.problem import (
     Problem,
     Rules,
     Target,
-    covered,
-    covered_blocks,
+    cover_blocks,
+    cover_cells,
     problem_of,
     thin_cells,
 )
 from world2minecraft.construction.fitting.shapes import CALM, Shape, ShapeSet, shape_set
-from world2minecraft.construction.fitting.stabilization import finished, without_loose
+from world2minecraft.construction.fitting.stabilization import remove_loose_blocks, stabilize
 
 __all__ = [
     "CALM",
@@ -45,5 +45,5 @@ __all__ = [
     "shape_set",
     "solve",
     "thin_cells",
-    "without_loose",
+    "remove_loose_blocks",
 ]

@@ -17,18 +17,18 @@ from world2minecraft.construction.fitting.problem import (
     Problem,
     Rules,
     Target,
-    covered_by_boxes,
+    cover_boxes,
     problem_at,
 )
 from world2minecraft.construction.fitting.selection import choose
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
-from world2minecraft.construction.fitting.stabilization import broken_share, finished
+from world2minecraft.construction.fitting.stabilization import broken_share, stabilize
 
 PHASE_STEP = 1  # Sub-cells: of 64 shifts the best is worth 0.03 of IoU more than of 16.
 FINALISTS = 6  # Phases that are solved with joints after all were tried without.
 EVEN = 0.85  # IoU with its mirror image from which an object is taken for symmetric.
-USUAL = Rules()
-MOST, LEAST = 1.25, 0.8
+DEFAULT_RULES = Rules()
+MAX_STRETCH, MIN_STRETCH = 1.25, 0.8
 TALLEST = 1.15  # A higher chair does not fit under its table.
 STRETCH_COST = 0.25  # IoU given up for a stretch by the factor e.
 JOINT_COST = 0.5  # IoU given up where no joint touches.
@@ -47,7 +47,7 @@ class Fit(NamedTuple):
     lam: float
 
 
-def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = USUAL) -> Fit:
+def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = DEFAULT_RULES) -> Fit:
     """Return the best stable shapes for a target, at the best of its shifts.
 
     Args:
@@ -56,13 +56,13 @@ def fit_solid(target: Target, shapes: ShapeSet, rules: Rules = USUAL) -> Fit:
         rules: how.
     """
     tried = sorted(
-        (-round(reached, 6), phase) for phase, reached in attempts(target, shapes, rules)
+        (-round(reached, 6), phase) for phase, reached in score_phases(target, shapes, rules)
     )
     fits = [solve(target, phase, shapes, rules) for _, phase in tried[:FINALISTS]]
     return max(fits, key=lambda one: round(one.iou, 6))
 
 
-def attempts(
+def score_phases(
     target: Target, shapes: ShapeSet, rules: Rules
 ) -> Iterator[tuple[tuple[int, int], float]]:
     """Yield each phase, in sub-cells along x and y, and the IoU that free choice reaches there."""
@@ -80,13 +80,15 @@ def _phases(rules: Rules) -> Iterator[tuple[int, int]]:
     yield from ((x, y) for x in along[0] for y in along[1])
 
 
-def solve(target: Target, phase: tuple[int, int], shapes: ShapeSet, rules: Rules = USUAL) -> Fit:
+def solve(
+    target: Target, phase: tuple[int, int], shapes: ShapeSet, rules: Rules = DEFAULT_RULES
+) -> Fit:
     """Return the fit of a target whose middle lies at a phase: sub-cells along x and y."""
     problem = problem_at(_averaged(target, rules.even), phase, shapes, rules.calm)
-    grid, lam = finished(problem, shapes, rules)
+    grid, lam = stabilize(problem, shapes, rules)
     if not grid.any():
         _put_best(grid, problem, shapes)
-    return fit_of(grid, problem, shapes, lam)
+    return evaluate_fit(grid, problem, shapes, lam)
 
 
 def _put_best(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
@@ -97,7 +99,7 @@ def _put_best(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
     grid[tuple(problem.cells[row])] = able[column]
 
 
-def even_of(target: Target) -> tuple[bool, bool]:
+def find_symmetry(target: Target) -> tuple[bool, bool]:
     """Return whether a target is nearly its own mirror image along x, and along y."""
     result = []
     for axis in (0, 1):
@@ -117,7 +119,7 @@ def _averaged(target: Target, even: tuple[bool, bool]) -> Target:
     return target
 
 
-def fit_of(grid: np.ndarray, problem: Problem, shapes: ShapeSet, lam: float) -> Fit:
+def evaluate_fit(grid: np.ndarray, problem: Problem, shapes: ShapeSet, lam: float) -> Fit:
     """Return shapes [X, Y, Z] with their scores, trimmed to the blocks that they fill."""
     masks = shapes.masks[grid[problem.at]]
     shared = float((masks * problem.wanted).sum(dtype=np.float64))
@@ -180,8 +182,8 @@ def fit_parts(
     for factors, phase in _finalists(boxes, thin, shapes, rules, counts, bottom):
         target = _target(boxes * np.tile(factors, 2), thin, bottom)
         problem = problem_at(target, phase, shapes)
-        grid, lam = finished(problem, shapes, rules)
-        fit = fit_of(grid, problem, shapes, lam)
+        grid, lam = stabilize(problem, shapes, rules)
+        fit = evaluate_fit(grid, problem, shapes, lam)
         score = fit.iou + THIN_WORTH * fit.thin_recall - _cost(factors, counts)
         score -= JOINT_COST * broken_share(grid, problem, shapes)
         if best is None or score > best[0] + SAME:
@@ -202,7 +204,7 @@ def _finalists(boxes, thin, shapes, rules, counts, bottom):
         for wide in product(*sides):
             factors = np.array([*wide, tall])
             target = _target(boxes * np.tile(factors, 2), thin, bottom)
-            for phase, reached in attempts(target, shapes, rules):
+            for phase, reached in score_phases(target, shapes, rules):
                 if counts is not None and phase != tuple(4 * (n % 2) for n in counts):
                     continue
                 tried.append((reached - _cost(factors, counts), factors, phase))
@@ -217,7 +219,9 @@ def _sides(size: float, count: int | None) -> list[float]:
         return [count / size]
     halves = max(round(2 * size), 1) / 2
     factor = halves / size
-    return [1.0, factor] if LEAST <= factor <= MOST and abs(factor - 1) > SAME else [1.0]
+    return (
+        [1.0, factor] if MIN_STRETCH <= factor <= MAX_STRETCH and abs(factor - 1) > SAME else [1.0]
+    )
 
 
 def _heights(boxes: np.ndarray, bottom: int) -> list[float]:
@@ -228,7 +232,7 @@ def _heights(boxes: np.ndarray, bottom: int) -> list[float]:
     for level in levels[levels > 0.25].tolist():
         for edge in (np.floor(level + start), np.ceil(level + start)):
             factor = (edge - start) / level
-            if LEAST <= factor <= TALLEST:
+            if MIN_STRETCH <= factor <= TALLEST:
                 factors.add(round(float(factor), 4))
     return sorted(factors, key=lambda one: abs(np.log(one)))[:HEIGHTS]
 
@@ -240,8 +244,8 @@ def _target(boxes: np.ndarray, thin: np.ndarray, bottom: int) -> Target:
     moved = boxes + np.tile([*(half / SUB), 0], 2)
     counts = [-(-side // SUB) for side in (*(2 * half), tall)]
     inside = tuple(slice(0, int(side)) for side in (*(2 * half), tall))
-    wanted = covered_by_boxes(moved, counts)[inside]
-    thick = covered_by_boxes(moved[~thin], counts)[inside]
+    wanted = cover_boxes(moved, counts)[inside]
+    thick = cover_boxes(moved[~thin], counts)[inside]
     return Target(wanted, np.maximum(wanted - thick, 0), bottom)
 
 
@@ -266,7 +270,7 @@ def _owners(boxes: np.ndarray, fit: Fit, shapes: ShapeSet, bottom: int) -> np.nd
     shape = fit.numbers.shape
     masks = shapes.masks[fit.numbers]
     for index, box in enumerate(moved, 1):
-        share = covered_by_boxes(box[None], shape)
+        share = cover_boxes(box[None], shape)
         cells = share.reshape(shape[0], SUB, shape[1], SUB, shape[2], SUB)
         held = cells.transpose(0, 2, 4, 1, 3, 5).reshape(*shape, -1)
         amount = (held * masks).sum(3) + 0.01 * held.sum(3)

@@ -7,18 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.construction.fitting.selection import Gains, gains_of
+from world2minecraft.construction.fitting.selection import Gains, compute_gains
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet
 
 THIN_M = 0.1  # Legs, plates and panels; what is thinner than this counts as thin.
 SNAP = 6  # Decimals of a sub-cell: 12.5 * 0.08 does not fall short of a whole block.
 THIN_WEIGHT = 2.0  # A thin sub-cell counts double: thin recall grows by half and more.
-LEAST_FLOW = 0.5  # Sub-cells of a face (of 64) from which the wanted runs through it.
+MIN_FLOW = 0.5  # Sub-cells of a face (of 64) from which the wanted runs through it.
 WAYS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
 UP, DOWN = 4, 5
 
 
-def covered_blocks(
+def cover_blocks(
     layers: Sequence[np.ndarray], edges: Sequence[np.ndarray], counts: Sequence[int]
 ) -> tuple[np.ndarray, list[np.ndarray]]:
     """Return the blocks that cells reach into, and how far each layer fills their sub-cells.
@@ -76,21 +76,23 @@ def _carried(values: np.ndarray, shares: Sequence[np.ndarray]) -> np.ndarray:
     return up.reshape(count, SUB**3)
 
 
-def covered(values: np.ndarray, edges: Sequence[np.ndarray], counts: Sequence[int]) -> np.ndarray:
+def cover_cells(
+    values: np.ndarray, edges: Sequence[np.ndarray], counts: Sequence[int]
+) -> np.ndarray:
     """Return the mean of cell values over every sub-cell of a box of blocks.
 
-    Args: as of ``covered_blocks``, with one layer.
+    Args: as of ``cover_blocks``, with one layer.
 
     Returns:
         float32 [8 * X', 8 * Y', 8 * Z'].
     """
-    cells, (shares,) = covered_blocks([values], edges, counts)
+    cells, (shares,) = cover_blocks([values], edges, counts)
     result = np.zeros((*counts, SUB**3), np.float32)
     result[tuple(cells.T)] = shares
-    return from_blocks(result)
+    return join_blocks(result)
 
 
-def covered_by_boxes(boxes: np.ndarray, counts: Sequence[int]) -> np.ndarray:
+def cover_boxes(boxes: np.ndarray, counts: Sequence[int]) -> np.ndarray:
     """Return the share of each sub-cell that boxes fill, float32 [8 * X, 8 * Y, 8 * Z].
 
     Args:
@@ -148,15 +150,15 @@ def _slid(values: np.ndarray, side: int, axis: int, joined: np.ufunc) -> np.ndar
     return result
 
 
-def as_blocks(cells: np.ndarray) -> np.ndarray:
+def split_into_blocks(cells: np.ndarray) -> np.ndarray:
     """Return sub-cells [8 X, 8 Y, 8 Z] as blocks of them, [X, Y, Z, 512]."""
     x, y, z = (side // SUB for side in cells.shape)
     split = cells.reshape(x, SUB, y, SUB, z, SUB).transpose(0, 2, 4, 1, 3, 5)
     return np.ascontiguousarray(split).reshape(x, y, z, SUB**3)
 
 
-def from_blocks(blocks: np.ndarray) -> np.ndarray:
-    """Undo ``as_blocks``."""
+def join_blocks(blocks: np.ndarray) -> np.ndarray:
+    """Undo ``split_into_blocks``."""
     x, y, z = blocks.shape[:3]
     split = blocks.reshape(x, y, z, SUB, SUB, SUB).transpose(0, 3, 1, 4, 2, 5)
     return np.ascontiguousarray(split).reshape(x * SUB, y * SUB, z * SUB)
@@ -234,7 +236,7 @@ class Problem:
             other = self.rows[tuple((self.cells + 1 + WAYS[2 * axis]).T)]
             here = np.flatnonzero(other >= 0)
             there = other[here]
-            runs = np.minimum(high[here], low[there]).sum((1, 2)) > LEAST_FLOW
+            runs = np.minimum(high[here], low[there]).sum((1, 2)) > MIN_FLOW
             result[2 * axis, here[runs]] = True
             result[2 * axis + 1, there[runs]] = True
         return result
@@ -262,7 +264,7 @@ def problem_of(
         middle: where the middle of the wanted lies, in blocks along x and y.
         floor: the sub-cell of the lowest layer at which the wanted begins.
     """
-    gains = gains_of(wanted, wanted + np.float32(THIN_WEIGHT - 1) * thin, shapes, calm)
+    gains = compute_gains(wanted, wanted + np.float32(THIN_WEIGHT - 1) * thin, shapes, calm)
     return Problem(shape, cells, wanted, thin, gains, np.array(middle), floor)
 
 
@@ -274,7 +276,7 @@ def problem_at(
     start = [(phase[axis] - half[axis]) % SUB for axis in (0, 1)]
     before = [*start, target.bottom]
     widths = [(n, -(n + side) % SUB) for n, side in zip(before, target.wanted.shape, strict=True)]
-    wanted, thin = (as_blocks(np.pad(values, widths)) for values in target[:2])
+    wanted, thin = (split_into_blocks(np.pad(values, widths)) for values in target[:2])
     used = wanted.any(3)
     x, y = ((start[axis] + half[axis]) / SUB for axis in (0, 1))
     blocks = (np.argwhere(used), wanted[used], thin[used], used.shape)

@@ -13,7 +13,7 @@ from world2minecraft.construction.fitting.shapes import ShapeSet
 
 ROUNDS = 8
 START = 0.4  # About what is reached at 2 blocks a metre; any start comes to the same end.
-SETTLED = 1e-4
+TOLERANCE = 1e-4
 
 
 class Gains(NamedTuple):
@@ -41,7 +41,7 @@ class Gains(NamedTuple):
         return shared / max(self.whole + float(self.spilt[rows, chosen].sum()), 1e-9)
 
 
-def gains_of(
+def compute_gains(
     wanted: np.ndarray, weighted: np.ndarray, shapes: ShapeSet, calm: float = 1.0
 ) -> Gains:
     """Return the gains of shapes.
@@ -85,7 +85,7 @@ def choose(
     value, chosen = START, best(START)
     for _ in range(ROUNDS):
         reached = short.iou(chosen)
-        if abs(reached - value) < SETTLED:
+        if abs(reached - value) < TOLERANCE:
             break
         value, chosen = reached, best(reached)
     return chosen, value

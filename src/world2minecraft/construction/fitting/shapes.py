@@ -38,7 +38,7 @@ CALM = frozenset(("full", "slab", "stairs", "trapdoor"))
 
 
 @lru_cache(maxsize=1 << 14)
-def solid_of(state: str) -> np.ndarray:
+def probe_state(state: str) -> np.ndarray:
     """Return which of ``PROBES``^3 cells of its block a state fills, bool, room axes, read-only.
 
     Raises:
@@ -55,30 +55,30 @@ def solid_of(state: str) -> np.ndarray:
 
 
 @lru_cache(maxsize=1 << 14)
-def mask_of(state: str) -> np.ndarray:
+def subcell_mask(state: str) -> np.ndarray:
     """Return the filled share of each sub-cell of a state, float32 [8, 8, 8], read-only.
 
     Example:
-        >>> float(mask_of("minecraft:oak_slab[type=bottom]").mean())
+        >>> float(subcell_mask("minecraft:oak_slab[type=bottom]").mean())
         0.5
-        >>> float(mask_of("minecraft:oak_slab[type=bottom]")[:, :, 0].mean())
+        >>> float(subcell_mask("minecraft:oak_slab[type=bottom]")[:, :, 0].mean())
         1.0
     """
     step = PROBES // SUB
-    mask = solid_of(state).reshape(SUB, step, SUB, step, SUB, step).mean((1, 3, 5))
+    mask = probe_state(state).reshape(SUB, step, SUB, step, SUB, step).mean((1, 3, 5))
     mask = mask.astype(np.float32)
     mask.flags.writeable = False
     return mask
 
 
 @lru_cache(maxsize=1 << 14)
-def faces_of(state: str) -> np.ndarray:
+def contact_faces(state: str) -> np.ndarray:
     """Return which parts of a block's faces a state touches, bool [3, 2, 8, 8], read-only.
 
     The first axis is the face's own (x, y, z), the second its low or high side; the others are
     the two remaining axes in order.
     """
-    solid, step = solid_of(state), PROBES // SUB
+    solid, step = probe_state(state), PROBES // SUB
     faces = np.zeros((3, 2, SUB, SUB), bool)
     for axis in range(3):
         for side in (0, 1):
@@ -125,13 +125,13 @@ def _shape_in(state: str, kind: str, keys: Sequence[str]) -> Shape:
     return Shape(kind, tuple((key, held[key]) for key in keys))
 
 
-def turned(shape: Shape, quarter_turns: int) -> Shape:
+def rotate_shape(shape: Shape, quarter_turns: int) -> Shape:
     """Return a shape turned counter-clockwise from above."""
     keys = [key for key, _ in shape.properties]
     return _shape_in(turn_state(shape.sample, quarter_turns), shape.kind, keys)
 
 
-def mirrored(shape: Shape, axis: Literal["x", "y"]) -> Shape:
+def mirror_shape(shape: Shape, axis: Literal["x", "y"]) -> Shape:
     """Return a shape mirrored along a room axis: ``y`` swaps north and south."""
     keys = [key for key, _ in shape.properties]
     along: Literal["x", "z"] = "x" if axis == "x" else "z"
@@ -158,7 +158,10 @@ class ShapeSet:
     @cached_property
     def masks(self) -> np.ndarray:
         """float32 [S, 512]: the filled share of each sub-cell."""
-        rows = [np.zeros(512, np.float32), *(mask_of(one.sample).ravel() for one in self.shapes)]
+        rows = [
+            np.zeros(512, np.float32),
+            *(subcell_mask(one.sample).ravel() for one in self.shapes),
+        ]
         return np.stack(rows)
 
     @cached_property
@@ -170,7 +173,7 @@ class ShapeSet:
     def faces(self) -> np.ndarray:
         """Bool [S, 3, 2, 8, 8]: which parts of its block's faces a shape touches."""
         none = np.zeros((3, 2, 8, 8), bool)
-        return np.stack([none, *(faces_of(one.sample) for one in self.shapes)])
+        return np.stack([none, *(contact_faces(one.sample) for one in self.shapes)])
 
     @cached_property
     def prices(self) -> np.ndarray:
@@ -185,14 +188,16 @@ class ShapeSet:
     @cached_property
     def turns(self) -> np.ndarray:
         """Intp [4, S]: the number of each shape after so many quarter turns."""
-        rows = [[0, *(self.number_of(turned(one, k)) for one in self.shapes)] for k in range(4)]
+        rows = [
+            [0, *(self.number_of(rotate_shape(one, k)) for one in self.shapes)] for k in range(4)
+        ]
         return np.array(rows, np.intp)
 
     @cached_property
     def mirrors(self) -> np.ndarray:
         """Intp [2, S]: the number of each shape mirrored along x, and along y."""
         rows = [
-            [0, *(self.number_of(mirrored(one, axis)) for one in self.shapes)]
+            [0, *(self.number_of(mirror_shape(one, axis)) for one in self.shapes)]
             for axis in ("x", "y")
         ]
         return np.array(rows, np.intp)

@@ -20,9 +20,9 @@ BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not
 LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
 STACKED = 30.0  # Stairs over stairs: an upright wall of them looks like a washboard.
 ROUNDS = 6
-LEAST_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
-LEAST_SPAN = 2  # Blocks from which a part stands on its corners; a narrower one has one post.
-MOST_POSTS = 4
+MIN_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
+MIN_SPAN = 2  # Blocks from which a part stands on its corners; a narrower one has one post.
+MAX_POSTS = 4
 STEPS = np.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)])  # East, north, west, south.
 JOINING = ("full", "stairs", "post")  # What a fence would reach out to.
 LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
@@ -31,7 +31,7 @@ CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left 
 
 
 @lru_cache(maxsize=16)
-def touching(shapes: ShapeSet) -> np.ndarray:
+def contact_table(shapes: ShapeSet) -> np.ndarray:
     """Return whether a shape touches another on one side of it, bool [6, S, S], ways as WAYS."""
     flat = shapes.faces.reshape(len(shapes), 3, 2, -1).astype(np.float32)
     rows = []
@@ -41,7 +41,7 @@ def touching(shapes: ShapeSet) -> np.ndarray:
     return np.stack(rows)
 
 
-def joined(
+def join_shapes(
     grid: np.ndarray, rows: np.ndarray, scores: np.ndarray, problem: Problem, shapes: ShapeSet
 ) -> np.ndarray:
     """Return shapes, int [X, Y, Z], changed so that neighbours touch where the wanted runs on.
@@ -55,7 +55,7 @@ def joined(
         problem: what is wanted.
         shapes: the set.
     """
-    contact = touching(shapes)[:, : shapes.free]
+    contact = contact_table(shapes)[:, : shapes.free]
     posts, stairs = shapes.kinds == "post", shapes.kinds == "stairs"
     padded = np.pad(grid, 1)
     places = tuple((problem.cells + 1).T)
@@ -83,7 +83,7 @@ def joined(
 
 def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
     """Return the share of the joints of the wanted at which shapes [X, Y, Z] do not touch."""
-    contact, padded = touching(shapes), np.pad(grid, 1)
+    contact, padded = contact_table(shapes), np.pad(grid, 1)
     held = broken = 0
     for way in (0, 2, 4):
         mine = problem.flows[way]
@@ -94,9 +94,9 @@ def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
     return broken / max(held, 1)
 
 
-def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
+def label_parts(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     """Return the part, int32 [X, Y, Z], of each block: blocks that touch by faces are one part."""
-    contact = touching(shapes)
+    contact = contact_table(shapes)
     # A board of blocks and, between them, the joints: labelled at twice the size.
     board = np.zeros([2 * side - 1 for side in grid.shape], bool)
     board[::2, ::2, ::2] = grid > 0
@@ -110,7 +110,7 @@ def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     return label_components(board, corners=False)[0][::2, ::2, ::2]
 
 
-def grounded(
+def find_supported_parts(
     grid: np.ndarray,
     parts: np.ndarray,
     shapes: ShapeSet,
@@ -122,7 +122,7 @@ def grounded(
 
     Args:
         grid: int [X, Y, Z], the shapes.
-        parts: int32 [X, Y, Z], as of ``parts_of_shapes``.
+        parts: int32 [X, Y, Z], as of ``label_parts``.
         shapes: the set.
         stands: whether a floor lies under the lowest layer.
         held: bool [X, Y, Z], the blocks with a wall or a ceiling beside them.
@@ -139,7 +139,7 @@ def grounded(
     return found
 
 
-def on_stilts(
+def add_supports(
     grid: np.ndarray,
     problem: Problem,
     scores: np.ndarray,
@@ -163,12 +163,12 @@ def on_stilts(
     if not len(posts):
         return grid
     result = grid.copy()
-    parts = parts_of_shapes(grid, shapes)
+    parts = label_parts(grid, shapes)
     volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
-    carried = grounded(grid, parts, shapes, True, held, problem.floor)
+    carried = find_supported_parts(grid, parts, shapes, True, held, problem.floor)
     filled = np.zeros(problem.shape, bool)
     filled[problem.at] = True
-    hovering = ~carried & (volumes >= LEAST_VOLUME)
+    hovering = ~carried & (volumes >= MIN_VOLUME)
     hovering[0] = False
     for number in np.flatnonzero(hovering):
         part = parts == number
@@ -211,11 +211,11 @@ def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[
         return []
     spots = np.array(ways)
     legs = [n for n, (x, y, top) in enumerate(ways) if filled[x, y, :top].all()]
-    if 0 < len(legs) <= MOST_POSTS:
+    if 0 < len(legs) <= MAX_POSTS:
         return [ways[n] for n in legs]
     among = np.array(legs or range(len(ways)))
     span = np.ptp(spots[among, :2], axis=0).max() + 1
-    if span < LEAST_SPAN:
+    if span < MIN_SPAN:
         apart = np.abs(spots[among, :2] - spots[:, :2].mean(0)).sum(1)
         return [ways[int(among[apart.argmin()])]]
     corners = {
@@ -242,7 +242,7 @@ def _touching_shape(
     able = np.asarray(shapes.faces[:, 2, side, core, core].any((1, 2)))
     padded, (x, y, z) = np.pad(grid, 1), (axis + 1 for axis in place)
     now = int(grid[place])
-    contact = touching(shapes)
+    contact = contact_table(shapes)
     for way, (i, j, k) in enumerate(WAYS.tolist()):
         other = int(padded[x + i, y + j, z + k])
         if contact[way][now, other]:
@@ -256,7 +256,7 @@ def _touching_shape(
     return best if row >= 0 and np.isfinite(gains[best]) else 0
 
 
-def with_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
+def make_stair_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     """Return shapes, int [X, Y, Z], with the stair corners that the game makes of neighbours.
 
     Stairs whose front neighbour is turned by a quarter become outer corners, those whose back
@@ -285,7 +285,7 @@ def with_corners(numbers: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     return result
 
 
-def settled(
+def choose_stable(
     gains: Gains,
     cells: np.ndarray,
     shape: tuple[int, ...],
@@ -314,7 +314,7 @@ def settled(
     at = tuple(cells.T)
     for _ in range(ROUNDS):
         grid[at] = chosen
-        grid = with_corners(grid, shapes)
+        grid = make_stair_corners(grid, shapes)
         made = grid[at]
         bent = (made != chosen) & is_stairs[chosen]
         plain = np.where(shut | guarded | is_stairs, -np.inf, scores)
@@ -363,7 +363,7 @@ def _add_carpets(grid, cells, scores, shapes, shut, ground) -> None:
                 grid[x, y, z] = number
 
 
-def finished(
+def stabilize(
     problem: Problem, shapes: ShapeSet, rules: Rules, held: np.ndarray | None = None
 ) -> tuple[np.ndarray, float]:
     """Return the shape of each block, intp [X, Y, Z], and the lam that chose it.
@@ -376,10 +376,10 @@ def finished(
     """
     barred = _barred(problem, shapes, rules)
     ground = 0 if rules.stands else None
-    grid, lam = settled(
+    grid, lam = choose_stable(
         problem.gains, problem.cells, problem.shape, shapes, rules.lam, barred, ground
     )
-    grid = evened(grid, shapes, rules.even)
+    grid = mirror_shapes(grid, shapes, rules.even)
     scores = problem.gains.scores(lam)
     scores[barred] = -np.inf
     apart = np.isin(shapes.kinds, ("carpet", "post"))
@@ -387,12 +387,12 @@ def finished(
     if rules.stands and rules.legs:
         _add_legs(grid, problem, shapes)
     movable = np.flatnonzero(~apart[grid[problem.at]])
-    grid = joined(grid, movable, scores, problem, shapes)
-    grid = with_corners(evened(grid, shapes, rules.even), shapes)
+    grid = join_shapes(grid, movable, scores, problem, shapes)
+    grid = make_stair_corners(mirror_shapes(grid, shapes, rules.even), shapes)
     if rules.stands:
-        grid = on_stilts(grid, problem, scores, shapes, held)
-    grid = without_crumbs(grid, shapes, rules.stands, held, problem.floor)
-    return with_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
+        grid = add_supports(grid, problem, scores, shapes, held)
+    grid = remove_crumbs(grid, shapes, rules.stands, held, problem.floor)
+    return make_stair_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
 
 
 def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
@@ -411,7 +411,7 @@ def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
     return barred
 
 
-def evened(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -> np.ndarray:
+def mirror_shapes(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -> np.ndarray:
     """Return shapes, int [X, Y, Z], with the high half made the mirror image of the low one."""
     result = grid.copy()
     for axis in (0, 1):
@@ -456,7 +456,7 @@ def _add_legs(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
             grid[x, y, :top] = numbers[0]
 
 
-def without_crumbs(
+def remove_crumbs(
     grid: np.ndarray,
     shapes: ShapeSet,
     stands: bool,
@@ -468,12 +468,12 @@ def without_crumbs(
     Of what does not stand the larger parts stay, and something always does. ``floor`` is the
     sub-cell of the lowest layer on which it stands.
     """
-    parts = parts_of_shapes(grid, shapes)
+    parts = label_parts(grid, shapes)
     volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
     volumes[0] = 0
     if not volumes.any():
         return grid
-    keep = grounded(grid, parts, shapes, stands, held, floor)
+    keep = find_supported_parts(grid, parts, shapes, stands, held, floor)
     if not stands:
         keep |= volumes >= CRUMB_SHARE * volumes.sum()
     keep[0] = False
@@ -490,9 +490,9 @@ def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None
     return np.where(bare & (shapes.kinds[grid] == "carpet"), 0, grid)
 
 
-def without_loose(grid: np.ndarray, shapes: ShapeSet, held: np.ndarray) -> np.ndarray:
+def remove_loose_blocks(grid: np.ndarray, shapes: ShapeSet, held: np.ndarray) -> np.ndarray:
     """Return shapes, int [X, Y, Z], without single blocks that touch nothing and are not held."""
-    parts = parts_of_shapes(grid, shapes)
+    parts = label_parts(grid, shapes)
     sizes = np.bincount(parts.ravel())
     keep = (sizes > 1) | np.isin(np.arange(len(sizes)), parts[held])
     return np.where(keep[parts] & (parts > 0), grid, 0)

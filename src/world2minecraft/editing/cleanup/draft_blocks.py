@@ -1,4 +1,4 @@
-"""What of a draft is seen: its blocks by kind, as the rules of the clean-up ask for them."""
+"""Blocks of a draft by kind, and their removal and moves, as the clean-up rules need them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -63,7 +63,7 @@ def move_blocks(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) 
 
     What signs and chests hold goes with them. What is in the cells that they come to is gone.
     """
-    old = draft.held(cells)
+    old = draft.contents(cells)
     there = cells + step
     every = np.unique(np.concatenate([cells, there]), axis=0)
     place_of = {tuple(cell): number for number, cell in enumerate(every.tolist())}

@@ -106,7 +106,7 @@ def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
 
 
 def repair_floating(draft: Draft) -> None:
-    """Mend all that floats in a draft, the largest part first; each mend is an edit."""
+    """Repair everything that floats in a draft, the largest part first; each repair is an edit."""
     for tried in range(ROUNDS):
         parts, carried = _parts(draft)
         sizes = np.bincount(parts.ravel(), minlength=len(carried))
@@ -163,11 +163,11 @@ def _again(
 def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
     """Mend one part, int [N, 3]; ``carriers`` are the blocks that are carried."""
     classes = draft.semantic[tuple(cells.T)]
-    told = f"{_count(len(cells))} of it"
+    counted = f"{_count(len(cells))} of it"
     if np.isin(classes, (1, 2, 3, 4)).all():
-        remove_blocks(draft, cells, "drop", f"a piece of structure, {told}, holds to nothing")
+        remove_blocks(draft, cells, "drop", f"a piece of structure, {counted}, holds to nothing")
     elif _is_crumb(draft, cells, carriers):
-        remove_blocks(draft, cells, "drop", f"a crumb, {told}, hangs in the air")
+        remove_blocks(draft, cells, "drop", f"a crumb, {counted}, hangs in the air")
     elif not (
         _join(draft, cells, carriers)
         or close_gap(draft, cells, carriers)
@@ -175,7 +175,7 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
         or (not np.isin(classes, STANDING).any() and _hang(draft, cells, carriers))
         or _lower(draft, cells, carriers)
     ):
-        remove_blocks(draft, cells, "drop", f"{told} hang in the air over nothing")
+        remove_blocks(draft, cells, "drop", f"{counted} hang in the air over nothing")
 
 
 def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:

@@ -110,7 +110,7 @@ def _raise(draft: Draft, under: np.ndarray) -> bool:
 
 def _restate(draft: Draft, cells: np.ndarray, states: list[str], reason: str) -> bool:
     numbers = np.array([draft.id_of(state) for state in states], np.uint16)
-    old = draft.held(cells)
+    old = draft.contents(cells)
     after = Blocks(numbers, old.semantic, old.instance, old.block_entities)
     class_id, instance = int(old.semantic[0]), int(old.instance[0])
     draft.change("settle", cells, after, reason=reason, class_id=class_id, instance=instance)

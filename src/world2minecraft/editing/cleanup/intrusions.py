@@ -1,4 +1,4 @@
-"""Clean-up of furniture that stands within walls or other furniture.
+"""Clean-up of furniture that intersects walls or other furniture.
 
 A cell holds one block, so where things met, one of them lost. What shows is a piece of an object
 cut off from it, behind a wall or on the other side of another object, and blocks that are no full
@@ -85,8 +85,8 @@ def close_see_through(draft: Draft) -> None:
 
 def _between(cells: np.ndarray, main: np.ndarray) -> np.ndarray:
     """The cells on the straight line between the nearest two cells of two pieces."""
-    apart = np.abs(cells[:, None] - main[None]).sum(axis=2)
-    first, second = np.unravel_index(int(apart.argmin()), apart.shape)
+    distance = np.abs(cells[:, None] - main[None]).sum(axis=2)
+    first, second = np.unravel_index(int(distance.argmin()), distance.shape)
     start, end = cells[first], main[second]
     count = int(np.abs(end - start).max())
     steps = np.arange(1, count)[:, None] / max(count, 1)
@@ -110,11 +110,11 @@ def _in_plane(walls: np.ndarray, axis: int) -> np.ndarray:
     padded = np.pad(walls, 1)
     inner = tuple(slice(1, size + 1) for size in walls.shape)
 
-    def beside(along: int) -> np.ndarray:
+    def neighbours(along: int) -> np.ndarray:
         sides = [np.roll(padded, step, along)[inner] for step in (-1, 1)]
         return sides[0].astype(np.uint8) + sides[1]
 
-    return (beside(1) + beside(2 - axis) >= 2) & (beside(axis) == 0)
+    return (neighbours(1) + neighbours(2 - axis) >= 2) & (neighbours(axis) == 0)
 
 
 def _open_to_the_end(empty: np.ndarray, axis: int) -> np.ndarray:
@@ -129,7 +129,7 @@ def _open_to_the_end(empty: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _put_wall(draft: Draft, cell: np.ndarray, walls: np.ndarray, reason: str) -> None:
-    """Set a cell to the commonest wall block beside it."""
+    """Set a cell to the commonest wall block neighbours it."""
     around = cell + np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])
     around = around[((around >= 0) & (around < walls.shape)).all(axis=1)]
     around = around[walls[tuple(around.T)]]

@@ -1,4 +1,4 @@
-"""The automatic clean-up: what a person would mend in a built room, each mend an edit.
+"""The automatic clean-up of a built room; each repair is an edit that can be undone.
 
 ===========  ===================================================================================
 trim         pieces of furniture that a wall or other furniture cuts off
@@ -49,7 +49,7 @@ def _connect(draft: Draft) -> None:
     new = numbers[states]
     cells = np.argwhere(new != draft.states)
     if len(cells):
-        old = draft.held(cells)
+        old = draft.contents(cells)
         after = Blocks(new[tuple(cells.T)], old.semantic, old.instance, old.block_entities)
         draft.change("connect", cells, after, reason="they join their neighbours otherwise")
 

@@ -10,7 +10,7 @@ from world2minecraft.editing.scene.scene_objects import instances_of, objects_of
 __all__ = [
     "COMMANDS",
     "Command",
-    "Line",
+    "Timeline",
     "MemoryLog",
     "SceneDraft",
     "SceneHistory",

@@ -68,7 +68,7 @@ def box_cells(low: Sequence[int], high: Sequence[int], shape: tuple[int, int, in
 class Patch:
     """What cells of a draft become; a later change of a cell takes the place of an earlier one.
 
-    Nothing is done to the draft. ``planned`` leaves out cells that stay as they are.
+    Nothing is done to the draft. ``plan_operation`` leaves out cells that stay as they are.
     """
 
     def __init__(self, draft: SceneDraft):
@@ -116,11 +116,11 @@ class Patch:
         self._change(cells, labels=labels, confidence=sure)
 
     def _change(self, cells: np.ndarray, **values: np.ndarray) -> None:
-        held = self._draft.held(cells)
+        held = self._draft.contents(cells)
         self.put(cells, GridCells(**{name: getattr(held, name) for name in ARRAYS} | values))
 
-    def planned(self, kind: str, **told: Any) -> Operation:
-        """Return the operation; ``told`` is what ``SceneDraft.planned`` takes."""
+    def plan_operation(self, kind: str, **details: Any) -> Operation:
+        """Return the operation; ``details`` is what ``SceneDraft.plan_operation`` takes."""
         cells = np.concatenate([np.zeros((0, 3), np.int64), *self._cells]).astype(np.int64)
         flat = np.atleast_1d(np.ravel_multi_index(tuple(cells.T), self._draft.shape))
         # The last of equal numbers is the first of the reversed ones.
@@ -132,10 +132,10 @@ class Patch:
             empty = getattr(self._draft, name)[:0, 0, 0]
             parts = [getattr(held, name) for held in self._held]
             values[name] = np.concatenate([empty, *parts])[at]
-        before = self._draft.held(cells)
+        before = self._draft.contents(cells)
         changed = np.zeros(len(cells), bool)
         for name in ARRAYS:
             differs = values[name] != getattr(before, name)
             changed |= differs if differs.ndim == 1 else differs.any(axis=1)
         after = GridCells(**{name: values[name][changed] for name in ARRAYS})
-        return self._draft.planned(kind, cells[changed], after, **told)
+        return self._draft.plan_operation(kind, cells[changed], after, **details)

@@ -1,4 +1,4 @@
-"""What a person, a script or a model asks for; a plan of it is an ``Operation``.
+"""Commands: the edits that a person, a script or a model requests, planned as ``Operation``.
 
 A command is a small checked value that says what is wanted. ``plan`` looks at the scene and
 returns what that means for each cell and object, or raises ``UsageError`` with what to do.

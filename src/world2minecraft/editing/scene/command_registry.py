@@ -1,4 +1,4 @@
-"""All commands by name, and how one is read from JSON."""
+"""All commands by name, and their parsing from JSON."""
 
 from typing import Any
 
@@ -6,7 +6,21 @@ from pydantic import ValidationError
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.scene.command import Command
-from world2minecraft.editing.scene.object_grouping import OBJECT_COMMANDS
+from world2minecraft.editing.scene.furniture_commands import AddObject, Rematch, SetTemplate
+from world2minecraft.editing.scene.object_grouping import (
+    MergeObjects,
+    Recluster,
+    RelabelObjects,
+    SplitObject,
+    SplitObjects,
+)
+from world2minecraft.editing.scene.object_placement import SnapObject
+from world2minecraft.editing.scene.object_transforms import (
+    DeleteObjects,
+    DuplicateObject,
+    MoveObject,
+    TurnObjects,
+)
 from world2minecraft.editing.scene.repair import FillHoles, RemoveFloaters, Smooth
 from world2minecraft.editing.scene.voxel_commands import (
     DeleteClass,
@@ -29,7 +43,19 @@ COMMANDS: dict[str, type[Command]] = {
         RemoveFloaters,
         FillHoles,
         Smooth,
-        *OBJECT_COMMANDS,
+        AddObject,
+        DeleteObjects,
+        DuplicateObject,
+        MergeObjects,
+        MoveObject,
+        Recluster,
+        RelabelObjects,
+        Rematch,
+        SetTemplate,
+        SnapObject,
+        SplitObject,
+        SplitObjects,
+        TurnObjects,
     )
 }
 
@@ -51,7 +77,7 @@ def parse_command(value: Any) -> Command:
 
 
 def first_error(name: str, error: ValidationError) -> str:
-    """Return the line that tells what is wrong with the fields of a command or a query."""
+    """Return the line that states what is wrong with the fields of a command or a query."""
     first = error.errors(include_url=False, include_context=False)[0]
     where = ".".join(str(part) for part in first["loc"]) or name
     given = str(first.get("input"))[:80]

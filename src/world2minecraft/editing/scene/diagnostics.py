@@ -1,9 +1,9 @@
-"""Places of a scene that are worth a look, each with the reason in a sentence.
+"""Diagnostics of a scene: places that are worth a check, each with its reason.
 
 Objects: those that no piece of furniture fits, that another fits almost as well, whose cells are
 not sure, that nothing carries. Cells: what floats, crumbs of no object, regions that
 are rather wrong than right by their calibrated confidence, regions completed and never
-seen. What a person painted is sure and observed, so that a place mended is a place less.
+seen. What a person painted is sure and observed, so that a place mended no longer appears.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -45,7 +45,7 @@ class Diagnostic:
 def find_diagnostics(draft: SceneDraft, progress: Progress = silent) -> list[Diagnostic]:
     """Return the doubts of a scene, one for each object and place, the most doubtful first.
 
-    ``progress`` is told of each of the kinds that are looked for.
+    ``progress`` is called for each check.
     """
     found: list[Diagnostic] = []
     for done, kind in enumerate(CHECKS):

@@ -1,4 +1,4 @@
-"""What a scene has and another occupancy of the same room has not, and the other way round."""
+"""Differences between a scene and another occupancy grid of the same room."""
 
 from dataclasses import dataclass
 

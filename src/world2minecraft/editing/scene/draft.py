@@ -1,4 +1,4 @@
-"""A scene while it is edited: every change is an operation that can be taken back."""
+"""A scene while it is edited: every change is an operation that can be undone."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -33,12 +33,12 @@ class SceneDraft:
         """The number of cells along x, y and z."""
         return self.labels.shape  # type: ignore[return-value]
 
-    def held(self, cells: np.ndarray) -> GridCells:
+    def contents(self, cells: np.ndarray) -> GridCells:
         """Return what some cells, int [N, 3], hold now."""
         at = tuple(cells.T)
         return GridCells(*(getattr(self, name)[at] for name in ARRAYS))
 
-    def planned(
+    def plan_operation(
         self,
         kind: str,
         cells: np.ndarray,
@@ -46,7 +46,7 @@ class SceneDraft:
         *,
         gone: Iterable[int] = (),
         objects: Iterable[SceneObject] = (),
-        **told: Any,
+        **details: Any,
     ) -> Operation:
         """Return an operation on the scene as it is now; nothing is done yet.
 
@@ -56,13 +56,13 @@ class SceneDraft:
             after: what they become.
             gone: ids of objects that are removed.
             objects: those that are new, or take the place of the ones with their ids.
-            told: ``counts_as``, ``class_id``, ``actor`` and ``time_s`` of the operation.
+            details: ``counts_as``, ``class_id``, ``actor`` and ``time_s`` of the operation.
         """
         new = tuple(objects)
         touched = sorted({*gone, *(one.id for one in new)} & self.objects.keys())
         before = tuple(self.objects[number] for number in touched)
         cells = cells.astype(np.int32)
-        return Operation(kind, cells, self.held(cells), after, before, new, **told)
+        return Operation(kind, cells, self.contents(cells), after, before, new, **details)
 
     def apply(self, operation: Operation) -> None:
         """Do an operation. Raises what ``check`` raises; then nothing is changed."""
@@ -87,7 +87,7 @@ class SceneDraft:
         Raises:
             ConflictError: the scene does not hold what it says was there.
         """
-        if reason := self._against(operation):
+        if reason := self._find_conflict(operation):
             raise ConflictError(f"operation {operation.kind}", reason)
 
     def grid(self) -> OccupancyGrid:
@@ -99,13 +99,13 @@ class SceneDraft:
         """Return the cells int32 [N, 3] of an object, in C order."""
         return np.argwhere(self.instance == number).astype(np.int32)
 
-    def _against(self, operation: Operation) -> str:
+    def _find_conflict(self, operation: Operation) -> str:
         """Why an operation cannot be done here; empty where it can."""
         cells = operation.cells
         inside = ((cells >= 0) & (cells < self.shape)).all(axis=1)
         if not inside.all():
             return f"cell {tuple(map(int, cells[~inside][0]))} lies outside the grid"
-        now = self.held(cells)
+        now = self.contents(cells)
         for name in ARRAYS:
             if not np.array_equal(getattr(now, name), getattr(operation.before, name)):
                 return f"the {name} of its cells changed since"

@@ -1,4 +1,4 @@
-"""Commands on the furniture that stands for objects: added, chosen, matched anew."""
+"""Commands on the furniture of objects: add a piece, choose a template, match again."""
 
 from typing import Annotated, Literal
 
@@ -60,8 +60,8 @@ class AddObject(Command):
         one = SceneObject(number, self.class_id, placed.center_m, size_m, 90.0 * turns, 1.0)
         patch = Patch(draft)
         patch.fill(cells, self.class_id, number)
-        told = {"counts_as": "add", "class_id": self.class_id}
-        return patch.planned("add_object", objects=[with_placement(one, placed)], **told)
+        details = {"counts_as": "add", "class_id": self.class_id}
+        return patch.plan_operation("add_object", objects=[with_placement(one, placed)], **details)
 
     def _template(self) -> Template:
         if self.template is None:
@@ -91,8 +91,10 @@ class SetTemplate(Command):
         placed = tools.fit(draft.grid(), found, self.template, turns)
         same = [p.template for p in one.placements] == [placed.template]
         counted = "orient" if same else "other"
-        told = {"counts_as": counted, "class_id": one.class_id}
-        return Patch(draft).planned("set_template", objects=[with_placement(one, placed)], **told)
+        details = {"counts_as": counted, "class_id": one.class_id}
+        return Patch(draft).plan_operation(
+            "set_template", objects=[with_placement(one, placed)], **details
+        )
 
 
 class Rematch(Command):
@@ -110,7 +112,7 @@ class Rematch(Command):
                 raise UsageError(f"object {one.id} has no cells to match; choose its template")
             found = tools.measure(grid, one.id, one.class_id, cells)
             objects.append(object_of(found, tools.match(grid, found)))
-        return Patch(draft).planned("rematch", objects=objects)
+        return Patch(draft).plan_operation("rematch", objects=objects)
 
 
 def template_for(name: str, class_id: int) -> Template:

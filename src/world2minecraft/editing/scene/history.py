@@ -1,4 +1,4 @@
-"""What was done to a scene, in order, and how much of it is done now: do, undo, redo.
+"""The linear history of a scene: do, undo and redo.
 
 The history is linear: what was undone is forgotten by the next edit, as in every editor. Each step
 is in the log, which may be a file, before the scene changes.
@@ -41,16 +41,16 @@ class Timeline(NamedTuple):
     kinds: tuple[str, ...] = ()
     done: int = 0
 
-    def with_new(self, number: int, kind: str) -> "Line":
+    def with_new(self, number: int, kind: str) -> "Timeline":
         """Return the line after an edit: what was undone is out of reach."""
         kept = self.done
         return Timeline((*self.numbers[:kept], number), (*self.kinds[:kept], kind), kept + 1)
 
-    def within(self, first: int, last: int) -> "Line":
+    def within(self, first: int, last: int) -> "Timeline":
         """Return the line of the operations at places ``first`` to before ``last`` alone."""
         return Timeline(self.numbers[first:last], self.kinds[first:last], self.done - first)
 
-    def moved(self, steps: int) -> "Line":
+    def moved(self, steps: int) -> "Timeline":
         """Return the line with one more (1) or fewer (-1) operations done."""
         return self._replace(done=self.done + steps)
 

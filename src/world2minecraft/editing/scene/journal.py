@@ -52,10 +52,10 @@ def pack_operation(operation: Operation, shape: Shape) -> bytes:
             "actor": operation.actor,
             "time_s": float(operation.time_s),
             "runs": runs_of_cells(operation.cells, shape).astype(np.int32).ravel(),
-            "before": _packed_cells(operation.before, order),
-            "after": _packed_cells(operation.after, order),
-            "objects_before": _packed_objects(operation.objects_before),
-            "objects_after": _packed_objects(operation.objects_after),
+            "before": _pack_cells(operation.before, order),
+            "after": _pack_cells(operation.after, order),
+            "objects_before": _pack_objects(operation.objects_before),
+            "objects_after": _pack_objects(operation.objects_after),
         }
     )
 
@@ -78,10 +78,10 @@ def unpack_operation(data: bytes, shape: Shape, path: str | Path) -> Operation:
         return Operation(
             kind=root["kind"],
             cells=cells,
-            before=_unpacked_cells(root["before"], len(cells)),
-            after=_unpacked_cells(root["after"], len(cells)),
-            objects_before=tuple(map(_unpacked_object, root["objects_before"])),
-            objects_after=tuple(map(_unpacked_object, root["objects_after"])),
+            before=_unpack_cells(root["before"], len(cells)),
+            after=_unpack_cells(root["after"], len(cells)),
+            objects_before=tuple(map(_unpack_object, root["objects_before"])),
+            objects_after=tuple(map(_unpack_object, root["objects_after"])),
             counts_as=root["counts_as"],
             class_id=None if root["class_id"] < 0 else int(root["class_id"]),
             actor=str(root["actor"]),
@@ -93,7 +93,7 @@ def unpack_operation(data: bytes, shape: Shape, path: str | Path) -> Operation:
 
 def pack_objects(objects: Iterable[SceneObject]) -> bytes:
     """Return objects as NBT, not compressed, exact to the last bit."""
-    return write_nbt({"objects": _packed_objects(objects)})
+    return write_nbt({"objects": _pack_objects(objects)})
 
 
 def unpack_objects(data: bytes, path: str | Path) -> tuple[SceneObject, ...]:
@@ -104,26 +104,26 @@ def unpack_objects(data: bytes, path: str | Path) -> tuple[SceneObject, ...]:
     """
     _, root = read_nbt(data, path, OPERATION_LIMITS)
     try:
-        return tuple(map(_unpacked_object, root["objects"]))
+        return tuple(map(_unpack_object, root["objects"]))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DamagedFileError(path, f"holds no objects of a scene ({error})") from error
 
 
-def _packed_cells(held: GridCells, order: np.ndarray | None) -> dict[str, np.ndarray]:
+def _pack_cells(held: GridCells, order: np.ndarray | None) -> dict[str, np.ndarray]:
     return {
-        name: _packed_array(getattr(held, name) if order is None else getattr(held, name)[order])
+        name: _pack_array(getattr(held, name) if order is None else getattr(held, name)[order])
         for name in _ARRAYS
     }
 
 
-def _packed_array(values: np.ndarray) -> np.ndarray:
+def _pack_array(values: np.ndarray) -> np.ndarray:
     same = len(values) > 1 and (values[1:] == values[0]).all()
     kept = np.ascontiguousarray(values[:1] if same else values)
     little = kept.astype(kept.dtype.newbyteorder("<"), copy=False)
     return little.reshape(-1).view(np.int8)
 
 
-def _unpacked_cells(held: Mapping[str, Any], count: int) -> GridCells:
+def _unpack_cells(held: Mapping[str, Any], count: int) -> GridCells:
     arrays = {}
     for name, dtype in _ARRAYS.items():
         values = np.asarray(held[name], np.int8).view(dtype).astype(dtype.newbyteorder("="))
@@ -136,20 +136,20 @@ def _unpacked_cells(held: Mapping[str, Any], count: int) -> GridCells:
     return GridCells(**arrays)
 
 
-def _packed_objects(objects: Iterable[SceneObject]) -> list[dict[str, Any]]:
+def _pack_objects(objects: Iterable[SceneObject]) -> list[dict[str, Any]]:
     return [
         {
             "id": one.id,
             "class_id": one.class_id,
             "box": [*map(float, one.center_m), *map(float, one.size_m), float(one.yaw_deg)],
             "confidence": float(one.confidence),
-            "placements": [_packed_placement(placed) for placed in one.placements],
+            "placements": [_pack_placement(placed) for placed in one.placements],
         }
         for one in objects
     ]
 
 
-def _packed_placement(placed: Placement) -> dict[str, Any]:
+def _pack_placement(placed: Placement) -> dict[str, Any]:
     return {
         "template": placed.template,
         "box": [*map(float, placed.center_m), *map(float, placed.size_m)],
@@ -163,16 +163,16 @@ def _packed_placement(placed: Placement) -> dict[str, Any]:
     }
 
 
-def _unpacked_object(held: Mapping[str, Any]) -> SceneObject:
+def _unpack_object(held: Mapping[str, Any]) -> SceneObject:
     number, class_id = int(held["id"]), int(held["class_id"])
-    box = _numbers(held["box"], 7)
-    placed = tuple(_unpacked_placement(number, class_id, one) for one in held["placements"])
+    box = _as_floats(held["box"], 7)
+    placed = tuple(_unpack_placement(number, class_id, one) for one in held["placements"])
     confidence = float(held["confidence"])
     return SceneObject(number, class_id, box[:3], box[3:6], float(box[6]), confidence, placed)
 
 
-def _unpacked_placement(number: int, class_id: int, held: Mapping[str, Any]) -> Placement:
-    box = _numbers(held["box"], 6)
+def _unpack_placement(number: int, class_id: int, held: Mapping[str, Any]) -> Placement:
+    box = _as_floats(held["box"], 6)
     return Placement(
         number,
         class_id,
@@ -189,7 +189,7 @@ def _unpacked_placement(number: int, class_id: int, held: Mapping[str, Any]) -> 
     )
 
 
-def _numbers(values: Sequence[Any], count: int) -> np.ndarray:
+def _as_floats(values: Sequence[Any], count: int) -> np.ndarray:
     if len(values) != count:
         raise ValueError(f"a box of {len(values)} numbers, not {count}")
     return np.array(values, np.float64)
@@ -227,7 +227,7 @@ class SceneJournal:
         self._places: dict[int, Record] = {}
         self._next = 0
         for record, packed in self.file.scan():
-            self._take(record, packed)
+            self._add_record(record, packed)
 
     @property
     def rev(self) -> int:
@@ -250,11 +250,11 @@ class SceneJournal:
 
     def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
         """Keep that an operation was taken back. Raises OutputError."""
-        self._turn(UNDO, number, actor, time_s)
+        self._append_turn(UNDO, number, actor, time_s)
 
     def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
         """Keep that an operation was done again. Raises OutputError."""
-        self._turn(REDO, number, actor, time_s)
+        self._append_turn(REDO, number, actor, time_s)
 
     def operation(self, number: int) -> Operation:
         """Return an operation, read from the disk.
@@ -264,13 +264,13 @@ class SceneJournal:
         """
         if number not in self._places:
             raise DamagedFileError(self.file.path, f"has lost edit {number}")
-        _, _, content = self.file.opened(self.file.read(self._places[number]))
+        _, _, content = self.file.unpack(self.file.read(self._places[number]))
         packed = content.partition(b"\n")[2]
         return unpack_operation(packed, self.shape, self.file.path)
 
-    def turned_by(self, step: Step) -> tuple[str, float]:
+    def author_of(self, step: Step) -> tuple[str, float]:
         """Return who took a step of undo or redo, and when, in seconds since 1970."""
-        _, _, content = self.file.opened(self.file.read(step.record))
+        _, _, content = self.file.unpack(self.file.read(step.record))
         try:
             actor, time_s = json.loads(content or b'["", 0]')
             return str(actor), float(time_s)
@@ -303,16 +303,16 @@ class SceneJournal:
     def _place(self, number: int, record: Record) -> None:
         self._places[number], self._next = record, number + 1
 
-    def _turn(self, verb: bytes, number: int, actor: str, time_s: float) -> None:
-        told = json.dumps([actor, time_s], separators=(",", ":")).encode()
-        record = self.file.append(verb, number, told)
+    def _append_turn(self, verb: bytes, number: int, actor: str, time_s: float) -> None:
+        content = json.dumps([actor, time_s], separators=(",", ":")).encode()
+        record = self.file.append(verb, number, content)
         self.steps.append(Step(verb, number, "", record))
 
-    def _take(self, record: Record, packed: bytes) -> None:
+    def _add_record(self, record: Record, packed: bytes) -> None:
         if not record.is_whole:
             self.steps.append(Step(b"", -1, "", record))
             return
-        verb, number, content = self.file.opened(packed, _KIND)
+        verb, number, content = self.file.unpack(packed, _KIND)
         word = content.partition(b"\n")[0].decode(errors="replace")
         if verb == START:
             if self.steps or self.generation:

@@ -1,4 +1,4 @@
-"""Objects by their boxes: which there are, where they go, how they are turned and measured."""
+"""Objects by their boxes: lookup by id, translation, rotation, extents and free ids."""
 
 from collections.abc import Iterable
 from dataclasses import replace

@@ -12,10 +12,7 @@ from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.furniture_commands import (
-    AddObject,
     ObjectClass,
-    Rematch,
-    SetTemplate,
 )
 from world2minecraft.editing.scene.object_boxes import (
     describe_object,
@@ -23,15 +20,10 @@ from world2minecraft.editing.scene.object_boxes import (
     object_by_id,
     objects_by_ids,
 )
-from world2minecraft.editing.scene.object_placement import SnapObject
 from world2minecraft.editing.scene.object_transforms import (
-    DeleteObjects,
-    DuplicateObject,
     Id,
     Ids,
     Metre,
-    MoveObject,
-    TurnObjects,
 )
 from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 
@@ -66,8 +58,8 @@ class RelabelObjects(Command):
             named = replace(one, class_id=self.class_id, confidence=1.0, placements=())
             placed = tools.match(grid, instance_of(named, cells))
             objects.append(replace(named, placements=placed))
-        told = {"counts_as": "relabel", "class_id": self.class_id}
-        return patch.planned("relabel_objects", objects=objects, **told)
+        details = {"counts_as": "relabel", "class_id": self.class_id}
+        return patch.plan_operation("relabel_objects", objects=objects, **details)
 
 
 class SplitObject(Command):
@@ -106,7 +98,7 @@ class SplitObject(Command):
             patch.give(group, number)
         pairs = zip(numbers, groups, strict=True)
         objects = [measure_object(grid, tools, n, one.class_id, group) for n, group in pairs]
-        return patch.planned("split_object", objects=objects, class_id=one.class_id)
+        return patch.plan_operation("split_object", objects=objects, class_id=one.class_id)
 
     def _sides(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
         """Return the part, int64 [N], of each cell."""
@@ -134,15 +126,15 @@ class SplitObjects(Command):
             cells = draft.cells_of(one.id)
             if len(cells) < self.parts:
                 continue
-            for number, group in _numbered(draft, one.id, cells, self.parts, taken):
+            for number, group in _numbered_parts(draft, one.id, cells, self.parts, taken):
                 if number != one.id:
                     patch.give(group, number)
                 objects.append(measure_object(grid, tools, number, one.class_id, group))
         if not objects:
             raise UsageError(f"none of these objects has {self.parts} cells to be split into parts")
         classes = {one.class_id for one in objects}
-        told = {"class_id": classes.pop()} if len(classes) == 1 else {}
-        return patch.planned("split_objects", objects=objects, **told)
+        details = {"class_id": classes.pop()} if len(classes) == 1 else {}
+        return patch.plan_operation("split_objects", objects=objects, **details)
 
 
 class MergeObjects(Command):
@@ -167,7 +159,9 @@ class MergeObjects(Command):
         cells = cells[np.lexsort(cells.T[::-1])]
         merged = measure_object(draft.grid(), tools, first.id, first.class_id, cells)
         gone = [one.id for one in others]
-        return patch.planned("merge_objects", objects=[merged], gone=gone, class_id=first.class_id)
+        return patch.plan_operation(
+            "merge_objects", objects=[merged], gone=gone, class_id=first.class_id
+        )
 
 
 class Recluster(Command):
@@ -192,7 +186,7 @@ class Recluster(Command):
         patch.give(np.argwhere(free & (draft.instance > 0)), 0)
         chosen = [one for one in found if self.class_id in (None, one.class_id)]
         groups = [np.argwhere((instance == one.id) & free).astype(np.int32) for one in chosen]
-        numbers = _numbers(draft, {one.id for one in old}, groups)
+        numbers = _matched_ids(draft, {one.id for one in old}, groups)
         objects: list[SceneObject] = []
         for number, one, cells in zip(numbers, chosen, groups, strict=True):
             if len(cells):
@@ -200,8 +194,8 @@ class Recluster(Command):
                 named = replace(one, id=number, cells=cells)
                 objects.append(object_of(named, tools.match(grid, named)))
         gone = {one.id for one in old} - {one.id for one in objects}
-        told = {"gone": gone, "class_id": self.class_id}
-        return patch.planned("recluster", objects=objects, **told)
+        details = {"gone": gone, "class_id": self.class_id}
+        return patch.plan_operation("recluster", objects=objects, **details)
 
 
 def measure_object(
@@ -227,8 +221,8 @@ def cluster_cells(cells: np.ndarray, count: int) -> np.ndarray:
     centers = points[order[((np.arange(count) + 0.5) / count * len(points)).astype(int)]]
     found = np.full(len(points), -1)
     for _ in range(ROUNDS):
-        apart = ((points[:, None] - centers[None]) ** 2).sum(axis=2)
-        nearest = np.argmin(np.round(apart, 9), axis=1)
+        distance = ((points[:, None] - centers[None]) ** 2).sum(axis=2)
+        nearest = np.argmin(np.round(distance, 9), axis=1)
         if np.array_equal(nearest, found):
             break
         found = nearest
@@ -243,7 +237,7 @@ def _largest_first(cells: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
     return sorted((cells[sides == n] for n in np.unique(sides)), key=len, reverse=True)
 
 
-def _numbered(
+def _numbered_parts(
     draft: SceneDraft, first: int, cells: np.ndarray, parts: int, taken: list[int]
 ) -> list[tuple[int, np.ndarray]]:
     """Return the parts of an object, the largest first, with ids: its own and free ones.
@@ -257,7 +251,7 @@ def _numbered(
     return found
 
 
-def _numbers(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list[int]:
+def _matched_ids(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list[int]:
     """Return an id for each group of cells: that of the old object it shares most with, or new."""
     numbers: list[int] = []
     taken: set[int] = set()
@@ -268,20 +262,3 @@ def _numbers(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list
         taken.add(number or free_object_id(draft, taken))
         numbers.append(number or max(taken))
     return numbers
-
-
-OBJECT_COMMANDS: tuple[type[Command], ...] = (
-    AddObject,
-    DeleteObjects,
-    DuplicateObject,
-    MergeObjects,
-    MoveObject,
-    Recluster,
-    RelabelObjects,
-    Rematch,
-    SetTemplate,
-    SnapObject,
-    SplitObject,
-    SplitObjects,
-    TurnObjects,
-)

@@ -49,7 +49,7 @@ def standing_box(
     counts = size_in_cells(chosen.typical_m, draft.voxel_m)
     bottom = _bottom(draft, chosen, cell, counts[2])
     if quarter_turns is None:
-        quarter_turns = _turn(draft, chosen, _corner(draft, at_m, counts, 0, bottom), counts)
+        quarter_turns = _facing(draft, chosen, _corner(draft, at_m, counts, 0, bottom), counts)
     turns = quarter_turns % 4
     return StandingBox(_corner(draft, at_m, counts, turns, bottom), counts, turns)
 
@@ -82,7 +82,7 @@ def _corner(
     return np.array([*np.floor(low + 0.5 + 1e-6).astype(np.int64), bottom])
 
 
-def _turn(
+def _facing(
     draft: SceneDraft, chosen: Template, corner: np.ndarray, counts: tuple[int, int, int]
 ) -> int:
     """Return which way a full box of its size would look."""

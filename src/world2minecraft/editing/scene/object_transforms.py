@@ -47,7 +47,7 @@ def plan_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str
     patch = Patch(draft)
     put_cells(draft, patch, one, cells, cells + shift)
     moved = translate_object(one, shift * draft.voxel_m)
-    return patch.planned(kind, objects=[moved], counts_as="move", class_id=one.class_id)
+    return patch.plan_operation(kind, objects=[moved], counts_as="move", class_id=one.class_id)
 
 
 def put_cells(
@@ -56,7 +56,7 @@ def put_cells(
     """Carry what an object's cells hold to other cells, [N, 3] each, as far as they are free."""
     patch.empty(cells)
     free = is_free(draft, there) | (draft.instance[tuple(there.T)] == one.id)
-    patch.put(there[free], select_cells(draft.held(cells), free))
+    patch.put(there[free], select_cells(draft.contents(cells), free))
 
 
 def cells_to(draft: SceneDraft, one: SceneObject, to_m: Sequence[float]) -> np.ndarray:
@@ -119,8 +119,8 @@ class DeleteObjects(Command):
         patch = Patch(draft)
         for one in gone:
             patch.empty(draft.cells_of(one.id))
-        told = {"gone": [one.id for one in gone], "class_id": common_class(gone)}
-        return patch.planned("delete_objects", counts_as="delete", **told)
+        details = {"gone": [one.id for one in gone], "class_id": common_class(gone)}
+        return patch.plan_operation("delete_objects", counts_as="delete", **details)
 
 
 class MoveObject(Command):
@@ -168,8 +168,8 @@ class TurnObjects(Command):
                 cells = draft.cells_of(one.id)
                 put_cells(draft, patch, one, cells, self._turned(draft, one, cells))
         objects = [rotate_object(one, self.quarter_turns) for one in ones]
-        told = {"counts_as": "orient", "class_id": common_class(ones)}
-        return patch.planned("turn_objects", objects=objects, **told)
+        details = {"counts_as": "orient", "class_id": common_class(ones)}
+        return patch.plan_operation("turn_objects", objects=objects, **details)
 
     def _turned(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
         result = rotate_cells(cells, one.center_m, self.quarter_turns, draft)
@@ -198,15 +198,15 @@ class DuplicateObject(Command):
         check_within(draft, one, cells, shift)
         copy = copy_object(translate_object(one, shift * draft.voxel_m), free_object_id(draft))
         patch = Patch(draft)
-        held = with_owner(draft.held(cells), copy.id)
+        held = with_owner(draft.contents(cells), copy.id)
         free = is_free(draft, cells + shift)
         if len(cells) and not free.any():
             raise UsageError(
                 f"no cell is free for another {describe_object(one)} there; give to_m elsewhere"
             )
         patch.put((cells + shift)[free], select_cells(held, free))
-        told = {"counts_as": "add", "class_id": one.class_id}
-        return patch.planned("duplicate_object", objects=[copy], **told)
+        details = {"counts_as": "add", "class_id": one.class_id}
+        return patch.plan_operation("duplicate_object", objects=[copy], **details)
 
     def _beside(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
         """Return the shift in cells: to ``to_m``, or to the side that has most room."""

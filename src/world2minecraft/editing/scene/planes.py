@@ -1,4 +1,4 @@
-"""The planes of a room, found from its cells: floors, ceilings and walls, each a flat sheet.
+"""Detection of the planes of a room in its cells: floors, ceilings and walls, each a flat sheet.
 
 A floor or a ceiling is a layer that holds a square metre of its class that is flat. A wall is a
 flat connected region of wall and window cells in one layer across x or y, with something else than

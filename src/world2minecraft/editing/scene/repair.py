@@ -220,7 +220,13 @@ def _up_to(mask: np.ndarray, most: float) -> np.ndarray:
 
 
 def smooth_labels(labels: np.ndarray) -> np.ndarray:
-    """Return labels uint8 [X, Y, Z] after one pass of the filter."""
+    """Return labels uint8 [X, Y, Z] after one pass of the majority filter.
+
+    A cell of furniture takes the class of more than half of the furniture cells of its 3x3x3 block.
+    An empty cell is filled where 17 of its neighbours are furniture: a pit in a surface. A bump is
+    removed: a cell that touches one face alone, of a cell that touches four others; ends of legs
+    and rims stay.
+    """
     furniture = np.isin(labels, OBJECT_CLASSES)
     counts = np.stack([_around(labels == one) for one in OBJECT_CLASSES])
     total = counts.sum(axis=0)

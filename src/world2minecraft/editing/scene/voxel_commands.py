@@ -52,7 +52,7 @@ def plan_cells(
     colours: np.ndarray | None = None,
     gone: Iterable[int] = (),
     objects: Iterable[SceneObject] = (),
-    **told: Any,
+    **details: Any,
 ) -> Operation:
     """Return the operation that gives cells their classes, and removes objects left without any.
 
@@ -65,7 +65,7 @@ def plan_cells(
         colours: uint8 [N, 3]; None finds them by the rule above.
         gone: objects that are removed beside those that lose their last cell.
         objects: those that are new, or take the place of the ones with their ids.
-        told: ``counts_as`` and ``class_id`` of the operation; found from the cells by default.
+        details: ``counts_as`` and ``class_id`` of the operation; found from the cells by default.
     """
     labels = np.broadcast_to(np.asarray(classes, np.uint8), len(cells))
     if owners is None:
@@ -78,12 +78,12 @@ def plan_cells(
         np.full(len(cells), OBSERVED, np.uint8),
         instance,
     )
-    told = {
+    details = {
         "counts_as": edit_category(draft, cells, labels),
         "class_id": single_class(labels),
-    } | told
+    } | details
     gone = {*gone, *emptied_objects(draft, cells, instance)}
-    return draft.planned(verb, cells, after, gone=gone, objects=objects, **told)
+    return draft.plan_operation(verb, cells, after, gone=gone, objects=objects, **details)
 
 
 def edit_category(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> str:
@@ -373,8 +373,8 @@ class DeleteClass(CellCommand):
         check_class(draft, self.class_id, self.locked)
         cells = np.argwhere(draft.labels == self.class_id)
         gone = objects_without_cells(draft, self.class_id)
-        told = {"counts_as": "delete", "class_id": self.class_id}
-        return plan_cells(draft, "delete", cells, 0, gone=gone, **told)
+        details = {"counts_as": "delete", "class_id": self.class_id}
+        return plan_cells(draft, "delete", cells, 0, gone=gone, **details)
 
 
 def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> None:

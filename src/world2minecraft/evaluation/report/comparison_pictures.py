@@ -8,9 +8,9 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.types import BlockVolume, Camera, Scan, View
-from world2minecraft.rendering.light_parameters import NEUTRAL
 from world2minecraft.rendering.picture import render_volume
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.shading_parameters import NEUTRAL
 
 PAIRS = 6
 WIDTH_PX = 480

@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.validation import JudgedCapture, judge_capture
+from world2minecraft.capture.validation import ValidatedCapture, validate_capture
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
@@ -28,18 +28,18 @@ class PlacedFrame:
     camera_to_room: np.ndarray
 
 
-def judge_capture_of(run: Path, capture: Path) -> JudgedCapture:
+def judge_capture_of(run: Path, capture: Path) -> ValidatedCapture:
     """Return what can be used of a run's capture, read with the options that the run was given.
 
     Raises:
         CaptureError: the capture cannot be read.
     """
     options = {} if capture == computed(run) else _options_of(run)
-    return judge_capture(capture, parse_options(options))
+    return validate_capture(capture, parse_options(options))
 
 
 def placed_frames(
-    run: Path, judged: JudgedCapture, scan_to_room: np.ndarray
+    run: Path, judged: ValidatedCapture, scan_to_room: np.ndarray
 ) -> Iterator[PlacedFrame]:
     """Yield the posed frames that a run used, all posed ones where it does not say which.
 

@@ -1,4 +1,10 @@
-"""From blocks to classes by a block map: by their names, then by where they are."""
+"""Classify blocks by a block map: by their names, then by where they are.
+
+``classify`` labels a volume. ``remap_labels`` gives other classes to cells that are labelled
+already: a stored sample keeps the block and the design of each cell, so another map can be applied
+to it; where these alone do not decide (planks are floor, wall or ceiling), the known class stays.
+``block_map_json`` writes a map for programs that read no YAML.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

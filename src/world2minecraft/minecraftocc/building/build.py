@@ -1,4 +1,9 @@
-"""A whole data set, from its plan: begun or gone on with, by one run at a time."""
+"""Build a whole data set from its plan, or continue one, by one run at a time.
+
+Scenes are surveyed, images are allocated to them, shards are rendered and the index is written.
+Each scene is asked for its share of the images; what one cannot give is asked of those that gave
+all. The same answers give the same shares, so an interrupted build comes to the same data set.
+"""
 
 import json
 import shutil

@@ -22,7 +22,7 @@ except ImportError:  # Windows has no shared locks; workers end with their paren
     fcntl = None
 
 from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.minecraftocc.engine.process_pool import end_if_deserted
+from world2minecraft.minecraftocc.engine.process_pool import exit_if_parent_gone
 from world2minecraft.minecraftocc.store.folder import CREW
 
 PATIENCE_S = 60.0  # Workers notice within a second; one that writes to a slow disk takes longer.
@@ -62,7 +62,7 @@ def register_process(folder: Path) -> Iterator[None]:
     try:
         if fcntl is not None:
             fcntl.flock(handle, fcntl.LOCK_SH)
-        end_if_deserted()
+        exit_if_parent_gone()
         yield
     finally:
         os.close(handle)

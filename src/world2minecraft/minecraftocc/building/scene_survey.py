@@ -19,7 +19,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraftocc.building.process_registry import registered_task
 from world2minecraft.minecraftocc.building.recorded_views import load_given_views
-from world2minecraft.minecraftocc.labels.fine_classes import fine_names
+from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
 from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.store.folder import SCENES
@@ -165,7 +165,7 @@ def _make_survey(
     facts = SceneFacts(
         scene_id=spec.scene_id,
         digest=volume_digest(volume),
-        fine=fine_names(volume, source.designs()).classes,
+        fine=map_fine_classes(volume, source.designs()).classes,
         plans=(*(known.plans if known else ()), (spec.images, len(views))),
         hour=hour,
         blocks=(east, up, south),

@@ -1,7 +1,7 @@
-"""The unit of work: one shard, made of one scene, by whatever process is told to.
+"""Render one shard of one scene: the unit of work of a data set, in whatever process runs it.
 
-What is made depends on the unit alone. Samples that lie in the shard already, from an earlier try,
-are kept as they are.
+``SampleRenderer`` turns planned views into samples and measures the CPU time of each stage. The
+result depends on the task alone; samples that an earlier attempt left in the shard are kept.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ from world2minecraft.minecraftocc.building.scene_survey import (
 from world2minecraft.minecraftocc.camera_records import camera_record
 from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
-from world2minecraft.minecraftocc.labels.voxelization import scene_voxels
+from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, SceneSpec
 from world2minecraft.minecraftocc.store.folder import read_classes, shard_name
 from world2minecraft.minecraftocc.store.index import shard_rows
@@ -139,7 +139,7 @@ def sample_renderer(folder: str, spec: SceneSpec, recipe: Recipe) -> SampleRende
     rule = recipe.region
     if recipe.is_block_cells:
         rule = replace(rule, voxel_m=facts.metres_per_block)
-    voxels = scene_voxels(
+    voxels = voxelize_scene(
         volume,
         source.designs(),
         voxel_m=None if recipe.is_block_cells else rule.voxel_m,

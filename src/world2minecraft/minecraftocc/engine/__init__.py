@@ -3,7 +3,12 @@
 All call the same function with the same items, so all make the same files.
 """
 
-from world2minecraft.minecraftocc.engine.engines import ENGINES, Engine, HereEngine, opened_engine
+from world2minecraft.minecraftocc.engine.engines import (
+    ENGINES,
+    Engine,
+    InProcessEngine,
+    open_engine,
+)
 from world2minecraft.minecraftocc.engine.process_pool import PoolEngine
 
-__all__ = ["ENGINES", "Engine", "HereEngine", "PoolEngine", "opened_engine"]
+__all__ = ["ENGINES", "Engine", "InProcessEngine", "PoolEngine", "open_engine"]

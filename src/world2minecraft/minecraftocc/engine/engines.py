@@ -1,4 +1,4 @@
-"""The engines by name, and what they have in common."""
+"""The engines by name, their common interface, and the one that runs in this process."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -16,10 +16,10 @@ ENGINES = Registry(
         "ray": "world2minecraft.minecraftocc.engine.ray_cluster:RayEngine",
     },
 )
-MOST_JOBS = 1024
+MAX_JOBS = 1024
 
 
-class HereEngine:
+class InProcessEngine:
     """Calls a task in this process."""
 
     def __init__(self):
@@ -44,9 +44,6 @@ class HereEngine:
             yield number, task(item, tick)
 
 
-
-
-
 class Engine(Protocol):
     """Calls a task with each of many items."""
 
@@ -57,7 +54,7 @@ class Engine(Protocol):
         ...
 
 
-def opened_engine(name: str, jobs: int) -> AbstractContextManager[Engine]:
+def open_engine(name: str, jobs: int) -> AbstractContextManager[Engine]:
     """Return an engine, to be used in a ``with`` block.
 
     Args:
@@ -68,7 +65,7 @@ def opened_engine(name: str, jobs: int) -> AbstractContextManager[Engine]:
         UnknownNameError: there is no such engine. UsageError: the number is out of range.
         MissingExtraError: Ray is asked for and is not installed.
     """
-    if not 1 <= jobs <= MOST_JOBS:
-        raise UsageError(f"jobs may be 1 to {MOST_JOBS}, not {jobs}")
+    if not 1 <= jobs <= MAX_JOBS:
+        raise UsageError(f"jobs may be 1 to {MAX_JOBS}, not {jobs}")
     kind = ENGINES.load(name)
-    return HereEngine() if name == "pool" and jobs == 1 else kind(jobs)
+    return InProcessEngine() if name == "pool" and jobs == 1 else kind(jobs)

@@ -1,8 +1,11 @@
-"""A pool of processes: each takes an item, tells how far it is, and gives its result.
+"""A pool of processes: each takes an item, reports its progress, and returns its result.
 
-A process that dies (out of memory, killed) is replaced and its item begun again: what it had
+A process that dies (out of memory, killed) is replaced and its item starts again: what it had
 written to disk is found there. Processes end with their parent, however that ends: a thread of each
 waits for that.
+
+``concurrent.futures`` would not do: when a process of its ``ProcessPoolExecutor`` is killed, every
+waiting item fails with ``BrokenProcessPool``, and which one killed it cannot be found out.
 """
 
 import os
@@ -20,12 +23,12 @@ from typing import Any
 from world2minecraft.core.errors import WorkerError
 from world2minecraft.rendering.batch.workers import picklable_error
 
-MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
+MAX_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
 PATIENCE_S = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Order:
+class WorkItem:
     """A task, an item, and the item's number."""
 
     number: int
@@ -34,14 +37,14 @@ class Order:
 
 
 @dataclass(frozen=True, eq=False)
-class Ticked:
+class ProgressMessage:
     """So many images more are done."""
 
     count: int
 
 
 @dataclass(frozen=True, eq=False)
-class Done:
+class ResultMessage:
     """An item is done."""
 
     number: int
@@ -49,44 +52,44 @@ class Done:
 
 
 @dataclass(frozen=True, eq=False)
-class Failed:
+class ErrorMessage:
     """An item has failed."""
 
     error: Exception
 
 
-class _Deserted(BaseException):
+class _ParentGone(BaseException):
     """The one who gave the order is gone."""
 
 
-def serve(pipe: Connection) -> None:
+def run_worker(pipe: Connection) -> None:
     """Do what comes through the pipe until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and ends us.
     Thread(target=_end_with_parent, daemon=True).start()
-    one_thread()
+    limit_threads()
 
     def tick(count: int) -> None:
         try:
-            pipe.send(Ticked(count))
+            pipe.send(ProgressMessage(count))
         except OSError:
-            raise _Deserted from None
+            raise _ParentGone from None
 
     try:
         while True:
-            order: Order = pipe.recv()
-            pipe.send(_answer(order, tick))
-    except (EOFError, OSError, _Deserted):
+            order: WorkItem = pipe.recv()
+            pipe.send(_execute(order, tick))
+    except (EOFError, OSError, _ParentGone):
         return
 
 
-def end_if_deserted() -> None:
+def exit_if_parent_gone() -> None:
     """End what is being done, in a worker of a pool whose parent has ended."""
     parent = parent_process()
     if parent is not None and not parent.is_alive():
-        raise _Deserted
+        raise _ParentGone
 
 
-def one_thread() -> None:
+def limit_threads() -> None:
     """Let libraries use one thread: there is a process for each core."""
     from threadpoolctl import threadpool_limits  # noqa: PLC0415
 
@@ -101,15 +104,15 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
+def _execute(order: WorkItem, tick: Callable[[int], None]) -> ResultMessage | ErrorMessage:
     try:
-        return Done(order.number, order.task(order.item, tick))
+        return ResultMessage(order.number, order.task(order.item, tick))
     except Exception as error:
-        return Failed(picklable_error(error))
+        return ErrorMessage(picklable_error(error))
 
 
 @dataclass(eq=False)
-class _Hand:
+class _Worker:
     """A worker as the pool sees it."""
 
     process: BaseProcess
@@ -124,7 +127,7 @@ class PoolEngine:
         """Name how many; they are started with the first item."""
         self.notes: list[str] = []
         self._jobs = jobs
-        self._hands: list[_Hand] = []
+        self._hands: list[_Worker] = []
 
     def __enter__(self) -> "PoolEngine":
         """Return the engine."""
@@ -161,12 +164,12 @@ class PoolEngine:
             for pipe in wait(list(busy)):
                 hand = busy[pipe]  # type: ignore[index]
                 message = self._heard(hand)
-                if isinstance(message, Ticked):
+                if isinstance(message, ProgressMessage):
                     tick(message.count)
-                elif isinstance(message, Failed):
+                elif isinstance(message, ErrorMessage):
                     hand.number = None
                     raise message.error
-                elif isinstance(message, Done):
+                elif isinstance(message, ResultMessage):
                     hand.number = None
                     yield message.number, message.result
                 else:
@@ -176,46 +179,48 @@ class PoolEngine:
         self, task: Callable[..., Any], items: Sequence[Any], waiting: deque[int]
     ) -> None:
         while waiting and len(self._hands) < min(self._jobs, len(items)):
-            self._hands.append(_started())
+            self._hands.append(_start_worker())
         for hand in self._hands:
             if hand.number is None and waiting:
                 number = waiting.popleft()
                 with suppress(OSError):  # It has died; that is heard with its pipe's end.
-                    hand.pipe.send(Order(number, task, items[number]))
+                    hand.pipe.send(WorkItem(number, task, items[number]))
                 hand.number = number
 
-    def _heard(self, hand: _Hand) -> Ticked | Done | Failed | None:
+    def _heard(self, hand: _Worker) -> ProgressMessage | ResultMessage | ErrorMessage | None:
         """Return what a worker says; None where it has died."""
         try:
             return hand.pipe.recv()
         except (EOFError, OSError):
             return None
 
-    def _replace(self, hand: _Hand, waiting: deque[int], deaths: Counter[int], count: int) -> None:
+    def _replace(
+        self, hand: _Worker, waiting: deque[int], deaths: Counter[int], count: int
+    ) -> None:
         number = hand.number if hand.number is not None else 0
         hand.pipe.close()
         hand.process.join(PATIENCE_S)
         self._hands.remove(hand)
         code, deaths[number] = hand.process.exitcode, deaths[number] + 1
         how = f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
-        if deaths[number] == MOST_DEATHS:
+        if deaths[number] == MAX_DEATHS:
             raise WorkerError(
-                f"{MOST_DEATHS} workers in turn have ended {how} over part {number + 1} of {count};"
+                f"{MAX_DEATHS} workers in turn have ended {how} over part {number + 1} of {count};"
                 " is memory short? Try fewer --jobs, then run the same command again to go on"
             )
         self.notes.append(f"A worker ended {how}; another went on where it was.")
         waiting.appendleft(number)
 
 
-def _started() -> _Hand:
+def _start_worker() -> _Worker:
     """Start a worker: a new interpreter on every system, so that all behave alike."""
     # Late: a worker reads this file too, and begins faster without the renderer.
     from world2minecraft.rendering.batch.workers import ignore_interrupts  # noqa: PLC0415
 
     context = get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=serve, args=(theirs,), name="w2m-dataset", daemon=True)
+    process = context.Process(target=run_worker, args=(theirs,), name="w2m-dataset", daemon=True)
     with ignore_interrupts():
         process.start()
     theirs.close()  # So that the pipe ends with the worker.
-    return _Hand(process, ours)
+    return _Worker(process, ours)

@@ -10,9 +10,9 @@ from importlib import import_module
 from typing import Any
 
 from world2minecraft.core.errors import MissingExtraError, WorkerError
-from world2minecraft.minecraftocc.engine.process_pool import one_thread
+from world2minecraft.minecraftocc.engine.process_pool import limit_threads
 
-AHEAD = 2  # Items in Ray's hands for each process, so that none waits.
+QUEUED_PER_CPU = 2  # Items in Ray's hands for each process, so that none waits.
 STORE_BYTES = 128 << 20  # Of shared memory: results are small.
 RETRIES = 3
 
@@ -63,8 +63,8 @@ class RayEngine:
             WorkerError: a process has died again and again. Whatever the task raises.
         """
         ray = self._ray
-        remote = ray.remote(num_cpus=1, max_retries=RETRIES)(_called)
-        most = AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+        remote = ray.remote(num_cpus=1, max_retries=RETRIES)(_call_task)
+        most = QUEUED_PER_CPU * max(1, int(ray.cluster_resources().get("CPU", 1)))
         pending: dict[Any, int] = {}
         numbers = iter(range(len(items)))
         while True:
@@ -89,8 +89,8 @@ class RayEngine:
             raise WorkerError(f"Ray gave up on a part: {told}") from error
 
 
-def _called(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:
+def _call_task(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:
     """Call a task; return its result, and how many images it told of."""
-    one_thread()
+    limit_threads()
     told: list[int] = []
     return task(item, told.append), sum(told)

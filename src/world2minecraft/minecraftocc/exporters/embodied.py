@@ -16,8 +16,12 @@ from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.minecraftocc.exporters.occscannet import OccScanNetExporter
 from world2minecraft.minecraftocc.exporters.options import ExportRule
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
-from world2minecraft.minecraftocc.formats.label_boxes import SceneGrid, StoredFrame, stored_frame
-from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
+from world2minecraft.minecraftocc.formats.label_boxes import (
+    SceneGrid,
+    StoredFrame,
+    read_stored_frame,
+)
+from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
 OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
@@ -112,12 +116,12 @@ class EmbodiedExporter:
     def _write_mask(self, row: NamedSample, frame: StoredFrame, mask: np.ndarray) -> None:
         path = self._mask_path(row)
         stored = np.ascontiguousarray(frame.labels.transpose(1, 0, 2))
-        write_bytes(path, pickle_bytes({"local_label": stored, "mask_in_global": mask}))
+        write_bytes(path, dump_pickle({"local_label": stored, "mask_in_global": mask}))
 
     def _package(
         self, grid: SceneGrid, labels: np.ndarray, seen: np.ndarray, rows: list[NamedSample]
     ) -> bytes:
-        return pickle_bytes(
+        return dump_pickle(
             {
                 "scene_dim": list(grid.shape),
                 "global_labels": labels,
@@ -130,7 +134,7 @@ class EmbodiedExporter:
         )
 
     def _stored(self, row: NamedSample) -> StoredFrame:
-        return stored_frame(self.frames.root / "gathered_data" / f"{row.path}.pkl")
+        return read_stored_frame(self.frames.root / "gathered_data" / f"{row.path}.pkl")
 
 
 def _split_of(rows: list[NamedSample]) -> str:

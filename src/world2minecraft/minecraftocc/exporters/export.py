@@ -16,7 +16,7 @@ SOURCE = "sha256"  # and the sum of the data set that is exported.
 
 
 @runtime_checkable
-class Keyed(Protocol):
+class KeyedSamples(Protocol):
     """Samples that are read by their keys, such as a store: finished ones need no reading."""
 
     def keys(self, split: str | None = None) -> Iterable[str]:
@@ -40,7 +40,7 @@ class ExportReport:
 
 
 def export_samples(
-    samples: Iterable[OccSample] | Keyed,
+    samples: Iterable[OccSample] | KeyedSamples,
     format: str,
     out: str | Path,
     rule: ExportRule | None = None,
@@ -95,10 +95,10 @@ def export_samples(
 
 
 def _entries(
-    samples: Iterable[OccSample] | Keyed, split: str | None
+    samples: Iterable[OccSample] | KeyedSamples, split: str | None
 ) -> tuple[Iterator[tuple[str, Callable[[], OccSample]]], int]:
     """Return keys with how to read their samples, and how many there are (0 = not known)."""
-    if isinstance(samples, Keyed):
+    if isinstance(samples, KeyedSamples):
         keys = list(samples.keys(split))
         store = samples
         return ((key, lambda key=key: store[key]) for key in keys), len(keys)

@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.minecraftocc.exporters.options import ExportRule
-from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image, chosen_labels
+from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image, export_labels
 from world2minecraft.minecraftocc.types import OccSample
 
 SPLITS = ("train", "test", "val", "all")
@@ -54,7 +54,7 @@ class NpzExporter:
             to_camera = invert_rigid(sample.camera_to_room) @ region.region_to_room
             in_view = cells_in_image(region.shape, region.voxel_m, to_camera, camera)[0]
         arrays = {
-            "labels": chosen_labels(occ.labels, in_view, self.rule.unknown),
+            "labels": export_labels(occ.labels, in_view, self.rule.unknown),
             "fine": occ.fine,
             "instance": occ.instance,
             "in_frustum": occ.in_frustum,

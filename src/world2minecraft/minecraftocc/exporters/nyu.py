@@ -14,20 +14,20 @@ import numpy as np
 from world2minecraft.core.files import write_bytes
 from world2minecraft.minecraftocc.exporters.options import (
     ExportRule,
-    colour_of,
-    jpeg_bytes,
-    split_of,
+    encode_jpeg,
+    export_split,
+    require_colour,
 )
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler, depth_png
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler, encode_depth
 from world2minecraft.minecraftocc.formats.label_boxes import (
     LabelledBox,
-    box_in_image,
-    check_usual,
-    chosen_labels,
+    box_cells_in_image,
+    check_standard_region,
+    export_labels,
     region_box,
 )
-from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
-from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, bin_bytes, downsampled
+from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
+from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, downsample_labels, encode_bin
 from world2minecraft.minecraftocc.types import OccSample
 
 FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}
@@ -47,23 +47,23 @@ class NyuExporter:
 
     def write(self, sample: OccSample) -> None:
         """Write the four files of a sample. Raises as ``Exporter.write`` says."""
-        check_usual(sample)
+        check_standard_region(sample)
         resampler = Resampler(sample.key, sample.camera, NYU_CAMERA)
-        folder = FOLDERS[split_of(sample)]
+        folder = FOLDERS[export_split(sample)]
         stem = self.root / folder / sample.key
-        jpeg = jpeg_bytes(resampler.colour(colour_of(sample)))
+        jpeg = encode_jpeg(resampler.colour(require_colour(sample)))
         write_bytes(stem.with_name(f"{sample.key}_color.jpg"), jpeg)
         if sample.depth_m is not None:
             depth = resampler.depth(sample.depth_m)
-            write_bytes(stem.with_name(f"{sample.key}.png"), depth_png(depth, "nyu"))
+            write_bytes(stem.with_name(f"{sample.key}.png"), encode_depth(depth, "nyu"))
         box = region_box(sample)
-        in_image = box_in_image(box, NYU_CAMERA) if self.rule.in_view else None
-        labels = chosen_labels(box.labels, in_image, self.rule.unknown).transpose(AXES)
+        in_image = box_cells_in_image(box, NYU_CAMERA) if self.rule.in_view else None
+        labels = export_labels(box.labels, in_image, self.rule.unknown).transpose(AXES)
         labels = np.ascontiguousarray(labels)
         write_bytes(
             self.root / "base" / folder / f"{sample.key}.pkl", _pickle(sample.key, labels, box)
         )
-        data = bin_bytes(labels, box.origin_m, box.camera_to_world)
+        data = encode_bin(labels, box.origin_m, box.camera_to_world)
         if self.rule.short_bin:
             data = data[:HEADER_BYTES]
         write_bytes(stem.with_name(f"{sample.key}.bin"), data)
@@ -97,12 +97,12 @@ def _pickle(name: str, labels: np.ndarray, box: LabelledBox) -> bytes:
     The 32 cm grid is made of the 8 cm one: its 4 x 4 x 4 cells stand for 16 x 16 x 16 voxels, of
     which the rule of 95 % asks the same.
     """
-    return pickle_bytes(
+    return dump_pickle(
         {
             "cam_pose": box.camera_to_world.astype(np.float32),
             "voxel_origin": box.origin_m.astype(np.float32),
             "name": name,
             "target_1_4": labels,
-            "target_1_16": downsampled(labels, 4),
+            "target_1_16": downsample_labels(labels, 4),
         }
     )

@@ -15,22 +15,27 @@ from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.exporters.options import (
     ExportRule,
-    colour_of,
-    jpeg_bytes,
-    split_of,
+    encode_jpeg,
+    export_split,
+    require_colour,
 )
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample, SceneNames
-from world2minecraft.minecraftocc.formats.cameras import HALF_PX, Resampler, depth_png, vga_camera
+from world2minecraft.minecraftocc.formats.cameras import (
+    HALF_PX,
+    Resampler,
+    encode_depth,
+    vga_camera,
+)
 from world2minecraft.minecraftocc.formats.label_boxes import (
     LabelledBox,
-    box_in_image,
-    check_usual,
-    chosen_labels,
+    box_cells_in_image,
+    check_standard_region,
+    export_labels,
     region_box,
     room_box,
 )
-from world2minecraft.minecraftocc.formats.safe_pickle import pickle_bytes
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.safe_pickle import dump_pickle
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.types import OccSample
 
 AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.
@@ -56,20 +61,22 @@ class OccScanNetExporter:
 
     def write(self, sample: OccSample) -> None:
         """Write the three files of a sample. Raises as ``Exporter.write`` says."""
-        check_usual(sample)
+        check_standard_region(sample)
         camera = vga_camera(sample.camera)
         resampler = Resampler(sample.key, sample.camera, camera)
         camera = sample.camera if resampler.same else camera
         box = self._box(sample)
-        in_image = box_in_image(box, camera) if self.rule.in_view else None
-        labels = chosen_labels(box.labels, in_image, self.rule.unknown)
+        in_image = box_cells_in_image(box, camera) if self.rule.in_view else None
+        labels = export_labels(box.labels, in_image, self.rule.unknown)
         occupied = int(np.count_nonzero((labels > 0) & (labels < 255)))
-        row = self.names.name(sample.key, sample.scene_id, split_of(sample), occupied)
+        row = self.names.name(sample.key, sample.scene_id, export_split(sample), occupied)
         picture = self.root / "posed_images" / row.path
-        write_bytes(picture.with_suffix(".jpg"), jpeg_bytes(resampler.colour(colour_of(sample))))
+        write_bytes(
+            picture.with_suffix(".jpg"), encode_jpeg(resampler.colour(require_colour(sample)))
+        )
         if sample.depth_m is not None:
             depth = resampler.depth(sample.depth_m)
-            write_bytes(picture.with_suffix(".png"), depth_png(depth, "mm"))
+            write_bytes(picture.with_suffix(".png"), encode_depth(depth, "mm"))
         data = self._pickle(row, labels, box, camera)
         write_bytes(self.root / "gathered_data" / f"{row.path}.pkl", data)
         self.names.keep(sample.key, row)
@@ -124,7 +131,7 @@ class OccScanNetExporter:
         intrinsic[:3, :3] = camera.matrix
         intrinsic[:2, 2] -= HALF_PX
         picture = f"{self.rule.data_root}/posed_images/{row.path}"
-        return pickle_bytes(
+        return dump_pickle(
             {
                 "img": f"{picture}.jpg",
                 "depth_gt": f"{picture}.png",
@@ -132,7 +139,7 @@ class OccScanNetExporter:
                 "intrinsic": intrinsic,
                 "voxel_origin": box.origin_m,
                 "target_1_4": stored,
-                "target_1_16": downsampled(stored, 4),
+                "target_1_16": downsample_labels(stored, 4),
             }
         )
 

@@ -1,4 +1,4 @@
-"""Colour as the JPEGs that the loaders open."""
+"""The options of an export, the interface of an exporter, and what several exporters share."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -71,12 +71,12 @@ class Exporter(Protocol):
         ...
 
 
-def jpeg_bytes(pixels: np.ndarray) -> bytes:
+def encode_jpeg(pixels: np.ndarray) -> bytes:
     """Return uint8 [H, W, 3] as a JPEG, its colours at full resolution."""
     return colour_bytes(pixels, ".jpg", JPEG_QUALITY)
 
 
-def colour_of(sample: OccSample) -> np.ndarray:
+def require_colour(sample: OccSample) -> np.ndarray:
     """Return a sample's colour image. Raises InputError where it has none."""
     if sample.colour is None:
         raise InputError(
@@ -85,6 +85,6 @@ def colour_of(sample: OccSample) -> np.ndarray:
     return sample.colour
 
 
-def split_of(sample: OccSample) -> str:
+def export_split(sample: OccSample) -> str:
     """Return train or test; a sample of neither goes to train."""
     return "test" if sample.split in ("test", "val") else "train"

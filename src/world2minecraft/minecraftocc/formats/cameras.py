@@ -1,7 +1,12 @@
-"""Pictures for a fixed camera: cropped and resampled where a sample has another one.
+"""Images and depth as the occupancy data sets store them: cameras, resampling and depth codes.
 
 The loaders count pixel centres as whole numbers (they round a projection), ours lie at +0.5: half
 a pixel lies between a principal point of theirs and of ours.
+
+NYU's depth PNGs hold millimetres whose 16 bits are rotated left by three. ISO rotates them back;
+Symphonies divides by 8000 instead, which is the same up to 8.191 m: beyond, the rotation wraps
+around. So whole millimetres up to 8.191 m are written, times eight, and both read them alike; what
+is farther is written as a hole. OccScanNet's PNGs hold millimetres.
 """
 
 import math
@@ -16,35 +21,35 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.output.images import number_bytes
 
-NYU_FAR_MM = 8191
-MM_FAR = 65534  # 65535 is a hole to some cameras' readers.
+NYU_MAX_MM = 8191
+MAX_MM = 65534  # 65535 is a hole to some cameras' readers.
 LOW_BITS_SHARE = 0.01
-Code = Literal["nyu", "mm"]
+DepthCode = Literal["nyu", "mm"]
 WIDTH_PX, HEIGHT_PX = 640, 480
 HALF_PX = 0.5
 NYU_FOCAL_PX = 518.8579
 NYU_CAMERA = Camera(WIDTH_PX, HEIGHT_PX, NYU_FOCAL_PX, NYU_FOCAL_PX, 320 + HALF_PX, 240 + HALF_PX)
-SLACK_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
+TOLERANCE_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
 SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
 
 
-def depth_png(depth_m: np.ndarray, code: Code) -> bytes:
+def encode_depth(depth_m: np.ndarray, code: DepthCode) -> bytes:
     """Return the PNG of float32 [H, W] metres; holes, and what is too far, are 0."""
     millimetres = np.round(np.nan_to_num(depth_m, posinf=0) * 1000).astype(np.int64)
-    far = NYU_FAR_MM if code == "nyu" else MM_FAR
+    far = NYU_MAX_MM if code == "nyu" else MAX_MM
     millimetres[(millimetres < 0) | (millimetres > far)] = 0
     values = millimetres * 8 if code == "nyu" else millimetres
     return number_bytes(values.astype(np.uint16))
 
 
-def metres_of(raw: np.ndarray, code: Code) -> np.ndarray:
+def decode_depth(raw: np.ndarray, code: DepthCode) -> np.ndarray:
     """Return float32 [H, W] metres of stored values, 0 where there is none.
 
     NYU's are told apart by their low three bits: turned millimetres have 0 or 1 there (depth under
     16.4 m), true units of 1/8000 m have any.
 
     Example:
-        >>> metres_of(np.array([[8000, 0, 16385]], np.uint16), "nyu").tolist()
+        >>> decode_depth(np.array([[8000, 0, 16385]], np.uint16), "nyu").tolist()
         [[1.0, 0.0, 10.239999771118164]]
     """
     if code == "mm":
@@ -54,9 +59,7 @@ def metres_of(raw: np.ndarray, code: Code) -> np.ndarray:
     return DepthEncoding(str(1 / 8000) if any_bits else "rotated").to_metres(raw)
 
 
-
-
-def is_same(camera: Camera, other: Camera) -> bool:
+def is_same_camera(camera: Camera, other: Camera) -> bool:
     """Return whether two cameras give the same picture, within half a pixel."""
     return (
         (camera.width_px, camera.height_px) == (other.width_px, other.height_px)
@@ -99,7 +102,7 @@ class Resampler:
         Raises:
             InputError: it sees less, or one of them has a distorting lens.
         """
-        self.same = is_same(source, target)
+        self.same = is_same_camera(source, target)
         self.source, self.target = source, target
         if self.same:
             return
@@ -107,8 +110,8 @@ class Resampler:
             raise InputError(name, "the lens distorts; render or undistort the pictures without it")
         self.left, self.width = _span(source.fx_px, source.cx_px, target.fx_px, target.cx_px, 640)
         self.top, self.height = _span(source.fy_px, source.cy_px, target.fy_px, target.cy_px, 480)
-        self.pad = math.ceil(max(self.width / 640, self.height / 480) * SLACK_PX) + 1
-        slack_x, slack_y = self.width / 640 * SLACK_PX, self.height / 480 * SLACK_PX
+        self.pad = math.ceil(max(self.width / 640, self.height / 480) * TOLERANCE_PX) + 1
+        slack_x, slack_y = self.width / 640 * TOLERANCE_PX, self.height / 480 * TOLERANCE_PX
         if (
             min(self.left + slack_x, self.top + slack_y) < 0
             or self.left + self.width > source.width_px + slack_x

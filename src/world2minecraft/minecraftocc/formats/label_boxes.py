@@ -1,4 +1,4 @@
-"""The grid of a whole scene that the boxes of its frames lie in."""
+"""The labelled box of an image, in its own axes or the room's, and the grid of a whole scene."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from world2minecraft.minecraftocc.formats.cameras import HALF_PX, HEIGHT_PX, WID
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, DEFAULT_VOXEL_M, OccSample
 
-TURN_SLACK_DEG = 0.01
+TURN_TOLERANCE_DEG = 0.01
 MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 GB.
 
 
@@ -28,7 +28,7 @@ class LabelledBox:
     camera_to_world: np.ndarray  # float64 [4, 4]
 
 
-def check_usual(sample: OccSample) -> None:
+def check_standard_region(sample: OccSample) -> None:
     """Refuse a region that the papers' loaders cannot hold.
 
     Raises:
@@ -55,7 +55,7 @@ def room_box(sample: OccSample) -> LabelledBox | None:
     region = sample.occ.region
     turn_deg = np.degrees(np.arctan2(region.region_to_room[1, 0], region.region_to_room[0, 0]))
     quarters = round(turn_deg / 90)
-    if abs(turn_deg - 90 * quarters) > TURN_SLACK_DEG:
+    if abs(turn_deg - 90 * quarters) > TURN_TOLERANCE_DEG:
         return None
     ends = np.array([[0.0, 0, 0], region.shape]) * region.voxel_m
     origin_m = apply(region.region_to_room, ends).min(axis=0)
@@ -88,7 +88,7 @@ def cells_in_image(
     return inside, np.floor(pixels).astype(np.int64), depth_m
 
 
-def box_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:
+def box_cells_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:
     """Return which cells of a box fall into an image, bool [60, 60, 36]."""
     box_to_world = np.eye(4)
     box_to_world[:3, 3] = box.origin_m
@@ -96,7 +96,7 @@ def box_in_image(box: LabelledBox, camera: Camera) -> np.ndarray:
     return cells_in_image(box.labels.shape, DEFAULT_VOXEL_M, box_to_camera, camera)[0]
 
 
-def chosen_labels(labels: np.ndarray, in_image: np.ndarray | None, unknown: str) -> np.ndarray:
+def export_labels(labels: np.ndarray, in_image: np.ndarray | None, unknown: str) -> np.ndarray:
     """Return labels with cells outside the image unknown, and unknown kept or made empty."""
     result = labels if in_image is None else np.where(in_image, labels, UNKNOWN)
     if unknown == "empty":
@@ -148,7 +148,7 @@ class StoredFrame:
     in_image: np.ndarray  # bool [60, 60, 36]
 
 
-def stored_frame(path: Path) -> StoredFrame:
+def read_stored_frame(path: Path) -> StoredFrame:
     """Read the box of a frame that was written as 640x480. Raises what ``read_pickle`` raises."""
     found: dict[str, Any] = read_pickle(path)
     matrix = np.asarray(found["intrinsic"], np.float64)
@@ -162,4 +162,4 @@ def stored_frame(path: Path) -> StoredFrame:
     )
     labels = np.ascontiguousarray(found["target_1_4"].transpose(1, 0, 2))
     box = LabelledBox(labels, np.asarray(found["voxel_origin"]), np.asarray(found["cam_pose"]))
-    return StoredFrame(labels, box.origin_m, box_in_image(box, camera))
+    return StoredFrame(labels, box.origin_m, box_cells_in_image(box, camera))

@@ -1,8 +1,15 @@
-"""Pickles of others, read without running anything: a pickle is a program, and may be hostile.
+"""Read and write pickles of arrays safely: a pickle is a program, and may be hostile.
 
-Python's unpickler calls whatever a pickle names. This one knows some fifty operations on a stack,
-and of names only those by which numpy's arrays and numbers are made; they stand for values of
-ours, so that no foreign byte reaches numpy but as the content of an array whose size was checked.
+Python's unpickler calls whatever a pickle names. ``read_pickle`` knows some fifty operations on a
+stack, and of names only those by which numpy's arrays and numbers are made; they stand for values
+of ours, so that no foreign byte reaches numpy but as the content of an array whose size was
+checked. Each ``do_NAME`` of ``PickleMachine`` is one operation of the pickle protocols 0 to 5 by
+the name that ``pickletools`` gives it. There is no operation that imports, looks up an attribute or
+calls what was looked up.
+
+``dump_pickle`` writes pickle protocol 3, the same bytes for the same values. Python's own pickler
+names numpy's modules as the numpy that runs it does; numpy 2 moved them, and the loaders run on
+numpy 1. Here they have the old names, which both know.
 """
 
 import pickletools
@@ -41,7 +48,7 @@ MAX_OPERATIONS = 200_000  # A frame takes about a hundred.
 _BROKEN = (ValueError, TypeError, KeyError, IndexError, OverflowError, MemoryError, AttributeError)
 
 
-class Refusal(Exception):
+class PickleRefused(Exception):
     """A pickle asks for what arrays and plain values do not need."""
 
 
@@ -49,7 +56,7 @@ class Mark:
     """Where the members of a tuple, list or dict begin on the stack."""
 
 
-class Named:
+class GlobalName:
     """A name that a pickle may call."""
 
     __slots__ = ("name",)
@@ -58,14 +65,14 @@ class Named:
         self.name = name
 
 
-class Type:
+class DtypeValue:
     """An array's dtype while its state is not known yet."""
 
     __slots__ = ("dtype",)
 
     def __init__(self, code: Any):
         if not isinstance(code, str) or not _CODE.fullmatch(code):
-            raise Refusal(f"has an array of {str(code)[:20]!r}")
+            raise PickleRefused(f"has an array of {str(code)[:20]!r}")
         self.dtype = np.dtype(code)
 
     def build(self, state: Any) -> "Type":
@@ -74,10 +81,10 @@ class Type:
             case (_, "<" | ">" | "|" | "=" as order, None, None, None, *_):
                 self.dtype = self.dtype.newbyteorder(order)
                 return self
-        raise Refusal("has an array of records")
+        raise PickleRefused("has an array of records")
 
 
-class Array:
+class ArrayValue:
     """An array whose content is not known yet; an operation on the stack puts it in."""
 
     __slots__ = ("values",)
@@ -86,25 +93,25 @@ class Array:
         self.values: np.ndarray | None = None
 
 
-def array_of(data: Any, dtype: Any, shape: Any, fortran: bool) -> np.ndarray:
+def make_array(data: Any, dtype: Any, shape: Any, fortran: bool) -> np.ndarray:
     """Return an array of bytes, its size checked. Raises Refusal where it does not fit."""
     if isinstance(data, str):
         data = data.encode("latin-1")
-    if not isinstance(dtype, Type) or not isinstance(data, (bytes, bytearray)):
-        raise Refusal("has an array without bytes")
+    if not isinstance(dtype, DtypeValue) or not isinstance(data, (bytes, bytearray)):
+        raise PickleRefused("has an array without bytes")
     sides = tuple(shape) if isinstance(shape, (tuple, list)) else (shape,)
     if not all(type(side) is int and 0 <= side < 1 << 32 for side in sides) or len(sides) > 8:
-        raise Refusal("has an array of no shape")
+        raise PickleRefused("has an array of no shape")
     count = 1
     for side in sides:
         count *= side
     if count * dtype.dtype.itemsize != len(data):
-        raise Refusal(f"has an array {sides} of {dtype.dtype} in {len(data):,} bytes")
+        raise PickleRefused(f"has an array {sides} of {dtype.dtype} in {len(data):,} bytes")
     flat = np.frombuffer(bytearray(data), dtype.dtype)
     return flat.reshape(sides, order="F" if fortran else "C")
 
 
-class Machine:
+class PickleMachine:
     """The stack and the memo of one pickle."""
 
     def __init__(self):
@@ -115,20 +122,20 @@ class Machine:
     def result(self) -> Any:
         """Return what the pickle stands for."""
         if not self.done or len(self.stack) != 1:
-            raise Refusal("is a pickle that does not end")
+            raise PickleRefused("is a pickle that does not end")
         return self.stack[0]
 
     def push(self, value: Any) -> None:
         """Put a value on the stack."""
         if len(self.stack) > MAX_DEPTH:
-            raise Refusal("is a pickle that piles up values")
+            raise PickleRefused("is a pickle that piles up values")
         self.stack.append(value)
 
     def pop(self) -> Any:
         """Take the last value, which may not be a mark."""
         value = self.stack.pop()
         if isinstance(value, Mark):
-            raise Refusal("is a pickle whose marks do not match")
+            raise PickleRefused("is a pickle whose marks do not match")
         return value
 
     def marked(self) -> list[Any]:
@@ -138,7 +145,7 @@ class Machine:
                 values = self.stack[index + 1 :]
                 del self.stack[index:]
                 return values
-        raise Refusal("is a pickle without a mark")
+        raise PickleRefused("is a pickle without a mark")
 
     # What makes a value out of nothing.
 
@@ -275,48 +282,48 @@ class Machine:
     def do_REDUCE(self, argument: Any) -> None:
         """Make what a name and its arguments stand for."""
         arguments, named = self.pop(), self.pop()
-        if not isinstance(named, Named) or not isinstance(arguments, tuple):
-            raise Refusal("calls what is no name")
-        self.push(_made(named.name, arguments))
+        if not isinstance(named, GlobalName) or not isinstance(arguments, tuple):
+            raise PickleRefused("calls what is no name")
+        self.push(_reduce(named.name, arguments))
 
     def do_BUILD(self, argument: Any) -> None:
         """Give an array its content or a dtype its byte order."""
         state, value = self.pop(), self.stack[-1]
-        if isinstance(value, Type):
+        if isinstance(value, DtypeValue):
             value.build(state)
-        elif isinstance(value, Array) and isinstance(state, tuple) and len(state) == 5:
+        elif isinstance(value, ArrayValue) and isinstance(state, tuple) and len(state) == 5:
             _, shape, dtype, fortran, data = state
-            value.values = array_of(data, dtype, shape, bool(fortran))
+            value.values = make_array(data, dtype, shape, bool(fortran))
         else:
-            raise Refusal(f"sets the state of a {type(value).__name__}")
+            raise PickleRefused(f"sets the state of a {type(value).__name__}")
 
     def _list(self) -> list[Any]:
         if not isinstance(self.stack[-1], list):
-            raise Refusal("lengthens what is no list")
+            raise PickleRefused("lengthens what is no list")
         return self.stack[-1]
 
     def _set(self, values: list[Any]) -> None:
         if not isinstance(self.stack[-1], dict) or len(values) % 2:
-            raise Refusal("sets keys of what is no dict")
+            raise PickleRefused("sets keys of what is no dict")
         self.stack[-1].update(zip(values[::2], values[1::2], strict=True))
 
     def _name(self, module: Any, name: Any) -> None:
         if (module, name) not in _NAMES:
-            raise Refusal(f"names {str(module)[:60]}.{str(name)[:60]}, which no array needs")
-        self.push(Named(_NAMES[module, name]))
+            raise PickleRefused(f"names {str(module)[:60]}.{str(name)[:60]}, which no array needs")
+        self.push(GlobalName(_NAMES[module, name]))
 
 
-def _made(name: str, arguments: tuple[Any, ...]) -> Any:
+def _reduce(name: str, arguments: tuple[Any, ...]) -> Any:
     """Return what a call stands for, or refuse the arguments."""
     match name, arguments:
-        case "reconstruct", (Named(name="ndarray"), (0,), _):
-            return Array()
+        case "reconstruct", (GlobalName(name="ndarray"), (0,), _):
+            return ArrayValue()
         case "dtype", (code, *_):
-            return Type(code)
-        case "scalar", (Type() as dtype, data):
-            return array_of(data, dtype, (), False)[()]
+            return DtypeValue(code)
+        case "scalar", (DtypeValue() as dtype, data):
+            return make_array(data, dtype, (), False)[()]
         case "frombuffer", (data, dtype, shape, order):
-            return array_of(data, dtype, shape, order == "F")
+            return make_array(data, dtype, shape, order == "F")
         case "encode", (str() as text, "latin1" | "latin-1"):
             return text.encode("latin-1")
         case "dict", ():
@@ -325,13 +332,10 @@ def _made(name: str, arguments: tuple[Any, ...]) -> Any:
             return b""
         case "bytes", (bytes() as data,):
             return data
-    raise Refusal(f"calls {name} as no array does")
+    raise PickleRefused(f"calls {name} as no array does")
 
 
-
-
-
-def pickle_bytes(values: Mapping[str, Value]) -> bytes:
+def dump_pickle(values: Mapping[str, Value]) -> bytes:
     """Return the pickle of a dict.
 
     Raises:
@@ -339,60 +343,58 @@ def pickle_bytes(values: Mapping[str, Value]) -> bytes:
 
     Example:
         >>> import pickle
-        >>> pickle.loads(pickle_bytes({"name": "a", "shape": [60, 60, 36]}))
+        >>> pickle.loads(dump_pickle({"name": "a", "shape": [60, 60, 36]}))
         {'name': 'a', 'shape': [60, 60, 36]}
     """
     parts = [b"\x80\x03}("]
     for name, value in values.items():
-        parts += [_text(name), _value(value)]
+        parts += [_encode_text(name), _encode_value(value)]
     return b"".join([*parts, b"u."])
 
 
-def _value(value: Value) -> bytes:
+def _encode_value(value: Value) -> bytes:
     if value is None:
         return b"N"
     if isinstance(value, (bool, np.bool_)):
         return b"\x88" if value else b"\x89"
     if isinstance(value, str):
-        return _text(value)
+        return _encode_text(value)
     if isinstance(value, (int, np.integer)):
-        return _whole(int(value))
+        return _encode_int(int(value))
     if isinstance(value, (float, np.floating)):
         return b"G" + struct.pack(">d", float(value))
     if isinstance(value, np.ndarray):
-        return _array(value)
+        return _encode_array(value)
     if isinstance(value, (list, tuple)):
-        return b"](" + b"".join(_value(member) for member in value) + b"e"
+        return b"](" + b"".join(_encode_value(member) for member in value) + b"e"
     raise TypeError(f"a pickle for other loaders holds no {type(value).__name__}")
 
 
-def _text(value: str) -> bytes:
+def _encode_text(value: str) -> bytes:
     data = value.encode()
     return b"X" + struct.pack("<I", len(data)) + data
 
 
-def _whole(value: int) -> bytes:
+def _encode_int(value: int) -> bytes:
     if -(1 << 31) <= value < 1 << 31:
         return b"J" + struct.pack("<i", value)
     data = value.to_bytes(value.bit_length() // 8 + 1, "little", signed=True)
     return b"\x8a" + struct.pack("<B", len(data)) + data
 
 
-def _array(values: np.ndarray) -> bytes:
+def _encode_array(values: np.ndarray) -> bytes:
     """An array is made empty, then given its shape, its dtype and its bytes in C order."""
     if values.dtype.kind not in KINDS:
         raise TypeError(f"a pickle for other loaders holds no array of {values.dtype}")
     little = values.astype(values.dtype.newbyteorder("<"), order="C", copy=False)
     data = little.tobytes()
     order = b"X\x01\x00\x00\x00" + (b"|" if little.dtype.itemsize == 1 else b"<")
-    code = _text(f"{little.dtype.kind}{little.dtype.itemsize}")
+    code = _encode_text(f"{little.dtype.kind}{little.dtype.itemsize}")
     dtype = _DTYPE + code + b"\x89\x88\x87R(K\x03" + order + b"NNNJ\xff\xff\xff\xff"
     dtype += b"J\xff\xff\xff\xffK\x00tb"
-    shape = b"(" + b"".join(_whole(side) for side in little.shape) + b"t"
+    shape = b"(" + b"".join(_encode_int(side) for side in little.shape) + b"t"
     size = b"B" + struct.pack("<I", len(data)) + data
     return _RECONSTRUCT + b"(K\x01" + shape + dtype + b"\x89" + size + b"tb"
-
-
 
 
 def read_pickle(path: str | Path, limit_bytes: int = MAX_BYTES) -> dict[str, Any]:
@@ -410,41 +412,41 @@ def read_pickle(path: str | Path, limit_bytes: int = MAX_BYTES) -> dict[str, Any
 def parse_pickle(data: bytes, name: object = "pickle") -> dict[str, Any]:
     """Read the bytes of a pickled dict. Raises what ``read_pickle`` raises."""
     try:
-        found = _run(data)
+        found = _interpret(data)
         if not isinstance(found, dict):
-            raise Refusal(f"holds a {type(found).__name__}, not a dict")
+            raise PickleRefused(f"holds a {type(found).__name__}, not a dict")
         return {_key(key): _plain(value) for key, value in found.items()}
-    except Refusal as error:
+    except PickleRefused as error:
         raise DamagedFileError(name, f"{error}; it is not read") from error
     except _BROKEN as error:
         words = reason_of(error, 120)
         raise DamagedFileError(name, f"is no whole pickle ({words})") from error
 
 
-def _run(data: bytes) -> Any:
-    machine = Machine()
+def _interpret(data: bytes) -> Any:
+    machine = PickleMachine()
     for count, (operation, argument, _) in enumerate(pickletools.genops(data)):
         if count > MAX_OPERATIONS:
-            raise Refusal(f"is a program of over {MAX_OPERATIONS:,} steps")
+            raise PickleRefused(f"is a program of over {MAX_OPERATIONS:,} steps")
         step: Callable[[Any], None] | None = getattr(machine, f"do_{operation.name}", None)
         if step is None:
-            raise Refusal(f"is a pickle with {operation.name}, which no array needs")
+            raise PickleRefused(f"is a pickle with {operation.name}, which no array needs")
         step(argument)
     return machine.result()
 
 
 def _key(key: Any) -> str:
     if not isinstance(key, str):
-        raise Refusal(f"has a key that is a {type(key).__name__}, not a text")
+        raise PickleRefused(f"has a key that is a {type(key).__name__}, not a text")
     return key
 
 
 def _plain(value: Any, depth: int = 0) -> Any:
     """Return a value of ours as one of Python's or numpy's; lists lie at most three deep."""
-    if isinstance(value, Array) and value.values is not None:
+    if isinstance(value, ArrayValue) and value.values is not None:
         return value.values
     if value is None or isinstance(value, (bool, int, float, str, bytes, np.ndarray, np.generic)):
         return value
     if isinstance(value, (list, tuple)) and depth < 3:
         return [_plain(member, depth + 1) for member in value]
-    raise Refusal(f"holds a {type(value).__name__}")
+    raise PickleRefused(f"holds a {type(value).__name__}")

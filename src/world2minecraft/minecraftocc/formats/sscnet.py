@@ -55,7 +55,7 @@ def read_bin(path: str | Path) -> SscnetFrame:
     head = np.frombuffer(data, "<f4", 19)
     pairs = np.frombuffer(data, "<u4", offset=HEADER_BYTES).reshape(-1, 2)
     try:
-        codes = _expanded(pairs)
+        codes = _expand_runs(pairs)
     except ValueError as error:
         raise DamagedFileError(path, f"{error}; it is no SSCNet .bin") from error
     table = np.zeros(256, np.uint8)
@@ -63,7 +63,7 @@ def read_bin(path: str | Path) -> SscnetFrame:
     return SscnetFrame(table[codes].reshape(FINE_SHAPE), head[:3].copy(), head[3:].reshape(4, 4))
 
 
-def _expanded(pairs: np.ndarray) -> np.ndarray:
+def _expand_runs(pairs: np.ndarray) -> np.ndarray:
     """Return the codes, uint8 [8294400], of runs whose sum is checked first."""
     voxels, held = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
     if held != voxels:
@@ -74,7 +74,7 @@ def _expanded(pairs: np.ndarray) -> np.ndarray:
     return np.repeat(values.astype(np.uint8), pairs[:, 1])
 
 
-def bin_bytes(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.ndarray) -> bytes:
+def encode_bin(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.ndarray) -> bytes:
     """Return the ``.bin`` of an 8 cm grid: each cell is 4 x 4 x 4 equal voxels.
 
     ``downsampled(read_bin(...).labels, 4)`` gives the grid back: an equal block is all of one
@@ -98,7 +98,7 @@ def bin_bytes(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.ndar
     return head.tobytes() + runs.tobytes()
 
 
-def downsampled(labels: np.ndarray, factor: int) -> np.ndarray:
+def downsample_labels(labels: np.ndarray, factor: int) -> np.ndarray:
     """Return a grid with cells ``factor`` times as large, by the rule of SSCNet's loaders.
 
     A cell of which more than 95 % is empty or unknown is the more frequent of the two (unknown
@@ -111,7 +111,7 @@ def downsampled(labels: np.ndarray, factor: int) -> np.ndarray:
     Example:
         >>> fine = np.zeros((4, 4, 4), np.uint8)
         >>> fine[0, 0, :4] = 2
-        >>> int(downsampled(fine, 4)[0, 0, 0])
+        >>> int(downsample_labels(fine, 4)[0, 0, 0])
         2
     """
     sides = tuple(side // factor for side in labels.shape)

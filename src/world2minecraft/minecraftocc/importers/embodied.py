@@ -18,7 +18,7 @@ from world2minecraft.minecraftocc.importers.samples import (
     ImportedSet,
     checked_labels,
     checked_numbers,
-    sample_of,
+    make_sample,
 )
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
@@ -141,6 +141,6 @@ def _read(frames: Path, key: str, file: Path, split: str) -> OccSample:
     if "local_label" not in stored:
         raise DamagedFileError(file, "has no local_label")
     found = read_frame(frames, f"{scene}/{number}", stored["local_label"])
-    return sample_of(
+    return make_sample(
         found, key, scene_id=scene, tour_id="", frame=int(number), split=split, format="embodied"
     )

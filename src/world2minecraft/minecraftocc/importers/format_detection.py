@@ -12,7 +12,7 @@ from world2minecraft.minecraftocc.importers.occscannet import is_occscannet, ope
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 
 
-class Kind(NamedTuple):
+class FormatReader(NamedTuple):
     """How a format is found out and opened."""
 
     is_at: Callable[[Path], bool]
@@ -34,12 +34,12 @@ def _open_store(path: Path) -> ImportedSet:
 
 
 # In the order in which they are tried: embodied holds occscannet.
-IMPORTED: dict[str, Kind] = {
-    "store": Kind(_is_store, _open_store),
-    "embodied": Kind(is_embodied, open_embodied),
-    "nyu": Kind(is_nyu, open_nyu),
-    "occscannet": Kind(is_occscannet, open_occscannet),
-    "npz": Kind(is_npz, open_npz),
+IMPORTED: dict[str, FormatReader] = {
+    "store": FormatReader(_is_store, _open_store),
+    "embodied": FormatReader(is_embodied, open_embodied),
+    "nyu": FormatReader(is_nyu, open_nyu),
+    "occscannet": FormatReader(is_occscannet, open_occscannet),
+    "npz": FormatReader(is_npz, open_npz),
 }
 
 

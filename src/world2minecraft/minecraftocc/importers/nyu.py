@@ -12,16 +12,16 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.cameras import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
-from world2minecraft.minecraftocc.formats.sscnet import downsampled, read_bin
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels, read_bin
 from world2minecraft.minecraftocc.importers.samples import (
-    Found,
+    ImportedFrame,
     ImportedSet,
-    as_large_as,
     checked_labels,
-    colour_at,
-    depth_at,
-    resized_colour,
-    sample_of,
+    make_sample,
+    read_colour_if_present,
+    read_depth_if_present,
+    resize_colour,
+    resize_depth,
 )
 from world2minecraft.minecraftocc.types import OccSample
 
@@ -113,18 +113,18 @@ def _pickle_of(folder: Path, name: str, path: Path, labels: Path | None) -> Path
 def _read(key: str, place: _Place) -> OccSample:
     stored, origin_m, pose, source = _labels(place)
     picture = place.folder / f"{place.name}_color.jpg"
-    colour = colour_at(picture)
+    colour = read_colour_if_present(picture)
     if colour is not None:
         height, width = colour.shape[:2]
         if abs(width * HEIGHT_PX / (height * WIDTH_PX) - 1) > SAME_SHAPE:
             raise DamagedFileError(picture, f"is {width}x{height}; NYUv2's pictures are 640x480")
-        colour = resized_colour(colour, WIDTH_PX, HEIGHT_PX)
-    depth_m = depth_at(place.folder / f"{place.name}.png", "nyu")
+        colour = resize_colour(colour, WIDTH_PX, HEIGHT_PX)
+    depth_m = read_depth_if_present(place.folder / f"{place.name}.png", "nyu")
     if depth_m is not None:
-        depth_m = as_large_as(depth_m, NYU_CAMERA)
+        depth_m = resize_depth(depth_m, NYU_CAMERA)
     labels = np.ascontiguousarray(checked_labels(stored, STORED_SHAPE, source).transpose(AXES))
-    found = Found(source, labels, origin_m, pose, NYU_CAMERA, colour, depth_m)
-    return sample_of(
+    found = ImportedFrame(source, labels, origin_m, pose, NYU_CAMERA, colour, depth_m)
+    return make_sample(
         found, key, scene_id=place.name, tour_id="", frame=0, split=place.split, format="nyu"
     )
 
@@ -134,7 +134,7 @@ def _labels(place: _Place) -> tuple[np.ndarray, np.ndarray, np.ndarray, Path]:
     if place.labels is None:
         path = place.folder / f"{place.name}.bin"
         frame = read_bin(path)
-        return downsampled(frame.labels, 4), frame.origin_m, frame.camera_to_world, path
+        return downsample_labels(frame.labels, 4), frame.origin_m, frame.camera_to_world, path
     found = read_pickle(place.labels)
     missing = [name for name in ("target_1_4", "voxel_origin", "cam_pose") if name not in found]
     if missing:

@@ -15,15 +15,15 @@ from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.importers.samples import (
-    Found,
+    ImportedFrame,
     ImportedSet,
-    as_large_as,
     checked_labels,
     checked_numbers,
-    colour_at,
-    depth_at,
-    resized_colour,
-    sample_of,
+    make_sample,
+    read_colour_if_present,
+    read_depth_if_present,
+    resize_colour,
+    resize_depth,
 )
 from world2minecraft.minecraftocc.types import DEFAULT_SHAPE, OccSample
 
@@ -70,7 +70,7 @@ def _listed(path: Path, split: str) -> set[str]:
 
 def _read(root: Path, key: str, name: str, split: str) -> OccSample:
     scene, frame = name.split("/")
-    return sample_of(
+    return make_sample(
         read_frame(root, name),
         key,
         scene_id=scene,
@@ -81,7 +81,7 @@ def _read(root: Path, key: str, name: str, split: str) -> OccSample:
     )
 
 
-def read_frame(root: Path, name: str, labels: Any = None) -> Found:
+def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
     """Read one frame, ``scene0000_00/00000``, at 640x480 as all its loaders do.
 
     Args:
@@ -100,17 +100,17 @@ def read_frame(root: Path, name: str, labels: Any = None) -> Found:
     shape = (DEFAULT_SHAPE[1], DEFAULT_SHAPE[0], DEFAULT_SHAPE[2])
     held = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
     picture = root / "posed_images" / name
-    colour = colour_at(picture.with_suffix(".jpg"))
+    colour = read_colour_if_present(picture.with_suffix(".jpg"))
     camera = _camera(stored["intrinsic"], colour, path)
-    depth_m = depth_at(picture.with_suffix(".png"), "mm")
-    return Found(
+    depth_m = read_depth_if_present(picture.with_suffix(".png"), "mm")
+    return ImportedFrame(
         name=path,
         labels=np.ascontiguousarray(held.transpose(AXES)),
         origin_m=stored["voxel_origin"],
         camera_to_world=stored["cam_pose"],
         camera=camera,
-        colour=None if colour is None else resized_colour(colour, WIDTH_PX, HEIGHT_PX),
-        depth_m=None if depth_m is None else as_large_as(depth_m, camera),
+        colour=None if colour is None else resize_colour(colour, WIDTH_PX, HEIGHT_PX),
+        depth_m=None if depth_m is None else resize_depth(depth_m, camera),
     )
 
 

@@ -1,8 +1,8 @@
-"""A sample out of what other formats hold: labels in a world, a camera, pictures.
+"""Imported data sets, and how a sample is made of the labels, camera and images of other formats.
 
-They say nothing of single blocks or objects: the fine classes are the 12 classes, and there are no
-instances. Where there is depth, it tells which cells are seen first and through which empty ones
-one looks; else both masks are left empty, and the sample's facts say so.
+Other formats name no single blocks or objects: the fine classes are the 12 classes, and there are
+no instances. Where there is depth, it shows which cells are seen first and which empty ones are
+crossed; else both masks are left empty, and the sample's facts say so.
 """
 
 from collections import Counter
@@ -21,7 +21,7 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import unproject_depth
-from world2minecraft.minecraftocc.formats.cameras import Code, metres_of
+from world2minecraft.minecraftocc.formats.cameras import DepthCode, decode_depth
 from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
 from world2minecraft.minecraftocc.types import (
     DEFAULT_SHAPE,
@@ -34,7 +34,7 @@ from world2minecraft.minecraftocc.types import (
 
 CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
 INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.
-SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
+MAX_SKEW = 1e-3  # A pose of float32, or of a few printed digits, is put right within this.
 HITS_FACT, FREE_FACT = "first seen, by depth", "centres in front of the depth"
 
 
@@ -75,12 +75,12 @@ class ImportedSet:
         return len(self.splits)
 
 
-def colour_at(path: Path) -> np.ndarray | None:
+def read_colour_if_present(path: Path) -> np.ndarray | None:
     """Read uint8 [H, W, 3], or return None where there is no file."""
     return read_colour(path) if path.is_file() else None
 
 
-def depth_at(path: Path, code: Code) -> np.ndarray | None:
+def read_depth_if_present(path: Path, code: DepthCode) -> np.ndarray | None:
     """Read float32 [H, W] metres, or return None where there is no file.
 
     Raises:
@@ -89,10 +89,10 @@ def depth_at(path: Path, code: Code) -> np.ndarray | None:
     if not path.is_file():
         return None
     check_depth_kind(path, read_header(path))
-    return metres_of(read_raw(path), code)
+    return decode_depth(read_raw(path), code)
 
 
-def resized_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
+def resize_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
     """Return a picture at another size, as the loaders resize theirs."""
     if pixels.shape[:2] == (height_px, width_px):
         return pixels
@@ -101,7 +101,7 @@ def resized_colour(pixels: np.ndarray, width_px: int, height_px: int) -> np.ndar
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class ImportedFrame:
     """What a format holds of one image."""
 
     name: Path  # For messages.
@@ -113,8 +113,15 @@ class Found:
     depth_m: np.ndarray | None
 
 
-def sample_of(
-    found: Found, key: str, *, scene_id: str, tour_id: str, frame: int, split: str, format: str
+def make_sample(
+    found: ImportedFrame,
+    key: str,
+    *,
+    scene_id: str,
+    tour_id: str,
+    frame: int,
+    split: str,
+    format: str,
 ) -> OccSample:
     """Return the sample, its world taken as the room.
 
@@ -123,7 +130,7 @@ def sample_of(
     """
     region_to_room = np.eye(4)
     region_to_room[:3, 3] = _checked_origin(found)
-    camera_to_room = _rigid(found)
+    camera_to_room = _orthonormal_pose(found)
     region = LabelRegion(DEFAULT_SHAPE, DEFAULT_VOXEL_M, region_to_room)
     facts: dict[str, Any] = {"format": format}
     has_depth = found.depth_m is not None
@@ -171,7 +178,7 @@ def checked_numbers(values: Any, shape: tuple[int, ...], what: str, name: Path) 
     return numbers
 
 
-def as_large_as(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
+def resize_depth(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
     """Return depth at a camera's size, of the nearest pixels."""
     rows, columns = depth_m.shape
     if (rows, columns) == (camera.height_px, camera.width_px):
@@ -181,23 +188,25 @@ def as_large_as(depth_m: np.ndarray, camera: Camera) -> np.ndarray:
     return np.ascontiguousarray(depth_m[down.astype(int)[:, None], across.astype(int)])
 
 
-def _checked_origin(found: Found) -> np.ndarray:
+def _checked_origin(found: ImportedFrame) -> np.ndarray:
     return checked_numbers(found.origin_m, (3,), "voxel origin", found.name)
 
 
-def _rigid(found: Found) -> np.ndarray:
+def _orthonormal_pose(found: ImportedFrame) -> np.ndarray:
     """Return the pose with its rotation exactly orthonormal."""
     pose = checked_numbers(found.camera_to_world, (4, 4), "camera pose", found.name)
     left, _, right = np.linalg.svd(pose[:3, :3])
     turn = left @ right
-    if np.abs(turn - pose[:3, :3]).max() > SKEW or np.linalg.det(turn) < 0:
+    if np.abs(turn - pose[:3, :3]).max() > MAX_SKEW or np.linalg.det(turn) < 0:
         raise DamagedFileError(found.name, "has a camera pose that is no rotation and shift")
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = turn, pose[:3, 3]
     return result
 
 
-def _labels_with_masks(found: Found, region: LabelRegion, camera_to_room: np.ndarray) -> OccLabels:
+def _labels_with_masks(
+    found: ImportedFrame, region: LabelRegion, camera_to_room: np.ndarray
+) -> OccLabels:
     labels, depth_m = found.labels, found.depth_m
     region_to_camera = invert_rigid(camera_to_room) @ region.region_to_room
     inside, pixels, centre_m = cells_in_image(
@@ -220,7 +229,7 @@ def _labels_with_masks(found: Found, region: LabelRegion, camera_to_room: np.nda
     )
 
 
-def _hits(found: Found, region: LabelRegion, camera_to_region: np.ndarray) -> np.ndarray:
+def _hits(found: ImportedFrame, region: LabelRegion, camera_to_region: np.ndarray) -> np.ndarray:
     """Count the pixels whose point, a little behind its depth, lies in each occupied cell."""
     if found.depth_m is None:
         return np.zeros(region.shape, np.uint32)

@@ -12,8 +12,10 @@ import numpy as np
 from world2minecraft.core.jit import inlined, njit
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, FULL, OWNER
 
-NOBODY = -1
-ROUND = 0.1  # Blocks: how far a block's cells are looked for around it; thin shapes stick out.
+NO_OWNER = -1
+SEARCH_MARGIN = (
+    0.1  # Blocks: how far a block's cells are looked for around it; thin shapes stick out.
+)
 _MARGIN = 1e-4  # Of a cell's volume.
 _SAMPLES = 4  # Points a side that tell how much of a cell a turned box fills.
 
@@ -39,7 +41,7 @@ def fill_slab(
         slack: see above.
         first: the first layer along the first axis.
         amount: float32 [A, B, C], 0 before.
-        owner: int32 [A, B, C], ``NOBODY`` before.
+        owner: int32 [A, B, C], ``NO_OWNER`` before.
         scratch: float64 [S, S, S], all 0; a block's cells fit in.
     """
     near, past = np.zeros(3, np.int64), np.zeros(3, np.int64)
@@ -57,58 +59,58 @@ def fill_slab(
                     continue
                 at[0], at[1], at[2] = i - start[0], j - start[1], k - start[2]
                 for axis in range(3):
-                    base[axis] = int(np.floor((at[axis] - ROUND) / step))
+                    base[axis] = int(np.floor((at[axis] - SEARCH_MARGIN) / step))
                 if space[i, j, k] == FULL:
-                    _add_straight(cube[:3], cube[3:], at, base, step, slack, scratch)
+                    _add_aligned_box(cube[:3], cube[3:], at, base, step, slack, scratch)
                 else:
                     look = looks[i, j, k]
                     for n in refs[look_start[look] : look_start[look + 1]]:
                         if boxes.there[n] and not traits[n, FLAGS] & ABSOLUTE:
-                            _add(boxes, n, at, base, step, slack, scratch)
+                            _add_box(boxes, n, at, base, step, slack, scratch)
                 a, b, c = i - window[0, 0], j - window[0, 1], k - window[0, 2]
                 cell = (a * window[1, 1] + b) * window[1, 2] + c
-                _commit(base, step, first, cell, amount, owner, scratch)
+                _claim_block_cells(base, step, first, cell, amount, owner, scratch)
     for n in standing:
         _fill_standing(boxes, n, -2 - traits[n, OWNER], start, step, slack, first, amount, owner)
 
 
 @inlined
-def _meets(low, high, cell, step, slack):
+def _overlaps(low, high, cell, step, slack):
     """Tell whether a span meets a cell that is shrunk on both sides."""
     return high > cell * step + slack and low < (cell + 1) * step - slack
 
 
 @inlined
-def _common(low, high, cell, step):
+def _overlap_length(low, high, cell, step):
     """Return the length that a span has in a cell."""
     return max(min(high, (cell + 1) * step) - max(low, cell * step), 0.0)
 
 
 @njit
-def _add_straight(low, high, at, base, step, slack, scratch):
+def _add_aligned_box(low, high, at, base, step, slack, scratch):
     """Add a straight box, told from ``at``, to a block's cells."""
     x0, x1 = at[0] + low[0], at[0] + high[0]
     y0, y1 = at[1] + low[1], at[1] + high[1]
     z0, z1 = at[2] + low[2], at[2] + high[2]
     size = scratch.shape[0]
     for a in range(size):
-        if not _meets(x0, x1, base[0] + a, step, slack):
+        if not _overlaps(x0, x1, base[0] + a, step, slack):
             continue
-        wide = _common(x0, x1, base[0] + a, step)
+        wide = _overlap_length(x0, x1, base[0] + a, step)
         for b in range(size):
-            if not _meets(y0, y1, base[1] + b, step, slack):
+            if not _overlaps(y0, y1, base[1] + b, step, slack):
                 continue
-            area = wide * _common(y0, y1, base[1] + b, step)
+            area = wide * _overlap_length(y0, y1, base[1] + b, step)
             for c in range(size):
-                if _meets(z0, z1, base[2] + c, step, slack):
-                    scratch[a, b, c] += area * _common(z0, z1, base[2] + c, step)
+                if _overlaps(z0, z1, base[2] + c, step, slack):
+                    scratch[a, b, c] += area * _overlap_length(z0, z1, base[2] + c, step)
 
 
 @njit
-def _add(boxes, n, at, base, step, slack, scratch):
+def _add_box(boxes, n, at, base, step, slack, scratch):
     """Add an element's box to a block's cells."""
     if boxes.straight[n]:
-        _add_straight(boxes.low[n], boxes.high[n], at, base, step, slack, scratch)
+        _add_aligned_box(boxes.low[n], boxes.high[n], at, base, step, slack, scratch)
         return
     size = scratch.shape[0]
     for a in range(size):
@@ -116,12 +118,12 @@ def _add(boxes, n, at, base, step, slack, scratch):
             for c in range(size):
                 x, y, z = (base[0] + a) * step, (base[1] + b) * step, (base[2] + c) * step
                 x, y, z = x - at[0], y - at[1], z - at[2]
-                scratch[a, b, c] += turned_amount(boxes.centre[n], boxes.half[n], x, y, z, step,
+                scratch[a, b, c] += rotated_box_volume(boxes.centre[n], boxes.half[n], x, y, z, step,
                                                   slack)  # fmt: skip
 
 
 @njit
-def _commit(base, step, first, who, amount, owner, scratch):
+def _claim_block_cells(base, step, first, who, amount, owner, scratch):
     """Let a block have the cells that it fills more than others so far, and empty ``scratch``."""
     size = scratch.shape[0]
     for a in range(size):
@@ -137,14 +139,14 @@ def _commit(base, step, first, who, amount, owner, scratch):
                     and 0 <= j < amount.shape[1]
                     and 0 <= k < amount.shape[2]
                 ):
-                    _take(i, j, k, who, filled, step, amount, owner)
+                    _claim_cell(i, j, k, who, filled, step, amount, owner)
 
 
 @inlined
-def _take(i, j, k, who, filled, step, amount, owner):
+def _claim_cell(i, j, k, who, filled, step, amount, owner):
     if owner[i, j, k] == who:
         amount[i, j, k] += filled
-    elif owner[i, j, k] == NOBODY or filled > amount[i, j, k] + _MARGIN * step**3:
+    elif owner[i, j, k] == NO_OWNER or filled > amount[i, j, k] + _MARGIN * step**3:
         amount[i, j, k], owner[i, j, k] = filled, who
 
 
@@ -163,24 +165,26 @@ def _fill_standing(boxes, n, who, start, step, slack, first, amount, owner):
         for j in range(near[1], past[1]):
             for k in range(near[2], past[2]):
                 if not boxes.straight[n]:
-                    filled = turned_amount(
+                    filled = rotated_box_volume(
                         centre, boxes.half[n], i * step, j * step, k * step, step, slack
                     )
                 elif (
-                    _meets(low[0], high[0], i, step, slack)
-                    and _meets(low[1], high[1], j, step, slack)
-                    and _meets(low[2], high[2], k, step, slack)
+                    _overlaps(low[0], high[0], i, step, slack)
+                    and _overlaps(low[1], high[1], j, step, slack)
+                    and _overlaps(low[2], high[2], k, step, slack)
                 ):
-                    filled = _common(low[0], high[0], i, step) * _common(low[1], high[1], j, step)
-                    filled *= _common(low[2], high[2], k, step)
+                    filled = _overlap_length(low[0], high[0], i, step) * _overlap_length(
+                        low[1], high[1], j, step
+                    )
+                    filled *= _overlap_length(low[2], high[2], k, step)
                 else:
                     filled = 0.0
                 if filled > 0:
-                    _take(i - first, j, k, who, filled, step, amount, owner)
+                    _claim_cell(i - first, j, k, who, filled, step, amount, owner)
 
 
 @njit
-def turned_amount(centre, half, x, y, z, step, slack):
+def rotated_box_volume(centre, half, x, y, z, step, slack):
     """Return how much of the cell at (x, y, z) a turned box fills; 0 where it does not reach in.
 
     Two convex bodies do not meet exactly where some axis parts them: one of the cell's, one of the
@@ -189,7 +193,7 @@ def turned_amount(centre, half, x, y, z, step, slack):
     dx, dy, dz = centre[0] - x - step / 2, centre[1] - y - step / 2, centre[2] - z - step / 2
     reach = step / 2 - slack
     for axis in range(15):
-        ax, ay, az = _parting_axis(half, axis)
+        ax, ay, az = _separating_axis(half, axis)
         own = abs(ax) + abs(ay) + abs(az)
         box = 0.0
         for edge in range(3):
@@ -203,7 +207,7 @@ def turned_amount(centre, half, x, y, z, step, slack):
         pz = ((place % _SAMPLES + 0.5) / _SAMPLES - 0.5) * step - dz
         within = True
         for edge in range(3):
-            nx, ny, nz = _normal(half, edge)
+            nx, ny, nz = _face_normal(half, edge)
             hx, hy, hz = half[edge, 0], half[edge, 1], half[edge, 2]
             within &= abs(px * nx + py * ny + pz * nz) <= abs(hx * nx + hy * ny + hz * nz)
         inside += within
@@ -211,20 +215,20 @@ def turned_amount(centre, half, x, y, z, step, slack):
 
 
 @inlined
-def _normal(half, edge):
+def _face_normal(half, edge):
     """Return the normal of the two sides that an edge of a box leads to; it may lean."""
     p, q = half[(edge + 1) % 3], half[(edge + 2) % 3]
     return p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]
 
 
 @inlined
-def _parting_axis(half, number):
+def _separating_axis(half, number):
     """Return one of the 15 axes that may part a cell and a box."""
     if number < 3:
         x, y = 1.0 if number == 0 else 0.0, 1.0 if number == 1 else 0.0
         return x, y, 1.0 - x - y
     if number < 6:
-        return _normal(half, number - 3)
+        return _face_normal(half, number - 3)
     edge, axis = (number - 6) // 3, (number - 6) % 3
     hx, hy, hz = half[edge, 0], half[edge, 1], half[edge, 2]
     if axis == 0:

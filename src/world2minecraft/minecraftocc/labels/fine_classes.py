@@ -10,12 +10,12 @@ from world2minecraft.minecraft.entities import display_cubes
 from world2minecraft.minecraftocc.types import FineClass
 
 EMPTY = FineClass("minecraft:air")
-MOST_CLASSES = 65_535
+MAX_CLASSES = 65_535
 Designs = tuple[np.ndarray, tuple[str, ...]]  # uint16 [X, Y, Z] of block axes; names, "" first
 
 
 @dataclass(frozen=True, eq=False)
-class FineNames:
+class FineClassMap:
     """The fine class of each cell of a volume and of each standing thing."""
 
     classes: tuple[FineClass, ...]  # the first is ``EMPTY``
@@ -30,7 +30,7 @@ class FineNames:
         return self.table[self.states[cells], design]
 
 
-def fine_names(volume: BlockVolume, designs: Designs | None = None) -> FineNames:
+def map_fine_classes(volume: BlockVolume, designs: Designs | None = None) -> FineClassMap:
     """Number the blocks and designs of a volume.
 
     A display entity has the design that most blocks of its object have.
@@ -49,13 +49,13 @@ def fine_names(volume: BlockVolume, designs: Designs | None = None) -> FineNames
     things = _things(volume, codes, names)
     found = {FineClass(blocks[row], names[design]) for row, design in pairs} | set(things)
     classes = (EMPTY, *sorted(found - {EMPTY}))
-    if len(classes) > MOST_CLASSES:
-        raise UsageError(f"a world may have {MOST_CLASSES:,} kinds of blocks, not {len(classes):,}")
+    if len(classes) > MAX_CLASSES:
+        raise UsageError(f"a world may have {MAX_CLASSES:,} kinds of blocks, not {len(classes):,}")
     number = {fine: place for place, fine in enumerate(classes)}
     table = np.zeros((len(blocks), len(names)), np.uint16)
     for row, design in pairs:
         table[row, design] = number[FineClass(blocks[row], names[design])]
-    return FineNames(
+    return FineClassMap(
         classes=classes,
         table=table,
         states=volume.states.reshape(-1),

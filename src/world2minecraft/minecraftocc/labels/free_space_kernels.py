@@ -16,7 +16,7 @@ TILE = 8  # Pixels a side whose greatest depth is kept.
 
 
 @lean
-def greatest_depths(depth, tiles):
+def max_depth_tiles(depth, tiles):
     """Fill ``tiles`` float32 [ceil(H / TILE), ceil(W / TILE)]; 0 counts as endless."""
     height, width = depth.shape
     tiles[:] = 0
@@ -37,7 +37,7 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
         place: float64 [3, 4], back again.
         lens: float64 [4], fx, fy, cx, cy.
         depth: float32 [H, W], z-depth in metres, 0 where a ray meets nothing.
-        tiles: of ``greatest_depths``.
+        tiles: of ``max_depth_tiles``.
         ends: float64 [9, 3], scratch.
         free: bool [X, Y, Z], filled in place.
     """
@@ -52,26 +52,28 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
                 free[i, j, k] = False
                 if labels[i, j, k] != 0:
                     continue
-                x, y, z = _carry(to_camera, i + 0.5, j + 0.5, k + 0.5)
-                if z + sizes[2] <= CROSSED_M or _beside(to_camera, lens, width, height, x, y, z):
+                x, y, z = _transform(to_camera, i + 0.5, j + 0.5, k + 0.5)
+                if z + sizes[2] <= CROSSED_M or _outside_frustum(
+                    to_camera, lens, width, height, x, y, z
+                ):
                     continue
                 if z > 0:
                     u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
                     inside = 0 <= u < width and 0 <= v < height
-                    if inside and crosses(place, lens, depth, int(u), int(v), i, j, k):
+                    if inside and ray_crosses_cell(place, lens, depth, int(u), int(v), i, j, k):
                         free[i, j, k] = True
                         continue
                 nearest = z - sizes[2]
                 if nearest > CROSSED_M:
-                    box = _around(lens, sizes, x, y, z)
-                    if not _is_some_deeper(tiles, depth.shape, box, nearest):
+                    box = _projected_bounds(lens, sizes, x, y, z)
+                    if not _any_tile_deeper(tiles, depth.shape, box, nearest):
                         continue
-                box = _outline(to_camera, lens, ends[1:], i, j, k)
-                free[i, j, k] = _some_ray(place, lens, depth, tiles, box, i, j, k, nearest)
+                box = _corner_bounds(to_camera, lens, ends[1:], i, j, k)
+                free[i, j, k] = _any_ray_crosses(place, lens, depth, tiles, box, i, j, k, nearest)
 
 
 @inlined
-def _around(lens, sizes, x, y, z):
+def _projected_bounds(lens, sizes, x, y, z):
     """Return left, right, top and bottom, in pixels, of a box around a cell before the camera."""
     off = 1.0 / (z * (z - sizes[2]))
     wide = lens[0] * (sizes[0] * z + abs(x) * sizes[2]) * off
@@ -81,7 +83,7 @@ def _around(lens, sizes, x, y, z):
 
 
 @inlined
-def _carry(matrix, x, y, z):
+def _transform(matrix, x, y, z):
     return (
         matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * z + matrix[0, 3],
         matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * z + matrix[1, 3],
@@ -90,7 +92,7 @@ def _carry(matrix, x, y, z):
 
 
 @inlined
-def _beside(to_camera, lens, width, height, x, y, z):
+def _outside_frustum(to_camera, lens, width, height, x, y, z):
     """Tell whether a cell lies wholly beyond one side of what the camera sees."""
     low_u, high_u, low_v, high_v = 0.0, 0.0, 0.0, 0.0
     for axis in range(3):
@@ -108,7 +110,7 @@ def _beside(to_camera, lens, width, height, x, y, z):
 
 
 @lean
-def crosses(place, lens, depth, u, v, i, j, k):
+def ray_crosses_cell(place, lens, depth, u, v, i, j, k):
     """Tell whether the ray of pixel (u, v) goes through cell (i, j, k) before its surface."""
     end = np.float64(depth[v, u]) if depth[v, u] > 0 else np.inf
     x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
@@ -136,7 +138,7 @@ def _pixels(shape, box):
 
 
 @lean
-def _is_some_deeper(tiles, shape, box, nearest):
+def _any_tile_deeper(tiles, shape, box, nearest):
     """Tell whether some tile of those that a box covers has a ray that ends beyond ``nearest``."""
     u0, u1, v0, v1 = _pixels(shape, box)
     if u1 < u0 or v1 < v0:
@@ -149,7 +151,7 @@ def _is_some_deeper(tiles, shape, box, nearest):
 
 
 @lean
-def _some_ray(place, lens, depth, tiles, box, i, j, k, nearest):
+def _any_ray_crosses(place, lens, depth, tiles, box, i, j, k, nearest):
     """Tell whether some pixel's ray goes through a cell; nothing of it is nearer than ``nearest``.
 
     Only pixels count that ``box`` (left, right, top, bottom) surrounds, and of those no tile whose
@@ -166,13 +168,13 @@ def _some_ray(place, lens, depth, tiles, box, i, j, k, nearest):
                 for u in range(max(u0, column * TILE), min(u1 + 1, (column + 1) * TILE)):
                     if 0 < depth[v, u] <= nearest:
                         continue
-                    if crosses(place, lens, depth, u, v, i, j, k):
+                    if ray_crosses_cell(place, lens, depth, u, v, i, j, k):
                         return True
     return False
 
 
 @lean
-def _outline(to_camera, lens, ends, i, j, k):
+def _corner_bounds(to_camera, lens, ends, i, j, k):
     """Return left, right, top and bottom, in pixels, of what of a cell is before the camera.
 
     What is nearer than ``CROSSED_M`` is cut off: a ray that is in the cell there alone is not long
@@ -181,9 +183,9 @@ def _outline(to_camera, lens, ends, i, j, k):
     box = (np.inf, -np.inf, np.inf, -np.inf)
     for corner in range(8):
         a, b, c = i + corner // 4, j + corner // 2 % 2, k + corner % 2
-        ends[corner, 0], ends[corner, 1], ends[corner, 2] = _carry(to_camera, a, b, c)
+        ends[corner, 0], ends[corner, 1], ends[corner, 2] = _transform(to_camera, a, b, c)
         if ends[corner, 2] >= CROSSED_M:
-            box = _with(box, lens, ends[corner, 0], ends[corner, 1], ends[corner, 2])
+            box = _grow_bounds(box, lens, ends[corner, 0], ends[corner, 1], ends[corner, 2])
     for corner in range(8):
         for bit in (1, 2, 4):
             other = corner | bit
@@ -193,11 +195,11 @@ def _outline(to_camera, lens, ends, i, j, k):
             share = near / (near - far)
             x = ends[corner, 0] + share * (ends[other, 0] - ends[corner, 0])
             y = ends[corner, 1] + share * (ends[other, 1] - ends[corner, 1])
-            box = _with(box, lens, x, y, CROSSED_M)
+            box = _grow_bounds(box, lens, x, y, CROSSED_M)
     return box
 
 
 @inlined
-def _with(box, lens, x, y, z):
+def _grow_bounds(box, lens, x, y, z):
     u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
     return min(box[0], u), max(box[1], u), min(box[2], v), max(box[3], v)

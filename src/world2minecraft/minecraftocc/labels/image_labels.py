@@ -20,12 +20,12 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, greatest_depths, mark_free
+from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, mark_free, max_depth_tiles
 from world2minecraft.minecraftocc.labels.label_kernels import (
     count_hits,
-    gather,
+    gather_labels,
     mark_in_frustum,
-    sources,
+    source_cells,
 )
 from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
@@ -52,13 +52,13 @@ def label_image(
         camera_to_room: 4x4, OpenCV axes, metres.
         depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
     """
-    view = _View(voxels, region, camera, camera_to_room, depth_m)
+    view = _ImageView(voxels, region, camera, camera_to_room, depth_m)
     labels, fine, instance = view.held
     in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
     height, width = view.depth_m.shape
     mark_in_frustum(view.to_camera, view.lens, width, height, in_frustum)
     tiles = np.empty((-(-height // TILE), -(-width // TILE)), np.float32)
-    greatest_depths(view.depth_m, tiles)
+    max_depth_tiles(view.depth_m, tiles)
     mark_free(
         labels, view.to_camera, view.place, view.lens, view.depth_m, tiles, np.empty((9, 3)), free
     )
@@ -80,7 +80,7 @@ def cells_of_pixels(
     Returns:
         int32 [H, W]; ``hits`` counts its values.
     """
-    return _View(voxels, region, camera, camera_to_room, depth_m).hits(True)[1]
+    return _ImageView(voxels, region, camera, camera_to_room, depth_m).hits(True)[1]
 
 
 def cast_depth(
@@ -102,11 +102,11 @@ def cast_depth(
         The camera, and z-depth float32 [H, W] with 0 where there is nothing.
     """
     if width_px is not None:
-        camera = resized(camera, width_px)
+        camera = resize_camera(camera, width_px)
     return camera, render_volume(scene, camera, camera_to_room, outputs=()).depth_m
 
 
-def resized(camera: Camera, width_px: int) -> Camera:
+def resize_camera(camera: Camera, width_px: int) -> Camera:
     """Return the camera with another number of pixels for the same view."""
     if width_px == camera.width_px:
         return camera
@@ -127,17 +127,17 @@ def label_view(
     return label_image(voxels, region, camera, camera_to_room, depth_m)
 
 
-def occluded(occ: OccLabels) -> np.ndarray:
+def occluded_cells(occ: OccLabels) -> np.ndarray:
     """Bool [X, Y, Z]: cells in the frustum that hold something and that no pixel sees."""
     return occ.in_frustum & (occ.fine > 0) & (occ.hits == 0)
 
 
-def unknown(occ: OccLabels) -> np.ndarray:
+def unknown_cells(occ: OccLabels) -> np.ndarray:
     """Bool [X, Y, Z]: cells in the frustum of which the image says nothing, and that are empty."""
     return occ.in_frustum & (occ.fine == 0) & (occ.hits == 0) & ~occ.free
 
 
-class _View:
+class _ImageView:
     """An image's camera and its region, in the numbers that the kernels read."""
 
     def __init__(
@@ -155,7 +155,7 @@ class _View:
         self.depth_m = np.ascontiguousarray(depth_m, np.float32)
         self.lens = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
         self.place = _place(region, camera_to_room)
-        self.held = gathered(voxels, region)
+        self.held = gather_region(voxels, region)
         self.to_camera = np.ascontiguousarray(invert(np.vstack([self.place, [0, 0, 0, 1]]))[:3])
 
     def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -166,15 +166,15 @@ class _View:
         hits = np.zeros(box.shape, np.uint32)
         cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
         count_hits(
-            gathered(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
+            gather_region(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
             self.depth_m, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells,
         )  # fmt: skip
         if box is self.region:
             return hits, cells
-        return _sampled(self.region, self.held[1], box, hits, cells)
+        return _resample_hits(self.region, self.held[1], box, hits, cells)
 
 
-def gathered(
+def gather_region(
     voxels: SceneVoxels, region: LabelRegion, more: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return what a region's cells hold: labels, fine classes and objects, [X, Y, Z].
@@ -187,7 +187,7 @@ def gathered(
     shape = tuple(side + 2 * more for side in region.shape)
     found = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
     to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
-    gather(voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *found)
+    gather_labels(voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *found)
     return found
 
 
@@ -224,26 +224,26 @@ def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
     return LabelRegion((size[0], size[1], size[2]), voxels.voxel_m, to_room)
 
 
-def _sampled(
+def _resample_hits(
     region: LabelRegion, fine: np.ndarray, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the hits, and the pixels' cells, of a region whose cells are samples of a box's."""
     source = np.empty(region.shape, np.int32)
     to_box = _to_cells_of(box.region_to_room[:3, 3], box.voxel_m, region)
-    sources(to_box, np.array(box.shape), source)
+    source_cells(to_box, np.array(box.shape), source)
     source = source.reshape(-1)
     own = np.where(source >= 0, hits.reshape(-1)[source], 0).astype(np.uint32)
     back = np.full(hits.size + 1, -1, np.int32)  # The last is of pixels that see no cell.
     back[source[source >= 0]] = np.flatnonzero(source >= 0)
     lost = np.flatnonzero((hits.reshape(-1) > 0) & (back[:-1] < 0))
     middles = np.stack(np.unravel_index(lost, box.shape), axis=-1) + 0.5
-    back[lost] = _nearest_held(fine, apply(invert(np.vstack([to_box, [0, 0, 0, 1]])), middles))
+    back[lost] = _nearest_occupied(fine, apply(invert(np.vstack([to_box, [0, 0, 0, 1]])), middles))
     lost = lost[back[lost] >= 0]
     np.add.at(own, back[lost], hits.reshape(-1)[lost])
     return own.reshape(region.shape), back[cells]
 
 
-def _nearest_held(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
+def _nearest_occupied(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return the number of the cell nearest to each place that holds something, -1 for none.
 
     Args:

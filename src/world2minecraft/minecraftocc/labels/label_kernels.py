@@ -13,7 +13,7 @@ OUTSIDE_LABEL = 255
 
 
 @lean
-def gather(labels, fine, instance, to_scene, first, out_labels, out_fine, out_instance):
+def gather_labels(labels, fine, instance, to_scene, first, out_labels, out_fine, out_instance):
     """Copy to each cell of a region what the scene has at its middle.
 
     Args:
@@ -249,7 +249,7 @@ def _aside(at, step):
 
 
 @lean
-def sources(to_box, shape, found):
+def source_cells(to_box, shape, found):
     """Tell which cell of a box the middle of each cell of a region lies in.
 
     Args:

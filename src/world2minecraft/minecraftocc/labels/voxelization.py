@@ -1,9 +1,11 @@
-"""A world of blocks to the cells that images are labelled with.
+"""Voxelize a world of blocks into the cells that images are labelled with.
 
-A cell is occupied where a solid shape reaches more than ``SLACK_M`` into it. Shapes are those that
-the renderer draws (``minecraftocc.labels.voxelization``), display entities among them, so that what a ray meets lies
-in an occupied cell. A cell's class, object and fine class are those of the block that fills most of
-it. Blocks that are not drawn, as barriers are, leave their cells empty.
+A cell is occupied where a solid shape reaches more than ``TOLERANCE_M`` into it. Shapes are the
+boxes of the renderer's tables, display entities among them, so that what a ray meets lies in an
+occupied cell. A hole in a texture is no hole here: a pane, a plant, leaves and bars are the boxes
+that their textures are drawn on. A shape thinner than ``MIN_THICKNESS_M`` is taken as that thick.
+A cell's class, object and fine class are those of the block that fills most of it. Blocks that are
+not drawn, as barriers are, leave their cells empty.
 """
 
 from collections.abc import Sequence
@@ -15,19 +17,21 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraftocc.labels.box_kernels import NOBODY, ROUND, fill_slab
-from world2minecraft.minecraftocc.labels.fine_classes import Designs, FineNames, fine_names
+from world2minecraft.minecraftocc.labels.box_kernels import NO_OWNER, SEARCH_MARGIN, fill_slab
+from world2minecraft.minecraftocc.labels.fine_classes import Designs, FineClassMap, map_fine_classes
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, SceneVoxels
 from world2minecraft.rendering import BlockScene, prepare_scene
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, TURN, SceneTables
 
-LEAST_THICK_M = 0.004
-_STRAIGHT = 1e-6  # Blocks: what an edge may lean and still count as straight.
-SLACK_M = 0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
-LEAST_VOXEL_M = 0.01
-MOST_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
+MIN_THICKNESS_M = 0.004
+_ALIGNED = 1e-6  # Blocks: what an edge may lean and still count as straight.
+TOLERANCE_M = (
+    0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
+)
+MIN_VOXEL_M = 0.01
+MAX_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
 SLAB_CELLS = 4_000_000  # That are filled at a time.
-_EVEN = 1e-6  # Cells: borders nearer than this are one.
+_SAME_BORDER = 1e-6  # Cells: borders nearer than this are one.
 
 
 class SolidBoxes(NamedTuple):
@@ -59,7 +63,7 @@ def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
         axes[turned], shift[turned] = back[:, :3, :3].transpose(0, 2, 1), back[:, :3, 3]
     centre = np.einsum("ea,eab->eb", (low + high) / 2, axes) + shift
     lengths = np.linalg.norm(axes, axis=2)
-    reach = np.maximum((high - low) / 2 * lengths, LEAST_THICK_M / 2 / metres_per_block)
+    reach = np.maximum((high - low) / 2 * lengths, MIN_THICKNESS_M / 2 / metres_per_block)
     half = axes / np.maximum(lengths, 1e-12)[..., None] * reach[..., None]
     around = np.abs(half).sum(axis=1)
     leaning = np.sort(np.abs(half), axis=2)[..., :2].max(axis=(1, 2), initial=0.0)
@@ -68,7 +72,7 @@ def solid_boxes(tables: SceneTables, metres_per_block: float) -> SolidBoxes:
         high=centre + around,
         centre=centre,
         half=np.ascontiguousarray(half),
-        straight=leaning < _STRAIGHT,
+        straight=leaning < _ALIGNED,
         there=np.any(tables.layers >= 0, axis=1).astype(bool),
     )
 
@@ -90,7 +94,7 @@ class _Lattice:
         return turned[tuple(slice(None, None, -1 if flip else None) for flip in self.flips)]
 
 
-def scene_voxels(
+def voxelize_scene(
     volume: BlockVolume,
     designs: Designs | None = None,
     *,
@@ -108,21 +112,21 @@ def scene_voxels(
         scene: the volume's ``prepare_scene``, where there is one already.
 
     Raises:
-        UsageError: the cells are too small, or more than ``MOST_CELLS``, or the world does not
+        UsageError: the cells are too small, or more than ``MAX_CELLS``, or the world does not
             stand along the room's axes.
 
     Example:
         >>> from world2minecraft.procgen import generate_room
-        >>> SLACK_M < LEAST_VOXEL_M
+        >>> TOLERANCE_M < MIN_VOXEL_M
         True
     """
-    if voxel_m is not None and not voxel_m >= LEAST_VOXEL_M:
-        raise UsageError(f"a cell is {LEAST_VOXEL_M} m or more, not {voxel_m}")
+    if voxel_m is not None and not voxel_m >= MIN_VOXEL_M:
+        raise UsageError(f"a cell is {MIN_VOXEL_M} m or more, not {voxel_m}")
     scene = prepare_scene(volume) if scene is None else scene
     lattice, voxel_m = _lattice(volume, scene, voxel_m, within_m)
-    names = fine_names(volume, designs)
+    names = map_fine_classes(volume, designs)
     result = SceneVoxels(
-        *_filled(volume, scene, lattice, names), names.classes, voxel_m, lattice.origin_m
+        *_fill_lattice(volume, scene, lattice, names), names.classes, voxel_m, lattice.origin_m
     )
     return result
 
@@ -148,14 +152,14 @@ def _lattice(
     zero = low if voxel_m is None else np.zeros(3)
     if within_m is not None:
         low, high = np.maximum(low, within_m[0]), np.minimum(high, within_m[1])
-    first = np.floor((low - zero) / size + _EVEN).astype(np.int64)
-    last = np.maximum(np.ceil((high - zero) / size - _EVEN).astype(np.int64), first + 1)
+    first = np.floor((low - zero) / size + _SAME_BORDER).astype(np.int64)
+    last = np.maximum(np.ceil((high - zero) / size - _SAME_BORDER).astype(np.int64), first + 1)
     shape = _checked_shape(last - first, size)
     origin = zero + first * size
     corners = np.array([origin, origin + np.array(shape) * size])
     start = (corners @ scene.room_to_grid[:3, :3].T + scene.room_to_grid[:3, 3]).min(axis=0)
     lattice = _Lattice(
-        start=np.where(np.abs(start - np.round(start)) < _EVEN, np.round(start), start),
+        start=np.where(np.abs(start - np.round(start)) < _SAME_BORDER, np.round(start), start),
         step=1.0 if voxel_m is None else size / side,
         origin_m=origin,
         shape=shape,
@@ -167,16 +171,16 @@ def _lattice(
 
 def _checked_shape(shape: np.ndarray, voxel_m: float) -> tuple[int, int, int]:
     count = float(np.prod(shape.astype(float)))
-    if count > MOST_CELLS:
+    if count > MAX_CELLS:
         raise UsageError(
             f"{'x'.join(map(str, shape))} cells of {voxel_m:g} m take {count * 5 / 1e9:.0f} GB; "
-            f"{MOST_CELLS:,} cells are allowed: take larger cells, one a block, or a part of it"
+            f"{MAX_CELLS:,} cells are allowed: take larger cells, one a block, or a part of it"
         )
     return int(shape[0]), int(shape[1]), int(shape[2])
 
 
-def _filled(
-    volume: BlockVolume, scene: BlockScene, lattice: _Lattice, names: FineNames
+def _fill_lattice(
+    volume: BlockVolume, scene: BlockScene, lattice: _Lattice, names: FineClassMap
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return labels, fine classes and objects of a lattice's cells, in room order."""
     labels = np.zeros(lattice.shape, np.uint8)
@@ -186,15 +190,15 @@ def _filled(
     depth, wide, high = views[0].shape
     thick = max(SLAB_CELLS // (wide * high), 1)
     for first in range(0, depth, thick):
-        owner = _owners(scene, boxes, lattice, first, (min(thick, depth - first), wide, high))
-        taken = np.nonzero(owner != NOBODY)
-        what = _described(owner[taken], volume, scene, names)
+        owner = _slab_owners(scene, boxes, lattice, first, (min(thick, depth - first), wide, high))
+        taken = np.nonzero(owner != NO_OWNER)
+        what = _describe_owners(owner[taken], volume, scene, names)
         for view, values in zip(views, what, strict=True):
             view[first : first + thick][taken] = values
     return labels, fine, instance
 
 
-def _owners(
+def _slab_owners(
     scene: BlockScene,
     boxes: SolidBoxes,
     lattice: _Lattice,
@@ -204,18 +208,18 @@ def _owners(
     """Return who has each cell of a slab, int32, as ``solid_kernels`` numbers them."""
     tables = scene.tables
     standing = np.flatnonzero((tables.traits[:, FLAGS] & ABSOLUTE > 0) & boxes.there)
-    side = int(np.ceil((1 + 2 * ROUND) / lattice.step)) + 1
-    owner = np.full(shape, NOBODY, np.int32)
+    side = int(np.ceil((1 + 2 * SEARCH_MARGIN) / lattice.step)) + 1
+    owner = np.full(shape, NO_OWNER, np.int32)
     fill_slab(
         tables.space, tables.looks, tables.look_start, tables.refs, tables.traits, tables.window,
-        boxes, standing, lattice.start, lattice.step, SLACK_M * scene.cells_per_metre, first,
+        boxes, standing, lattice.start, lattice.step, TOLERANCE_M * scene.cells_per_metre, first,
         np.zeros(shape, np.float32), owner, np.zeros((side, side, side)),
     )  # fmt: skip
     return owner
 
 
-def _described(
-    owner: np.ndarray, volume: BlockVolume, scene: BlockScene, names: FineNames
+def _describe_owners(
+    owner: np.ndarray, volume: BlockVolume, scene: BlockScene, names: FineClassMap
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return label, fine class and object of each owner; without a class it is unknown."""
     is_cell = owner >= 0

@@ -1,6 +1,8 @@
-"""Counting a data set, a picture at a time, in memory that does not grow with the pictures.
+"""Count a data set, an image at a time, in memory that does not grow with the images.
 
-Counters of parts of a data set add up to that of the whole: ``merge``.
+Counters of parts of a data set add up to that of the whole: ``merge``. The distinct cells of a
+world are kept as one bit each, in blocks of 32 a side, so that a hundred thousand images take no
+more memory than the worlds that they show.
 """
 
 from collections import Counter, defaultdict
@@ -13,7 +15,7 @@ from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply
 from world2minecraft.minecraftocc.importers.samples import CLASS_KINDS
 from world2minecraft.minecraftocc.statistics.types import (
-    ENOUGH_PIXELS,
+    MIN_PIXELS,
     DatasetStatistics,
     FineCount,
     SceneCount,
@@ -163,14 +165,14 @@ def region_text(shape: Iterable[int], voxel_m: float) -> str:
 
 
 @dataclass
-class _Fine:
+class _FineSums:
     pixels: int = 0
     pictures: int = 0
     clear: int = 0
 
 
 @dataclass
-class _Scene:
+class _SceneSums:
     pictures: int = 0
     voxels: int = 0
     rooms: int | None = None  # As told of the scene.
@@ -190,9 +192,9 @@ class StatisticsCounter:
     pictures: int = 0
     uncut_voxels: int = 0
     class_voxels: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
-    _scenes: dict[str, _Scene] = field(default_factory=lambda: defaultdict(_Scene))
+    _scenes: dict[str, _SceneSums] = field(default_factory=lambda: defaultdict(_SceneSums))
     _cells: dict[str, WorldCells] = field(default_factory=lambda: defaultdict(WorldCells))
-    _fine: dict[str, _Fine] = field(default_factory=lambda: defaultdict(_Fine))
+    _fine: dict[str, _FineSums] = field(default_factory=lambda: defaultdict(_FineSums))
     _without_fine: int = 0
     _sizes: Counter[str] = field(default_factory=Counter)
     _splits: Counter[str] = field(default_factory=Counter)
@@ -215,7 +217,7 @@ class StatisticsCounter:
             fine = self._fine[name]
             fine.pixels += pixels
             fine.pictures += 1
-            fine.clear += pixels >= ENOUGH_PIXELS
+            fine.clear += pixels >= MIN_PIXELS
 
     def add_cells(self, scene_id: str, occ: OccLabels) -> None:
         """Add which cells of its world a picture holds: those that the paper counts."""

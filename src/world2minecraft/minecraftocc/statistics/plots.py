@@ -11,7 +11,7 @@ from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.minecraftocc.statistics.published_figures import NYU_TRAIN_VOXELS
-from world2minecraft.minecraftocc.statistics.tables import class_shares, short
+from world2minecraft.minecraftocc.statistics.tables import class_shares, format_count
 from world2minecraft.minecraftocc.statistics.types import DatasetStatistics
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 WIDTH_IN, HEIGHT_IN, DPI = 7.6, 4.2, 200
 ROW_IN = 0.3  # The height of a class.
 FAINT, RULE, OURS = "#6d747c", "#dfe3e7", "#3f7cac"
-WIDEST = 0.08  # Of the axis: the widest step, where there are few.
+MAX_LABEL = 0.08  # Of the axis: the widest step, where there are few.
 
 
 def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]:
@@ -62,7 +62,7 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     ours, theirs = class_shares(statistics.class_voxels), class_shares(NYU_TRAIN_VOXELS)
     order = sorted(range(len(ours)), key=lambda n: -ours[n])
     under = f"{statistics.voxels:,} voxels of {statistics.pictures:,} pictures; the line is NYUv2's"
-    figure, axes = _page(f"Classes of {statistics.name}", under, 1.1 + ROW_IN * len(order))
+    figure, axes = _new_page(f"Classes of {statistics.name}", under, 1.1 + ROW_IN * len(order))
     colours = [tuple(part / 255 for part in CLASS_COLOURS[n + 1]) for n in order]
     rows = np.arange(len(order))
     axes.barh(rows, [ours[n] for n in order], color=colours)
@@ -74,7 +74,7 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     axes.grid(axis="x", color=RULE)
     beside = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
     for row, n in enumerate(order):
-        told = {1.08: f"{ours[n]:.1%}", 1.18: short(statistics.class_voxels[n + 1])}
+        told = {1.08: f"{ours[n]:.1%}", 1.18: format_count(statistics.class_voxels[n + 1])}
         for place, text in told.items():
             axes.text(place, row, text, transform=beside, ha="right", va="center")
     return figure
@@ -83,33 +83,37 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
 def scene_plot(statistics: DatasetStatistics) -> "Figure":
     """Draw the voxels of each scene, most first."""
     values = sorted((scene.voxels for scene in statistics.scenes), reverse=True)
-    under = f"{len(values):,} scenes; mean {short(statistics.voxels_per_scene)} voxels"
-    return _steps(f"Voxels of the scenes of {statistics.name}", under, values, "scenes")
+    under = f"{len(values):,} scenes; mean {format_count(statistics.voxels_per_scene)} voxels"
+    return _draw_steps(f"Voxels of the scenes of {statistics.name}", under, values, "scenes")
 
 
 def fine_plot(statistics: DatasetStatistics) -> "Figure":
     """Draw the pixels of each fine class that is seen enough, most first, on a log scale."""
     values = [one.pixels for one in statistics.fine or () if one.is_seen_enough]
     under = f"{len(values):,} fine classes that are seen enough, by their pixels on a log scale"
-    return _steps(f"Fine classes of {statistics.name}", under, values, "fine classes", log=True)
+    return _draw_steps(
+        f"Fine classes of {statistics.name}", under, values, "fine classes", log=True
+    )
 
 
-def _steps(title: str, under: str, values: Sequence[int], what: str, log: bool = False) -> "Figure":
+def _draw_steps(
+    title: str, under: str, values: Sequence[int], what: str, log: bool = False
+) -> "Figure":
     """Draw values that fall from left to right as an area, with lines at round numbers."""
-    figure, axes = _page(title, under, HEIGHT_IN)
+    figure, axes = _new_page(title, under, HEIGHT_IN)
     axes.stairs(values, np.arange(len(values) + 1), fill=True, color=OURS, baseline=int(log))
-    axes.set_xlim(0, max(len(values), 1 / WIDEST))
+    axes.set_xlim(0, max(len(values), 1 / MAX_LABEL))
     if log:
         axes.set_yscale("log")
     axes.set_ylim(int(log), 1.05 * max([2, *values]))
-    axes.yaxis.set_major_formatter(lambda value, _: short(value).replace(".0", ""))
+    axes.yaxis.set_major_formatter(lambda value, _: format_count(value).replace(".0", ""))
     axes.set_xticks([])
     axes.set_xlabel(f"{len(values):,} {what}", loc="left", color=FAINT)
     axes.grid(axis="y", color=RULE)
     return figure
 
 
-def _page(title: str, under: str, height_in: float) -> "tuple[Figure, Axes]":
+def _new_page(title: str, under: str, height_in: float) -> "tuple[Figure, Axes]":
     from matplotlib.figure import Figure  # noqa: PLC0415
 
     figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")

@@ -11,8 +11,8 @@ from world2minecraft.minecraftocc.statistics.published_figures import (
     PUBLISHED_SETS,
 )
 from world2minecraft.minecraftocc.statistics.types import (
-    ENOUGH_PICTURES,
-    ENOUGH_PIXELS,
+    MIN_PICTURES,
+    MIN_PIXELS,
     DatasetStatistics,
 )
 
@@ -38,8 +38,8 @@ _SPECIAL = {
 
 def statistics_text(statistics: DatasetStatistics) -> str:
     """Return the paper's table with the data set below it, and its classes."""
-    lines = columns([HEAD, *_published(), _own_row(statistics)])
-    lines += ["", *_told(statistics), "", *_class_lines(statistics)]
+    lines = align_columns([HEAD, *_published(), _own_row(statistics)])
+    lines += ["", *_detail_lines(statistics), "", *_class_lines(statistics)]
     if statistics.fine:
         lines += ["", *_fine_lines(statistics)]
     return "\n".join(lines)
@@ -55,7 +55,7 @@ def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
         "rooms": statistics.rooms,
         "classes": ["empty", *statistics.classes_present],
         "fine_classes": statistics.fine_classes,
-        "fine_rule": {"pixels": ENOUGH_PIXELS, "pictures": ENOUGH_PICTURES},
+        "fine_rule": {"pixels": MIN_PIXELS, "pictures": MIN_PICTURES},
         "voxels": statistics.voxels,
         "voxels_per_scene": statistics.voxels_per_scene,
         "uncut_voxels": statistics.uncut_voxels,
@@ -81,11 +81,11 @@ def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
 def statistics_latex(statistics: DatasetStatistics) -> str:
     """Return the table as the paper prints it, for ``booktabs``."""
     rows = [*_published(), _own_row(statistics)]
-    head = " & ".join(rf"\textbf{{{escape(word.capitalize())}}}" for word in HEAD)
+    head = " & ".join(rf"\textbf{{{escape_latex(word.capitalize())}}}" for word in HEAD)
     lines = [rf"\begin{{tabular}}{{l{'r' * (len(HEAD) - 2)}c}}", r"\toprule", head + r" \\"]
     lines.append(r"\midrule")
     for row in rows:
-        cells = [escape(word) for word in row[:-1]] + [_times(row[-1])]
+        cells = [escape_latex(word) for word in row[:-1]] + [_times(row[-1])]
         lines.append(" & ".join(cells) + r" \\")
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"])
 
@@ -96,7 +96,7 @@ def class_shares(class_voxels: Sequence[int]) -> list[float]:
     return [count / total if total else 0.0 for count in class_voxels[1:]]
 
 
-def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+def align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
     """Return rows as lines, the first column to the left, the others to the right."""
     widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
     return [
@@ -108,21 +108,21 @@ def columns(rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def escape(text: str) -> str:
+def escape_latex(text: str) -> str:
     r"""Return a text as LaTeX takes it.
 
     Example:
-        >>> print(escape("oak_planks & 5 %"))
+        >>> print(escape_latex("oak_planks & 5 %"))
         oak\_planks \& 5 \%
     """
     return "".join(_SPECIAL.get(letter, letter) for letter in text)
 
 
-def short(number: float) -> str:
+def format_count(number: float) -> str:
     """Return a number of cells as the paper writes it.
 
     Example:
-        >>> short(23247), short(4_700_514), short(812)
+        >>> short(23247), short(4_700_514), format_count(812)
         ('23.2K', '4.7M', '812')
     """
     for size, letter in ((1e9, "B"), (1e6, "M"), (1e3, "K")):
@@ -133,7 +133,7 @@ def short(number: float) -> str:
 
 def _times(size: str) -> str:
     width, _, height = size.partition("x")
-    return rf"${width} \times {height}$" if height else escape(size)
+    return rf"${width} \times {height}$" if height else escape_latex(size)
 
 
 def _published() -> list[tuple[str, ...]]:
@@ -145,7 +145,7 @@ def _published() -> list[tuple[str, ...]]:
             _or_dash(row.rooms, "~"),
             f"{row.classes:,}",
             f"{row.voxels:,}",
-            short(row.voxels_per_scene),
+            format_count(row.voxels_per_scene),
             row.resolution,
         )
         for row in PUBLISHED_SETS
@@ -161,7 +161,7 @@ def _own_row(statistics: DatasetStatistics) -> tuple[str, ...]:
         _or_dash(statistics.rooms),
         f"{len(statistics.classes_present) + 2 if fine is None else fine:,}",
         f"{statistics.voxels:,}",
-        short(statistics.voxels_per_scene),
+        format_count(statistics.voxels_per_scene),
         statistics.resolution,
     )
 
@@ -170,7 +170,7 @@ def _or_dash(count: int | None, about: str = "") -> str:
     return "-" if count is None else f"{about}{count:,}"
 
 
-def _told(statistics: DatasetStatistics) -> list[str]:
+def _detail_lines(statistics: DatasetStatistics) -> list[str]:
     """Return what the row of the data set cannot say."""
     uncut = f"{statistics.uncut_voxels:,}"
     lines = [
@@ -188,7 +188,7 @@ def _told(statistics: DatasetStatistics) -> list[str]:
         lines.append("classes          the 12 and unknown; this set names no fine classes")
     else:
         counted = f"{statistics.fine_classes:,} of {len(statistics.fine):,} fine classes"
-        rule = f"{ENOUGH_PIXELS} pixels in {ENOUGH_PICTURES} pictures or more"
+        rule = f"{MIN_PIXELS} pixels in {MIN_PICTURES} pictures or more"
         lines.append(f"classes          {counted} are seen by {rule};")
         pieces = sum(one.is_furniture for one in statistics.fine if one.is_seen_enough)
         blocks = (statistics.fine_classes or 0) - pieces
@@ -215,7 +215,7 @@ def _class_lines(statistics: DatasetStatistics) -> list[str]:
         )
     ]
     bars = ["", *("#" * round(BAR * share / most) for share in ours)]
-    return [f"{line}  {bar}".rstrip() for line, bar in zip(columns(rows), bars, strict=True)]
+    return [f"{line}  {bar}".rstrip() for line, bar in zip(align_columns(rows), bars, strict=True)]
 
 
 def _fine_lines(statistics: DatasetStatistics) -> list[str]:
@@ -225,7 +225,7 @@ def _fine_lines(statistics: DatasetStatistics) -> list[str]:
     rows: list[tuple[str, ...]] = [("fine class", "pixels", "pictures")]
     for part in ends:
         rows += [(one.name, f"{one.pixels:,}", f"{one.pictures:,}") for one in part]
-    lines = columns(rows)
+    lines = align_columns(rows)
     if len(ends) == 2:
         lines.insert(1 + SHOWN, f"... {len(counted) - 2 * SHOWN:,} more ...")
     return lines

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from world2minecraft.core.classes import CLASS_NAMES
 
 # A fine class counts once it is seen by so many pixels of so many pictures.
-ENOUGH_PIXELS, ENOUGH_PICTURES = 100, 3
+MIN_PIXELS, MIN_PICTURES = 100, 3
 
 
 @dataclass(frozen=True, order=True)
@@ -26,7 +26,7 @@ class FineCount:
     @property
     def is_seen_enough(self) -> bool:
         """Whether it counts as a class of the data set."""
-        return self.clear_pictures >= ENOUGH_PICTURES
+        return self.clear_pictures >= MIN_PICTURES
 
 
 @dataclass(frozen=True)

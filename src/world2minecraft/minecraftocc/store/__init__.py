@@ -12,7 +12,7 @@ from world2minecraft.minecraftocc.store.sample_files import (
     unpack_sample,
 )
 from world2minecraft.minecraftocc.store.shard import ShardWriter
-from world2minecraft.minecraftocc.store.verify import Verdict, verify_store
+from world2minecraft.minecraftocc.store.verify import VerifyReport, verify_store
 from world2minecraft.minecraftocc.store.writer import write_store
 
 __all__ = [

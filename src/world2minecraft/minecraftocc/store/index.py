@@ -91,7 +91,7 @@ def write_index(path: Path, rows: Iterable[list[dict[str, Any]]]) -> str:
     return total.hexdigest()
 
 
-def sum_of(rows: Iterable[dict[str, Any]]) -> str:
+def index_digest(rows: Iterable[dict[str, Any]]) -> str:
     """Return the sum of rows, as ``write_index`` does."""
     total = hashlib.sha256()
     _add(total, rows)

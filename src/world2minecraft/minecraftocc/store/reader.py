@@ -24,7 +24,7 @@ from world2minecraft.minecraftocc.store.shard import StoredSample, stored_sample
 from world2minecraft.minecraftocc.types import OccSample
 
 MAX_SAMPLE_BYTES = 512 << 20
-MOST_LOOKED_AT = 2000  # Keys that a wrong one is compared with.
+MAX_CACHED = 2000  # Keys that a wrong one is compared with.
 
 
 class OccStore:
@@ -93,7 +93,7 @@ class OccStore:
     def _place(self, key: str) -> int:
         if key not in self._places:
             near = [name for name in self._names if name.startswith(key.partition("-")[0])]
-            raise UnknownNameError("sample", key, near[:MOST_LOOKED_AT] or self._names[:5])
+            raise UnknownNameError("sample", key, near[:MAX_CACHED] or self._names[:5])
         return self._places[key]
 
     def _numbers(self, split: str | None) -> list[int]:

@@ -1,9 +1,13 @@
-"""A shard that is being written: sample by sample, so that no crash costs more than one.
+"""Write and read shards: tar files to which samples are appended one by one.
 
 While it grows it is ``NAME.tar.part``. Each sample is appended in one write and flushed to disk.
-Whoever opens the part again, after any crash, finds the samples that are whole and right by their
-sums, cuts off the rest and goes on; at the end it is flushed and renamed. So the same samples give
-the same bytes, however often the work was broken off.
+Whoever opens the part again, after any crash, finds the samples that are complete by their
+checksums, cuts off the rest and continues; at the end it is flushed and renamed. So the same
+samples give the same bytes, however often the work was interrupted.
+
+Members are ustar without owners and times, so that bytes depend on content alone: a header of 512
+bytes, the data, and zeros up to the next whole 512. Samples are found by their headers and their
+JSON; images are skipped.
 """
 
 import errno
@@ -26,13 +30,13 @@ from world2minecraft.minecraftocc.store.sample_files import FACTS, MAX_FACTS_BYT
 
 BLOCK = 512
 RECORD = 20 * BLOCK  # A tar is so many bytes, or a multiple.
-LONGEST_KEY = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
+MAX_KEY_LENGTH = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
 MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,90})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
-_MOST_MEMBERS = 8
+_MAX_MEMBERS = 8
 _CHUNK = 1 << 20
 PART = ".part"
 PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.
-_LOOK_S = 0.05
+_POLL_S = 0.05
 
 
 @dataclass(frozen=True)
@@ -92,9 +96,6 @@ def member_at(stream: BinaryIO, offset: int, length: int) -> Member | None:
     return member if member.end <= length else None
 
 
-
-
-
 @dataclass(frozen=True, eq=False)
 class StoredSample:
     """A sample in a shard: where it lies, and what its JSON tells."""
@@ -117,25 +118,25 @@ def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iter
     """
     offset = 0
     while (sample := _sample_at(stream, offset, length)) is not None:
-        if checked and not is_right(stream, sample):
+        if checked and not has_valid_checksums(stream, sample):
             return
         yield sample
         offset = sample.offset + sample.size
 
 
-def is_right(stream: BinaryIO, sample: StoredSample) -> bool:
+def has_valid_checksums(stream: BinaryIO, sample: StoredSample) -> bool:
     """Whether the members of a sample have the sums that its JSON tells."""
     told = sample.facts.get("sha256")
     others = [member for member in sample.members if member.kind != FACTS]
     if not isinstance(told, dict) or set(told) != {member.kind for member in others}:
         return False
-    return all(told[member.kind] == _sum_of(stream, member) for member in others)
+    return all(told[member.kind] == _member_digest(stream, member) for member in others)
 
 
 def _sample_at(stream: BinaryIO, offset: int, length: int) -> StoredSample | None:
     members: list[Member] = []
     at = offset
-    while len(members) < _MOST_MEMBERS:
+    while len(members) < _MAX_MEMBERS:
         member = member_at(stream, at, length)
         if member is None or (members and member.key != members[0].key):
             return None
@@ -157,15 +158,13 @@ def _sample_at(stream: BinaryIO, offset: int, length: int) -> StoredSample | Non
     return StoredSample(members[0].key, offset, at - offset, tuple(members), facts, total)
 
 
-def _sum_of(stream: BinaryIO, member: Member) -> str:
+def _member_digest(stream: BinaryIO, member: Member) -> str:
     stream.seek(member.offset)
     digest, left = hashlib.sha256(), member.size
     while left > 0 and (data := stream.read(min(left, _CHUNK))):
         digest.update(data)
         left -= len(data)
     return digest.hexdigest()
-
-
 
 
 class ShardWriter:
@@ -188,9 +187,9 @@ class ShardWriter:
         if path.exists():
             self.done = len(self.keys)
             return
-        with _told(path):
+        with _readable_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._stream = _locked(self._part)
+            self._stream = _open_locked(self._part)
         if self._stream is None:  # Another process has finished it meanwhile.
             self.done = len(self.keys)
             return
@@ -214,7 +213,7 @@ class ShardWriter:
             raise ValueError(f"{self.path} has all its samples")
         key = self.keys[self.done]
         data = b"".join(member_bytes(f"{key}.{kind}", one) for kind, one in members.items())
-        with _told(self.path):
+        with _readable_errors(self.path):
             try:
                 self._write(data)
             except OSError:
@@ -229,7 +228,7 @@ class ShardWriter:
             return
         if self.done != len(self.keys):
             raise ValueError(f"{self.path} has {self.done} of {len(self.keys)} samples")
-        with _told(self.path):
+        with _readable_errors(self.path):
             try:
                 self._write(end_bytes(self._length))
             except OSError:
@@ -254,7 +253,7 @@ class ShardWriter:
                 break
             self.done += 1
             self._length = sample.offset + sample.size
-        with _told(self.path):
+        with _readable_errors(self.path):
             stream.truncate(self._length)
             stream.seek(self._length)
 
@@ -275,7 +274,7 @@ class ShardWriter:
                 return
 
 
-def _locked(part: Path) -> FileIO | None:
+def _open_locked(part: Path) -> FileIO | None:
     """Open a part for this process alone; None where it has become a shard meanwhile."""
     until = time.monotonic() + PATIENCE_S
     while time.monotonic() < until:
@@ -288,7 +287,7 @@ def _locked(part: Path) -> FileIO | None:
             part.unlink(missing_ok=True)
             return None
         stream.close()
-        time.sleep(_LOOK_S)
+        time.sleep(_POLL_S)
     raise ConflictError(part, "is being written by another process")
 
 
@@ -310,7 +309,7 @@ def _flush_folder(folder: Path) -> None:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _readable_errors(path: Path) -> Iterator[None]:
     """Turn errors of the system into one line that says what to do."""
     try:
         yield

@@ -21,14 +21,14 @@ from world2minecraft.minecraftocc.store.folder import (
     read_classes,
     read_meta,
 )
-from world2minecraft.minecraftocc.store.index import COUNTS, read_index, shard_rows, sum_of
-from world2minecraft.minecraftocc.store.shard import is_right, stored_samples
+from world2minecraft.minecraftocc.store.index import COUNTS, index_digest, read_index, shard_rows
+from world2minecraft.minecraftocc.store.shard import has_valid_checksums, stored_samples
 
 COMPARED = ("key", "offset", "size", "sha256", *(f"cells_{name}" for name in COUNTS))
 
 
 @dataclass(frozen=True)
-class Verdict:
+class VerifyReport:
     """What a check has found; ``faults`` is empty where all is well."""
 
     samples: int
@@ -38,7 +38,7 @@ class Verdict:
     faults: tuple[str, ...]
 
 
-def verify_store(folder: str | Path, progress: Progress = silent) -> Verdict:
+def verify_store(folder: str | Path, progress: Progress = silent) -> VerifyReport:
     """Read all shards of a finished data set and compare every sum.
 
     Raises:
@@ -51,13 +51,13 @@ def verify_store(folder: str | Path, progress: Progress = silent) -> Verdict:
     rows_of: dict[str, list[dict[str, Any]]] = {}
     for row in table.select([*COMPARED, "shard"]).to_pylist():
         rows_of.setdefault(row["shard"], []).append(row)
-    faults, size = [*_strays(root, rows_of), *_unlike(meta, rows_of)], 0
+    faults, size = [*_unexpected_files(root, rows_of), *_mismatches(meta, rows_of)], 0
     for done, (name, rows) in enumerate(rows_of.items()):
         progress("verify", done, len(rows_of), name)
         faults += _check_shard(root / name, name, rows)
         size += (root / name).stat().st_size if (root / name).is_file() else 0
     progress("verify", len(rows_of), len(rows_of))
-    return Verdict(len(table), len(rows_of), size, str(meta.get("sha256", "")), tuple(faults))
+    return VerifyReport(len(table), len(rows_of), size, str(meta.get("sha256", "")), tuple(faults))
 
 
 def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]:
@@ -74,13 +74,13 @@ def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]
     ]
     with path.open("rb") as stream:
         for sample in stored_samples(stream, path.stat().st_size):
-            if not is_right(stream, sample):
+            if not has_valid_checksums(stream, sample):
                 faults.append(f"{name}: sample {sample.key} is damaged")
     extra = sorted(found.keys() - {row["key"] for row in rows})
     return faults + [f"{name}: sample {key} is not in the index" for key in extra]
 
 
-def _strays(root: Path, known: Iterable[str]) -> list[str]:
+def _unexpected_files(root: Path, known: Iterable[str]) -> list[str]:
     """Name files that belong to no data set: parts, leftovers, shards that no row is in."""
     shards = {root / name for name in known}
     own = {META, CLASSES, INDEX, CARD, LOCK, CREW, SHARDS, SCENES, WORLDS}
@@ -93,12 +93,12 @@ def _strays(root: Path, known: Iterable[str]) -> list[str]:
     return [f"{path.relative_to(root)}: belongs to no data set" for path in sorted(strays)]
 
 
-def _unlike(meta: dict[str, Any], rows_of: dict[str, list[dict[str, Any]]]) -> list[str]:
+def _mismatches(meta: dict[str, Any], rows_of: dict[str, list[dict[str, Any]]]) -> list[str]:
     """Compare the index with what ``dataset.json`` says."""
     faults = []
     if meta.get("shards") != list(rows_of):
         faults.append(f"{INDEX}: its shards are not those of {META}")
     rows = (row for rows in rows_of.values() for row in rows)
-    if meta.get("sha256") != sum_of(rows):
+    if meta.get("sha256") != index_digest(rows):
         faults.append(f"{INDEX}: its sum is not that of {META}")
     return faults

@@ -31,10 +31,10 @@ from world2minecraft.minecraftocc.store.sample_files import (
     SampleFiles,
     pack_sample,
 )
-from world2minecraft.minecraftocc.store.shard import LONGEST_KEY, ShardWriter
+from world2minecraft.minecraftocc.store.shard import MAX_KEY_LENGTH, ShardWriter
 from world2minecraft.minecraftocc.types import FineClass, OccSample
 
-LONGEST_SCENE = 80  # A shard's name, with its number, has 90.
+MAX_SCENE_ID = 80  # A shard's name, with its number, has 90.
 SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.
 CONVENTIONS = {
     "cells": "labels[x, y, z]: x right, y forward, z up of the region; 255 is unknown",
@@ -129,12 +129,12 @@ def write_store(
                 f"holds {SHARDS}/ of a data set that was not finished; remove that folder, or "
                 "choose another",
             )
-        return _written(target, samples, dict(meta or {}), how, progress)
+        return _write_shards(target, samples, dict(meta or {}), how, progress)
     finally:
         lock.remove()
 
 
-def _written(
+def _write_shards(
     folder: Path,
     samples: Iterable[OccSample],
     meta: dict[str, Any],
@@ -174,8 +174,8 @@ def _written(
 def _check_names(sample: OccSample, known: Container[str]) -> None:
     """Refuse what no reader would find again. Raises UsageError."""
     for what, name, most in (
-        ("a sample's key", sample.key, LONGEST_KEY),
-        ("a scene's name", sample.scene_id, LONGEST_SCENE),
+        ("a sample's key", sample.key, MAX_KEY_LENGTH),
+        ("a scene's name", sample.scene_id, MAX_SCENE_ID),
     ):
         if not re.fullmatch(rf"[A-Za-z0-9_-]{{1,{most}}}", name):
             raise UsageError(

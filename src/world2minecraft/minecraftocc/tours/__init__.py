@@ -2,7 +2,7 @@
 
 from world2minecraft.minecraftocc.tours.planning import plan_views
 from world2minecraft.minecraftocc.tours.pose_files import read_views, view_line, write_views
-from world2minecraft.minecraftocc.tours.rooms import layouts_beside
+from world2minecraft.minecraftocc.tours.rooms import find_layouts
 from world2minecraft.minecraftocc.tours.types import (
     PlannedView,
     TourRule,

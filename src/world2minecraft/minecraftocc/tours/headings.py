@@ -16,7 +16,9 @@ from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.scene import BlockScene
 
 HEADINGS = 24  # Fifteen degrees apart.
-AROUND = Camera(24, 16, 12.0, 12.0, 12.0, 8.0)  # 90 degrees wide: four of them see all round.
+PANORAMA_CAMERA = Camera(
+    24, 16, 12.0, 12.0, 12.0, 8.0
+)  # 90 degrees wide: four of them see all round.
 NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
 THING_WORTH = 0.8  # More for a pixel of furniture,
 CEILING_COST = 0.3  # less for one of the ceiling,
@@ -26,12 +28,12 @@ SEEN_COST = 0.7  # Less for where views from nearby looked already: these count,
 SEEN_M, SEEN_DEG, SEEN_VIEWS = 1.2, 25.0, 400  # so near, so alike, and the last ones alone.
 KIND_WORTH = 0.9  # More for a heading of the kind that a stretch asks for.
 TURN_COST = 0.12  # Of fifteen degrees from one frame to the next,
-MOST_TURN = 2  # and so many at most.
+MAX_TURN_STEPS = 2  # and so many at most.
 SWAY_DEG = 7.0  # Free views look beside the fifteen degrees.
 AXIS, DIAGONAL, FREE = range(len(KINDS))
 
 
-def rated_headings(
+def rate_headings(
     scene: BlockScene, eyes: np.ndarray, block_to_room: np.ndarray, rule: TourRule
 ) -> np.ndarray:
     """Return how good a view each heading gives from each eye, float64 [N, HEADINGS].
@@ -47,7 +49,7 @@ def rated_headings(
         for eye in eyes
         for yaw_deg in (0.0, 90.0, 180.0, 270.0)
     ]
-    seen = render_batch(scene, AROUND, np.array(poses), outputs=("depth", "semantic"))
+    seen = render_batch(scene, PANORAMA_CAMERA, np.array(poses), outputs=("depth", "semantic"))
     depth_m, semantic = np.asarray(seen.depth_m), np.asarray(seen.semantic)
     worth = np.clip((depth_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
     worth += THING_WORTH * ((semantic >= SemanticClass.CHAIR) & (semantic != 255))
@@ -64,7 +66,7 @@ def rated_headings(
     return columns @ (within / within.sum(axis=1, keepdims=True)).T
 
 
-def seen_before(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+def repetition_penalty(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) -> np.ndarray:
     """Return what each heading loses for views that looked there from nearby, [N, HEADINGS].
 
     Args:
@@ -80,7 +82,7 @@ def seen_before(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) ->
     return SEEN_COST * (1 - np.exp(-alike / 3))
 
 
-def drawn_kinds(
+def draw_kinds(
     frames: int, spacing_m: float, wanted: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     """Return which kind of yaw each frame asks for, int64 [N], in stretches of 1.5 to 4 m."""
@@ -103,18 +105,18 @@ def best_yaws(
     angle = np.arange(HEADINGS) * (360 // HEADINGS)
     of_kind = np.stack([angle % 90 == 0, angle % 90 == 45, angle % 45 != 0])
     rating = rated + KIND_WORTH * of_kind[kinds]
-    sequence = _best_sequence(rating, TURN_COST, MOST_TURN)
+    sequence = _best_sequence(rating, TURN_COST, MAX_TURN_STEPS)
     steps = (np.diff(sequence) + HEADINGS // 2) % HEADINGS - HEADINGS // 2
     yaws = (sequence[0] + np.concatenate([[0], np.cumsum(steps)])) * (360.0 / HEADINGS)
     is_exact = of_kind[kinds, sequence] & (kinds != FREE)
-    loose = gaussian_filter1d(yaws, 1.2, mode="nearest") + wander(len(yaws), spacing_m, rng) * (
-        SWAY_DEG
-    )
+    loose = gaussian_filter1d(yaws, 1.2, mode="nearest") + smooth_noise(
+        len(yaws), spacing_m, rng
+    ) * (SWAY_DEG)
     chosen = np.where(is_exact, yaws, loose)
     return (chosen + 180.0) % 360.0 - 180.0
 
 
-def wander(frames: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
+def smooth_noise(frames: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
     """Return a number for each frame that wanders slowly between about -1 and 1."""
     raw = rng.normal(size=frames + 64)
     smooth = gaussian_filter1d(raw, max(1.0, 0.8 / spacing_m))[32 : 32 + frames]

@@ -1,4 +1,7 @@
-"""``plan_views``: walks through all rooms of a volume, and the views of them that are worth it."""
+"""Plan views of a volume: walks through all its rooms, and the views of them that are worth it.
+
+Each room is toured walk after walk; of each walk the views that are good and new are kept.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -19,34 +22,34 @@ from world2minecraft.minecraft.physics.walk_graph import (
 )
 from world2minecraft.minecraftocc.tours.headings import (
     best_yaws,
-    drawn_kinds,
-    rated_headings,
-    seen_before,
-    wander,
+    draw_kinds,
+    rate_headings,
+    repetition_penalty,
+    smooth_noise,
 )
-from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms, shared
+from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms, share_views
 from world2minecraft.minecraftocc.tours.types import KINDS, PlannedView, TourRule, kind_of_yaw
-from world2minecraft.minecraftocc.tours.view_quality import judged
-from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, Grounds, plan_walk
+from world2minecraft.minecraftocc.tours.view_quality import assess_views
+from world2minecraft.minecraftocc.tours.walks import SAMPLE_M, WalkArea, plan_walk
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import GamePose
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.
-LEAST_FRAMES = 3  # Of a tour, where more are asked for.
-WIDEST_M = 0.6  # Between frames, where few are asked for,
-WALKED_MORE = 1.5  # and so many times as many are looked at.
-VAIN_WALKS = 5  # A room is done when so many walks in turn find nothing new.
-EASED = 0.7  # Then views may be so much nearer to each other,
-EASINGS = 3  # so many times.
+MIN_FRAMES = 3  # Of a tour, where more are asked for.
+MAX_SPACING_M = 0.6  # Between frames, where few are asked for,
+OVERSAMPLING = 1.5  # and so many times as many are looked at.
+MAX_FRUITLESS_WALKS = 5  # A room is done when so many walks in turn find nothing new.
+EASING_FACTOR = 0.7  # Then views may be so much nearer to each other,
+MAX_EASINGS = 3  # so many times.
 PITCH_MEAN_DEG, PITCH_SPREAD_DEG = 11.0, 8.0  # Furniture lies lower than the eye.
 SWAY_M = 0.04  # An eye rises and sinks so much along a walk.
 DECIMALS = 6  # Of poses: what a tour file holds is exactly what was planned.
-LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
+MIN_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 
 
 @dataclass(eq=False)
-class Kinds:
+class YawKindCounts:
     """How many views of each kind of yaw a whole plan has so far."""
 
     counts: np.ndarray = field(default_factory=lambda: np.zeros(len(KINDS)))
@@ -63,7 +66,7 @@ class Kinds:
 
 
 @dataclass(eq=False)
-class _Taken:
+class _ChosenViews:
     """The views of one room so far."""
 
     poses: list[np.ndarray] = field(default_factory=list)  # [N, 5]: x, y, z, yaw, pitch
@@ -86,18 +89,18 @@ class _Taken:
 
 
 @dataclass(eq=False)
-class Tourist:
+class RoomTour:
     """One who tours one room."""
 
     volume: BlockVolume
     scene: BlockScene
     room: TourRoom
-    grounds: Grounds
+    grounds: WalkArea
     rule: TourRule
     seed: int
-    kinds: Kinds
+    kinds: YawKindCounts
     is_done: bool = False
-    taken: _Taken = field(default_factory=_Taken)
+    taken: _ChosenViews = field(default_factory=_ChosenViews)
     tours: list[np.ndarray] = field(default_factory=list)  # [N, 6]: a pose, and seconds
     walks: int = 0
     eased: int = 0
@@ -114,9 +117,9 @@ class Tourist:
             before = self.count
             self._walk(wanted - self.count)
             vain = 0 if self.count > before else vain + 1
-            if vain == VAIN_WALKS:
+            if vain == MAX_FRUITLESS_WALKS:
                 vain, self.eased = 0, self.eased + 1
-                self.is_done = self.eased > EASINGS
+                self.is_done = self.eased > MAX_EASINGS
 
     def views(self) -> Iterator[PlannedView]:
         """Give the views found, in their order."""
@@ -140,13 +143,13 @@ class Tourist:
         self.walks += 1
         rows = self._rows(wanted, rng)
         poses = np.array([self._camera_to_room(row) for row in rows])
-        seen = judged(self.scene, self.volume.states, poses, self.rule)
+        seen = assess_views(self.scene, self.volume.states, poses, self.rule)
         labelled = bool(self.volume.semantic.any())
         good = np.flatnonzero(seen.is_good(self.volume.blocks_per_metre, labelled))
-        ease = EASED**self.eased
+        ease = EASING_FACTOR**self.eased
         apart = self.rule.apart_m * self.volume.blocks_per_metre * ease
         good = good[self.taken.new(rows[good], apart, self.rule.apart_deg * ease)]
-        for found in self._parted(rows[good], min(LEAST_FRAMES, wanted)):
+        for found in self._parted(rows[good], min(MIN_FRAMES, wanted)):
             tour = found[:wanted]
             wanted -= len(tour)
             if len(tour):
@@ -158,19 +161,19 @@ class Tourist:
         """Return the poses along a walk, float64 [N, 5]: x, y, z of the eye, yaw, pitch."""
         rule = self.rule
         way = plan_walk(self.grounds, rng)
-        spacing_m = len(way) * SAMPLE_M / (WALKED_MORE * wanted)
-        every = max(1, round(float(np.clip(spacing_m, rule.spacing_m, WIDEST_M)) / SAMPLE_M))
+        spacing_m = len(way) * SAMPLE_M / (OVERSAMPLING * wanted)
+        every = max(1, round(float(np.clip(spacing_m, rule.spacing_m, MAX_SPACING_M)) / SAMPLE_M))
         feet, spacing_m = way[int(rng.integers(every)) % len(way) :: every], every * SAMPLE_M
         eyes = feet.copy()
         eyes[:, 1] += self._eyes_m(len(feet), spacing_m, rng) * self.volume.blocks_per_metre
-        kinds = drawn_kinds(len(feet), spacing_m, self.kinds.wanted(rule, len(feet)), rng)
-        rated = rated_headings(self.scene, eyes, self.volume.block_to_room, rule)
+        kinds = draw_kinds(len(feet), spacing_m, self.kinds.wanted(rule, len(feet)), rng)
+        rated = rate_headings(self.scene, eyes, self.volume.block_to_room, rule)
         if self.taken.poses:
             taken = np.concatenate(self.taken.poses)
-            rated = rated - seen_before(eyes, taken, self.volume.blocks_per_metre)
+            rated = rated - repetition_penalty(eyes, taken, self.volume.blocks_per_metre)
         yaws = best_yaws(rated, kinds, spacing_m, rng)
         pitch = rng.normal(PITCH_MEAN_DEG, PITCH_SPREAD_DEG / 2)
-        pitch = pitch + PITCH_SPREAD_DEG * wander(len(feet), spacing_m, rng)
+        pitch = pitch + PITCH_SPREAD_DEG * smooth_noise(len(feet), spacing_m, rng)
         pitch = np.clip(pitch, *rule.pitch_deg)
         return np.round(np.column_stack([eyes, yaws, pitch]), DECIMALS) + 0.0
 
@@ -178,7 +181,7 @@ class Tourist:
         """Return how high the eye is over the feet along a walk, float64 [N]."""
         if rng.random() < self.rule.player_share:
             return np.full(count, PLAYER_EYE_BLOCKS)
-        high_m = rng.uniform(*self.rule.eye_m) + SWAY_M * wander(count, spacing_m, rng)
+        high_m = rng.uniform(*self.rule.eye_m) + SWAY_M * smooth_noise(count, spacing_m, rng)
         return np.clip(high_m, *self.rule.eye_m)
 
     def _camera_to_room(self, row: np.ndarray) -> np.ndarray:
@@ -234,11 +237,11 @@ def plan_views(
         raise UsageError(f"a plan has one view or more, not {count}")
     solid = solid_of(volume)
     graph, rooms = _rooms(volume, solid, how)
-    ready, kinds = scene or prepare_scene(volume), Kinds()
+    ready, kinds = scene or prepare_scene(volume), YawKindCounts()
     tourists = []
     for room in rooms:
-        grounds = Grounds(graph.part(room.places), solid, volume.corner)
-        tourists.append(Tourist(volume, ready, room, grounds, how, seed, kinds))
+        grounds = WalkArea(graph.part(room.places), solid, volume.corner)
+        tourists.append(RoomTour(volume, ready, room, grounds, how, seed, kinds))
     _fill(tourists, count, progress)
     return [view for tourist in tourists for view in tourist.views()]
 
@@ -251,12 +254,12 @@ def _rooms(volume: BlockVolume, solid: Solid, rule: TourRule) -> tuple[WalkGraph
     for slim in (1.0, SLIM):
         graph = walk_graph(volume, WalkRule(scale=slim * volume.blocks_per_metre))
         rooms = find_rooms(volume, graph, solid, rule)
-        if sum(room.floor_m2 for room in rooms) >= LEAST_FLOOR_M2 or (rooms and slim < 1):
+        if sum(room.floor_m2 for room in rooms) >= MIN_FLOOR_M2 or (rooms and slim < 1):
             return graph, rooms
     raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
 
 
-def _fill(tourists: list[Tourist], count: int, progress: Progress) -> None:
+def _fill(tourists: list[RoomTour], count: int, progress: Progress) -> None:
     """Let rooms find their shares; what one cannot give is asked of the others."""
     progress("views", 0, count)
     left = count
@@ -264,7 +267,9 @@ def _fill(tourists: list[Tourist], count: int, progress: Progress) -> None:
         open_ones = [one for one in tourists if not one.is_done]
         if not open_ones:
             break
-        for one, share in zip(open_ones, shared([t.room for t in open_ones], left), strict=True):
+        for one, share in zip(
+            open_ones, share_views([t.room for t in open_ones], left), strict=True
+        ):
             one.find(share)
             progress("views", min(count, sum(t.count for t in tourists)), count)
         left = count - sum(one.count for one in tourists)

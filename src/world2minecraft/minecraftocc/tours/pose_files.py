@@ -1,4 +1,8 @@
-"""Screenshots with poses as a tour file, so that what reads tours reads them too."""
+"""Tours and screenshots as pose files, a JSON object per line (``rendering.views.pose_file``).
+
+Each line names its tour and scene; ``frame`` counts within the tour, and ``room`` and ``kind``
+(axis, diagonal, free) follow the usual keys.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,7 +32,7 @@ def view_line(view: PlannedView, block_to_room: np.ndarray, scene_id: str) -> di
     own: dict[str, Any] = {"scene_id": scene_id, "tour_id": view.tour_id}
     more = {**own, "room": view.room, "kind": view.kind}
     line = tour_line(shot, view.frame, block_to_room, more)
-    if not _says_enough(line, view.camera):
+    if not _keeps_intrinsics(line, view.camera):
         line["intrinsics"] = view.camera.matrix.tolist()
     return line
 
@@ -75,7 +79,7 @@ def _view(
     )
 
 
-def _says_enough(line: dict[str, Any], camera: Camera) -> bool:
+def _keeps_intrinsics(line: dict[str, Any], camera: Camera) -> bool:
     """Whether a line's size and vertical field of view alone are this very camera."""
     try:
         told = camera_of(
@@ -86,7 +90,7 @@ def _says_enough(line: dict[str, Any], camera: Camera) -> bool:
     return told == camera
 
 
-def write_recorded(
+def write_recorded_views(
     path: str | Path, views: Sequence[RecordedView], block_to_room: np.ndarray, scene_id: str
 ) -> None:
     """Write screenshots as a tour file: poses at the eye, ``image`` as it lies from there.

@@ -1,9 +1,9 @@
-"""The rooms of a volume, and the places in each where one can stand.
+"""Find the rooms of a volume, and the places in each where one can stand.
 
-Layouts say the rooms where there are any that hold a place. Else a room is what hangs together
-right under a ceiling: there doorways are closed by what is over them, and furniture ends below.
-Where such a part narrows to less than a wide door it is cut in two. Places under no ceiling of a
-room, such as those in a doorway, go to the nearest room.
+The layouts beside a scene (``layout.json``) give the rooms where they hold a place. Else a room is
+a connected region right under a ceiling: there doorways are closed by what is over them, and
+furniture ends below. Where such a region narrows to less than a wide door it is cut in two. Places
+under no ceiling of a room, such as those in a doorway, go to the nearest room.
 """
 
 from dataclasses import dataclass
@@ -27,8 +27,8 @@ from world2minecraft.procgen.sensors.navmesh import is_inside
 
 _NAME = "layout.json"
 NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
-LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,
-LEAST_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
+MIN_ROOM_M2 = 1.2  # What is smaller is no room of its own,
+MIN_ROOM_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
 LEVEL_M = 0.3  # One tours what is so near to the room's main floor.
 WALLED_SHARE = 0.7  # Of level rays from indoors that end at something within
 FAR_M = 15.0
@@ -36,7 +36,7 @@ RAYS = 16
 _APART = 3.0  # A metre of height counts as so many along the floor, where places go to rooms.
 
 
-def layouts_beside(path: str | Path) -> tuple[Layout, ...]:
+def find_layouts(path: str | Path) -> tuple[Layout, ...]:
     """Return the rooms of the run that a place belongs to; none where it is of no run.
 
     Args:
@@ -98,7 +98,7 @@ def find_rooms(
     for one in np.unique(number[kept & (number >= 0)]):
         places = _main_floor(graph, np.flatnonzero(kept & (number == one)))
         floor_m2 = len(places) * (graph.spacing / graph.blocks_per_metre) ** 2
-        if floor_m2 >= LEAST_FLOOR_M2:
+        if floor_m2 >= MIN_ROOM_FLOOR_M2:
             seen = _contents(volume, cells[places], roof[places])
             rooms.append(TourRoom(len(rooms), places, floor_m2, *seen))
     return rooms
@@ -115,25 +115,25 @@ def _indoors(
     graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray, roof: np.ndarray
 ) -> np.ndarray:
     """Tell the places under a roof and between walls; between walls where nothing has a roof."""
-    walled = _walled(graph, blocked, cells)
+    walled = _enclosed_by_walls(graph, blocked, cells)
     inside = walled & (roof < blocked.shape[1])
-    least = LEAST_ROOM_M2 / (graph.spacing / graph.blocks_per_metre) ** 2
+    least = MIN_ROOM_M2 / (graph.spacing / graph.blocks_per_metre) ** 2
     for choice in (inside, walled, parts(graph) == np.bincount(parts(graph)).argmax()):
         if choice.sum() >= least:
             return choice
     return np.ones(len(graph), bool)
 
 
-def _walled(graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray) -> np.ndarray:
+def _enclosed_by_walls(graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Tell the places from whose eye level rays mostly end at something."""
     eyes = np.add(cells, [0.5, 0.0, 0.5])
     eyes[:, 1] += 1.5 * graph.blocks_per_metre
     reach = FAR_M * graph.blocks_per_metre
-    return _share_ended(blocked, eyes, reach, RAYS) >= WALLED_SHARE
+    return _blocked_share(blocked, eyes, reach, RAYS) >= WALLED_SHARE
 
 
 @njit
-def _share_ended(blocked, eyes, reach, rays):
+def _blocked_share(blocked, eyes, reach, rays):
     """Return which share of level rays from each eye, float64 [N, 3] in cells, meets something."""
     result = np.zeros(len(eyes))
     for n in range(len(eyes)):
@@ -176,11 +176,11 @@ def _by_ceilings(
     under[:, :-1] = ~blocked[:, :-1] & blocked[:, 1:]
     level = np.zeros((3, 3, 3), bool)
     level[1, 1, :] = level[:, 1, 1] = True
-    label = _labelled(under, level)
+    label = _label_parts(under, level)
     top = np.clip(roof - 1, 0, blocked.shape[1] - 1)
     number = np.where(kept, label[cells[:, 0], top, cells[:, 2]], 0)
     areas = np.bincount(label.reshape(-1)) * cell_m**2
-    large = [n for n in np.unique(number) if n and areas[n] >= LEAST_ROOM_M2]
+    large = [n for n in np.unique(number) if n and areas[n] >= MIN_ROOM_M2]
     result, count = np.full(len(graph), -1), 0
     for one in large:
         own = number == one
@@ -188,15 +188,15 @@ def _by_ceilings(
         cut, pieces = _cut_at_necks(label[:, layer] == one, cell_m)
         result[own] = cut[cells[own, 0], cells[own, 2]] + count
         count += pieces
-    return _filled(graph, result, kept)
+    return _assign_remaining(graph, result, kept)
 
 
 def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
     """Return the piece, int64 [X, Z], that each cell of a room is of, and how many there are."""
     away = np.asarray(ndimage.distance_transform_edt(np.pad(room, 1)))[1:-1, 1:-1]
-    cores = _labelled(away * cell_m > NARROW_M / 2, np.ones((3, 3), bool))
+    cores = _label_parts(away * cell_m > NARROW_M / 2, np.ones((3, 3), bool))
     sizes = np.bincount(cores.reshape(-1)) * cell_m**2
-    large = [n for n in range(1, len(sizes)) if sizes[n] >= LEAST_ROOM_M2 / 2]
+    large = [n for n in range(1, len(sizes)) if sizes[n] >= MIN_ROOM_M2 / 2]
     if len(large) < 2:
         return np.zeros(room.shape, np.int64), 1
     numbered = np.zeros(room.shape, np.int64)
@@ -208,12 +208,12 @@ def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
     return numbered[tuple(np.asarray(nearest))] - 1, len(large)
 
 
-def _labelled(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
+def _label_parts(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
     """Return the number, from 1, of the part of a mask that each cell is of; 0 outside of it."""
     return np.asarray(ndimage.label(mask, joined)[0])  # pyright: ignore[reportIndexIssue]
 
 
-def _filled(graph: WalkGraph, number: np.ndarray, kept: np.ndarray) -> np.ndarray:
+def _assign_remaining(graph: WalkGraph, number: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return the rooms with places of none given to the room of the nearest place that has one."""
     known, asked = np.flatnonzero(number >= 0), np.flatnonzero(kept & (number < 0))
     if not len(known):
@@ -249,11 +249,11 @@ def _contents(volume: BlockVolume, cells: np.ndarray, roof: np.ndarray) -> tuple
     return len(np.unique(semantic[things])), len(np.unique(volume.instance[box][things]))
 
 
-def shared(rooms: list[TourRoom], count: int) -> list[int]:
+def share_views(rooms: list[TourRoom], count: int) -> list[int]:
     """Return how many of some views each room gets: by its worth, no view lost.
 
     Example:
-        >>> shared([], 3)
+        >>> share_views([], 3)
         []
     """
     if not rooms:

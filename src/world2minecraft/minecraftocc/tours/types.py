@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Layout
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY
+from world2minecraft.rendering.shading_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose
 
 PAPER_SIZE, PAPER_FOV_DEG = (1920, 1129), 70.0  # Of MinecraftOcc's pictures; the FOV is vertical.

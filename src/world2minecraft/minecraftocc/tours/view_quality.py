@@ -14,15 +14,18 @@ WIDE_PX = 64  # Of the small pictures.
 NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than this,
 CLOSE_M = 0.95  # or half of it is nearer than this.
 OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
-LEAST_CLASSES, LEAST_THINGS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
-LEAST_CELLS, MOST_ASKED = 20, 60  # or few blocks: this, and one more for each in a square metre.
+MIN_CLASSES, MIN_OBJECTS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
+MIN_CELLS, MAX_CLASSES_ASKED = (
+    20,
+    60,
+)  # or few blocks: this, and one more for each in a square metre.
 FLAT_SHARE = 0.55  # Flat: so much of it is one wall,
 PLANE_SHARE = 0.85  # or so much of it faces one way, whatever hangs there.
-DARKEST, BRIGHTEST = 0.10, 0.97  # Of 1, the mean of the small picture.
+MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small picture.
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class ViewQuality:
     """What N small pictures tell, float64 [N] each."""
 
     near: np.ndarray  # the share of pixels nearer than NEAR_M
@@ -38,16 +41,18 @@ class Judged:
     def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
         """Tell which views are worth a picture, bool [N]."""
         blocked = (self.near > NEAR_SHARE) | (self.middle_m < CLOSE_M)
-        cells = min(MOST_ASKED, LEAST_CELLS + blocks_per_metre**2)
-        empty = (self.out > OUT_SHARE) | (self.classes < LEAST_CLASSES) | (self.cells < cells)
+        cells = min(MAX_CLASSES_ASKED, MIN_CELLS + blocks_per_metre**2)
+        empty = (self.out > OUT_SHARE) | (self.classes < MIN_CLASSES) | (self.cells < cells)
         if labelled:
-            empty |= self.things < LEAST_THINGS
-        dark = (self.bright < DARKEST) | (self.bright > BRIGHTEST)
+            empty |= self.things < MIN_OBJECTS
+        dark = (self.bright < MIN_BRIGHTNESS) | (self.bright > MAX_BRIGHTNESS)
         flat = (self.flat > FLAT_SHARE) | (self.plane > PLANE_SHARE)
         return ~(blocked | empty | dark | flat)
 
 
-def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule) -> Judged:
+def assess_views(
+    scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule
+) -> ViewQuality:
     """Return what small pictures tell.
 
     Args:
@@ -74,7 +79,7 @@ def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourR
         known = states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
     classes = _distinct(np.where(is_sky | (semantic == 255), -1, known))
     wall = np.where(things | is_sky, 255, face)
-    return Judged(
+    return ViewQuality(
         (there < NEAR_M).mean(axis=1),
         np.median(there, axis=1),
         out.mean(axis=1),

@@ -30,7 +30,7 @@ ROUNDS = 6  # Of taking back what was rounded through something.
 
 
 @dataclass(frozen=True, eq=False)
-class Grounds:
+class WalkArea:
     """The floor of one room: its part of the graph, and what bodies must not meet."""
 
     graph: WalkGraph
@@ -53,7 +53,7 @@ class Grounds:
         return (self.graph.spacing / self.graph.blocks_per_metre) ** 2
 
 
-def plan_walk(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
+def plan_walk(grounds: WalkArea, rng: np.random.Generator) -> np.ndarray:
     """Return a smooth walk, the feet every ``SAMPLE_M``, float64 [N, 3] in world blocks."""
     stops = _stops(grounds, rng)
     feet = [grounds.graph.feet[stops[:1]]]
@@ -65,10 +65,10 @@ def plan_walk(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
         return feet[0]
     first = grounds.graph.feet[[_in_order(grounds.graph, stops)[0]]]
     way = np.concatenate([first, *feet[1:]])
-    return _smoothed(grounds, _sampled(way, SAMPLE_M * grounds.graph.blocks_per_metre))
+    return _smooth(grounds, _resample(way, SAMPLE_M * grounds.graph.blocks_per_metre))
 
 
-def _stops(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
+def _stops(grounds: WalkArea, rng: np.random.Generator) -> np.ndarray:
     """Return places of one part that are spread over it; large parts are drawn more often."""
     sizes = np.bincount(grounds.part).astype(float)
     sizes[sizes < max(sizes.max() / 4, 2)] = 0  # A nook that no way leads to is left out.
@@ -94,14 +94,14 @@ def _in_order(graph: WalkGraph, stops: np.ndarray) -> list[int]:
     return order
 
 
-def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:
+def _resample(points: np.ndarray, spacing: float) -> np.ndarray:
     """Return points of a polyline at even distances, its ends among them."""
     along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     places = np.linspace(0, along[-1], max(2, int(np.ceil(along[-1] / spacing)) + 1))
     return np.column_stack([np.interp(places, along, column) for column in points.T])
 
 
-def _smoothed(grounds: Grounds, feet: np.ndarray) -> np.ndarray:
+def _smooth(grounds: WalkArea, feet: np.ndarray) -> np.ndarray:
     """Return a way with its corners rounded, but where that leads through something."""
     sigma = SMOOTH_M / SAMPLE_M
     best = gaussian_filter1d(feet, sigma, axis=0, mode="nearest")
@@ -116,7 +116,7 @@ def _smoothed(grounds: Grounds, feet: np.ndarray) -> np.ndarray:
     return feet
 
 
-def fits_at(grounds: Grounds, feet: np.ndarray) -> np.ndarray:
+def fits_at(grounds: WalkArea, feet: np.ndarray) -> np.ndarray:
     """Tell where a body fits over what it would step up on, bool [N]."""
     scale, blocks = grounds.graph.scale, grounds.graph.blocks_per_metre
     half = 0.3 * scale - 0.02 * blocks

@@ -1,8 +1,8 @@
-"""The form of a step: what a model must say to move, and how what it says is read.
+"""The format of a step: what a model must reply to move, and how its reply is parsed.
 
-Strict where a server is: a JSON object with the four fields and nothing else. Where it says plain
-text, an ``Actions:`` line or tagged answer is read, or a reply that is actions alone. A word among
-prose is never taken for an action: "do not go forward" is no step forward.
+Strict where a server is: a JSON object with the four fields and nothing else. For plain text, an
+``Actions:`` line or a tagged answer is read, or a reply that is actions alone. A word among prose
+is never taken for an action: "do not go forward" is no step forward.
 """
 
 import re
@@ -60,26 +60,26 @@ SCHEMA: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Step:
-    """What a model said that it does."""
+    """The moves that a model replied with, and why."""
 
     moves: tuple[Move, ...]
     thought: str = ""
     progress: str = ""
 
 
-def step_form(most: int = MAX_MOVES) -> ReplyFormat[Step]:
+def step_form(max_moves: int = MAX_MOVES) -> ReplyFormat[Step]:
     """Return the form of a step of at most so many moves."""
-    count = "one action" if most == 1 else f"1 to {most} actions"
+    count = "one action" if max_moves == 1 else f"1 to {max_moves} actions"
     words = (
         'Reply with one JSON object: {"thought": "...", "progress": "...", "actions": '
         f'["FORWARD"], "done": false}}, with {count} of {", ".join(NAMES)} and nothing around it. '
         "STOP comes last, alone with done true. If you cannot write JSON, end with one line: "
         "Actions: FORWARD, LEFT"
     )
-    return ReplyFormat("step", SCHEMA, words, lambda text: parse_step(text, most))
+    return ReplyFormat("step", SCHEMA, words, lambda text: parse_step(text, max_moves))
 
 
-def parse_step(text: str, most: int = MAX_MOVES) -> Step:
+def parse_step(text: str, max_moves: int = MAX_MOVES) -> Step:
     r"""Return the step that a reply says.
 
     Raises:
@@ -91,17 +91,17 @@ def parse_step(text: str, most: int = MAX_MOVES) -> Step:
     """
     found = extract_json_object(text)
     if found is not None:
-        return _of_json(found, most)
+        return _of_json(found, max_moves)
     tagged, lines = _TAGGED.findall(text), _LINE.findall(text)
-    for said in (tagged[-1:], lines[-1:], [text]):
-        if said:
-            moves = tuple(_move(word) for word in _words(said[0]))
+    for found_texts in (tagged[-1:], lines[-1:], [text]):
+        if found_texts:
+            moves = tuple(_move(word) for word in _words(found_texts[0]))
             thought = (_THOUGHT.findall(text) or [""])[0].strip()
-            return Step(_validate(moves, None, most), thought[:MAX_THOUGHT_CHARACTERS])
+            return Step(_validate(moves, None, max_moves), thought[:MAX_THOUGHT_CHARACTERS])
     raise UnreadableError("it is empty")
 
 
-def _of_json(found: dict[str, Any], most: int) -> Step:
+def _of_json(found: dict[str, Any], max_moves: int) -> Step:
     actions, done = found.get("actions"), found.get("done")
     if isinstance(actions, str):
         actions = _words(actions)
@@ -109,7 +109,7 @@ def _of_json(found: dict[str, Any], most: int) -> Step:
         raise UnreadableError("actions must be a list of action names")
     if done is not None and not isinstance(done, bool):
         raise UnreadableError("done must be true or false")
-    moves = _validate(tuple(_move(one) for one in actions), done, most)
+    moves = _validate(tuple(_move(one) for one in actions), done, max_moves)
     texts = [found.get(name) for name in ("thought", "progress")]
     thought, progress = (
         one[:MAX_THOUGHT_CHARACTERS] if isinstance(one, str) else "" for one in texts
@@ -117,9 +117,9 @@ def _of_json(found: dict[str, Any], most: int) -> Step:
     return Step(moves, thought, progress)
 
 
-def _words(said: str) -> list[str]:
+def _words(text: str) -> list[str]:
     """Return the actions of a plain list: parted by commas, lines, 'then' or spaces."""
-    plain = said.strip().strip("[]().\"'`* ")
+    plain = text.strip().strip("[]().\"'`* ")
     parts = re.split(r"[,;|\n]+|\bthen\b|\band\b", plain, flags=re.I)
     whole = [part.strip(" \t\"'`*.[]") for part in parts]
     whole = [part for part in whole if part]
@@ -140,9 +140,9 @@ def _move(word: str) -> Move:
     return _ALL[name]
 
 
-def _validate(moves: tuple[Move, ...], done: bool | None, most: int) -> tuple[Move, ...]:
-    if not 1 <= len(moves) <= most:
-        raise UnreadableError(f"it has {len(moves)} actions; 1 to {most} are taken")
+def _validate(moves: tuple[Move, ...], done: bool | None, max_moves: int) -> tuple[Move, ...]:
+    if not 1 <= len(moves) <= max_moves:
+        raise UnreadableError(f"it has {len(moves)} actions; 1 to {max_moves} are taken")
     if Move.STOP in moves[:-1]:
         raise UnreadableError("an action comes after STOP, which ends the walk")
     if done is True and moves[-1] != Move.STOP:

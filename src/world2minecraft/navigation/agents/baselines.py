@@ -1,4 +1,8 @@
-"""Agents that know the scene: what can be reached at best. They see no picture."""
+"""Baseline agents: some see nothing, and the privileged ones know the scene.
+
+Random, forward and stop are what any other agent has to beat; oracle and shortest say what can be
+reached at best. None of them looks at pictures.
+"""
 
 import random
 from itertools import product
@@ -7,10 +11,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.agents.values import Decision, Guide, Observation, Task
 from world2minecraft.navigation.values import Move
 
-# Agents that see nothing: what any other has to beat.
-
 # How often each move comes in VLN-CE's training split; its random agent draws by these.
 MOVE_SHARES = {Move.STOP: 0.02, Move.FORWARD: 0.68, Move.LEFT: 0.15, Move.RIGHT: 0.15}
+NEAR_M = 0.25  # Here ``shortest`` stops: half of the least radius of success.
 
 
 class StopAgent:
@@ -35,7 +38,7 @@ class RandomAgent:
         self._random = random.Random(0)
 
     def begin(self, task: Task) -> None:
-        """Begin to draw anew from the seed of the task."""
+        """Reset the generator to the seed of the task."""
         self._random = random.Random(task.seed)
 
     def decide(self, sight: Observation) -> Decision:
@@ -55,9 +58,6 @@ class ForwardAgent:
         """Return FORWARD, or STOP after a collision."""
         blocked = any(collided for _, collided in sight.done)
         return Decision((Move.STOP if blocked else Move.FORWARD,))
-
-
-NEAR_M = 0.25  # Here ``shortest`` stops: half of the least radius of success.
 
 
 class OracleAgent:
@@ -112,8 +112,8 @@ class ShortestAgent:
         for count, turn in product(range(self._turns + 1), (Move.LEFT, Move.RIGHT)):
             stance = sight.stance
             for _ in range(count):
-                stance, _ = guide.after(stance, turn)
-            ahead, _ = guide.after(stance, Move.FORWARD)
+                stance, _ = guide.step(stance, turn)
+            ahead, _ = guide.step(stance, Move.FORWARD)
             left = guide.distance_m(ahead)
             if left < best - 1e-9:
                 best, moves = left, (*[turn] * count, Move.FORWARD)

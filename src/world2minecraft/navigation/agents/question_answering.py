@@ -1,4 +1,4 @@
-"""A vision-language model answers items: the views and choices it is shown, the letter it gives."""
+"""Answer the items of a set: prompts, parsing of replies, and answers by a vision-language model."""
 
 import re
 from collections.abc import Mapping
@@ -43,6 +43,8 @@ _TAGGED = re.compile(r"<answer>(.*?)</answer>", re.S | re.I)
 _LINE = re.compile(r"^\W*(?:final\s+)?answer\W*(?:is\W*)?[:=](.*)$", re.M | re.I)
 _LETTER = re.compile(r"^[\s\"'(*\[`]*([A-Ha-h])[\s\"')*\]`.:]*$")
 _LETTERED = re.compile(r"^[\s(*]*([A-Ha-h])[).:]\s*(.+?)[\s.]*$", re.S)
+MAX_IMAGE_BYTES = 20 << 20
+_MAGIC = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png", b"RIFF": "image/webp"}
 
 
 def answer_form(options: Mapping[str, str], style: str) -> ReplyFormat[str]:
@@ -127,17 +129,13 @@ def _plain(text: str) -> str:
     return " ".join(text.lower().strip(" .\"'`*\n").split())
 
 
-MAX_IMAGE_BYTES = 20 << 20
-_MAGIC = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png", b"RIFF": "image/webp"}
-
-
 @dataclass(frozen=True)
 class Answer:
     """What was said to an item. ``letter`` is empty where ``outcome`` is invalid or failed."""
 
     letter: str
     outcome: str  # "answered", "invalid" or "failed"
-    told: dict[str, Any]
+    details: dict[str, Any]
 
 
 class LetterAnswerer:
@@ -195,10 +193,10 @@ class VlmAnswerer:
             formed = ask_structured(self.model, turns, answer_form(options, self.style))
         except (BusyServerError, RefusedQuestionError) as error:
             return Answer("", "failed", {"problem": str(error)})
-        told = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
+        details = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
         if formed.value is None:
-            return Answer("", "invalid", {**told, "problem": formed.problem})
-        return Answer(formed.value, "answered", told)
+            return Answer("", "invalid", {**details, "problem": formed.problem})
+        return Answer(formed.value, "answered", details)
 
     def _picture(self, name: str, item: Item) -> Picture:
         path = self.folder / name

@@ -24,7 +24,7 @@ AGENTS = Registry(
         "human": "world2minecraft.navigation.running.human_agent:HumanAgent",
     },
 )
-REFERENCE_AGENTS = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
+REFERENCE_AGENTS = ("stop", "random", "oracle")  # Reported with every result, for comparison.
 
 
 def make_agent(

@@ -22,7 +22,7 @@ class Guide(Protocol):
         """Return how far it is on foot to the nearest goal, metres of the room."""
         ...
 
-    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Return where a move would lead, and whether something would be in the way."""
         ...
 
@@ -33,7 +33,7 @@ class Guide(Protocol):
 
 @dataclass(frozen=True)
 class Task:
-    """What an agent is told before it starts. ``step_m`` is how far FORWARD goes.
+    """What an agent is given before it starts. ``step_m`` is how far FORWARD goes.
 
     ``plan`` draws the building from above with a way through it, uint8 [H, W, 3].
     """
@@ -53,7 +53,7 @@ class Observation:
     """What an agent sees when it is asked to decide.
 
     ``done`` are the moves since it decided last, each with whether something was in the way;
-    ``stance`` is where it stands, as odometry without error tells it.
+    ``stance`` is where it stands, as odometry without error reports it.
     """
 
     step: int  # moves made so far
@@ -68,14 +68,14 @@ class Decision:
 
     ``outcome`` is ``moves``, or ``invalid`` where a model said nothing that can be read, or
     ``failed`` where its server did not answer; then there are no moves, and none are made up.
-    ``told`` is for the trace, JSON.
+    ``details`` is for the trace, JSON.
     """
 
     moves: tuple[Move, ...]
     thought: str = ""
     progress: str = ""
     outcome: str = "moves"
-    told: dict[str, Any] = field(default_factory=dict)
+    details: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self):
         if self.outcome not in OUTCOMES or bool(self.moves) != (self.outcome == "moves"):

@@ -1,7 +1,9 @@
-"""The agent that is a vision-language model: it looks, says what it does, and does that.
+"""The agent that is a vision-language model: it looks, replies with moves, and makes them.
 
-A reply that cannot be read after two repairs is INVALID: a decision without moves, told as such. A
-server that does not answer makes a failed one. Neither is ever replaced by a move of our own.
+A reply that cannot be read after two repairs is INVALID: a decision without moves, reported as
+such. A server that does not answer makes a failed one. Neither is ever replaced by a move of ours.
+The agent may be shown where it has been: in words that it could have counted itself (metres ahead
+of the start and to its side), which is what odometry knows, or as a plan of the building.
 """
 
 import math
@@ -28,13 +30,13 @@ from world2minecraft.navigation.agents.vlm_prompts import (
 )
 from world2minecraft.navigation.values import Move, Stance
 
-# Where an agent has been, in words that it could have counted itself: steps ahead, to the side.
-#
-# Directions are those of the start: x metres ahead of it, and to its right. Nothing of the scene's
-# map is in it; a model that reads it knows what odometry knows.
-
 MAX_PLACES = 12  # Of a map in words; those between are left out evenly.
 MIN_SPACING_M = 0.5  # Places nearer to the last one are the same place.
+JPEG_QUALITY = 85
+HISTORY = 3  # Pictures before the one of now, as the paper shows them.
+MAX_HISTORY = 8
+MAX_PROGRESS_CHARACTERS = 400  # Characters of its own words that a model is told again.
+MAX_PAST_MOVES = 16
 
 
 def relative_m(start: Stance, stance: Stance, metres_per_block: float) -> tuple[float, float]:
@@ -101,13 +103,6 @@ def _place(ahead: float, right: float) -> str:
     return ", ".join(words)
 
 
-JPEG_QUALITY = 85
-HISTORY = 3  # Pictures before the one of now, as the paper shows them.
-MAX_HISTORY = 8
-MAX_PROGRESS_CHARACTERS = 400  # Characters of its own words that a model is told again.
-MAX_PAST_MOVES = 16
-
-
 class VlmAgent:
     """Asks a language model at each step.
 
@@ -167,20 +162,20 @@ class VlmAgent:
         try:
             formed = ask_structured(self.model, turns, self._form)
         except (BusyServerError, RefusedQuestionError) as error:
-            return Decision((), outcome="failed", told={"problem": str(error)})
-        told = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
+            return Decision((), outcome="failed", details={"problem": str(error)})
+        details = {"raw": formed.raw, "tries": [describe_try(one) for one in formed.tries]}
         if formed.value is None:
-            self._refused = formed.problem
-            return Decision((), outcome="invalid", told={**told, "problem": formed.problem})
-        self._refused = ""
+            self._rejected = formed.problem
+            return Decision((), outcome="invalid", details={**details, "problem": formed.problem})
+        self._rejected = ""
         self._progress = formed.value.progress[:MAX_PROGRESS_CHARACTERS] or self._progress
         step = formed.value
-        return Decision(step.moves, step.thought, step.progress, told=told)
+        return Decision(step.moves, step.thought, step.progress, details=details)
 
     def _moment(self, task: Task, sight: Observation) -> StepPrompt:
-        told_map = ""
+        map_text = ""
         if self.map_kind == "text":
-            told_map = trail_text(self._stances, task.metres_per_block)
+            map_text = trail_text(self._stances, task.metres_per_block)
         plan = None
         if self.map_kind == "plan":
             if task.plan is None:
@@ -188,7 +183,7 @@ class VlmAgent:
             plan = self._picture(task.plan(self._stances))
         return StepPrompt(
             sight.step, self._picture(sight.colour), tuple(self._views), tuple(self._done),
-            self._progress, told_map, self._refused, plan,
+            self._progress, map_text, self._rejected, plan,
         )  # fmt: skip
 
     def _picture(self, colour: np.ndarray) -> Picture:
@@ -198,7 +193,7 @@ class VlmAgent:
         self._views: list[Picture] = []
         self._stances: list[Stance] = []
         self._done: list[tuple[Move, bool]] = []
-        self._progress = self._refused = ""
+        self._progress = self._rejected = ""
 
 
 def encode_jpeg(colour: np.ndarray) -> bytes:
@@ -211,13 +206,13 @@ def encode_jpeg(colour: np.ndarray) -> bytes:
 def describe_try(tried: Attempt) -> dict[str, Any]:
     """Return a try for the trace."""
     reply = tried.reply
-    told: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}
+    details: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}
     if reply is not None:
-        told |= {
+        details |= {
             "raw": reply.text,
             "tokens": [reply.prompt_tokens, reply.completion_tokens],
             "latency_s": reply.latency_s,
             "attempts": reply.attempts,
             "is_replayed": reply.is_replayed,
         }
-    return told
+    return details

@@ -1,4 +1,4 @@
-"""What a model is told: who it is and how moves go, then what it sees at each step."""
+"""Prompts of a vision-language model: its role and its actions, then what it sees at each step."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class StepPrompt:
     done: tuple[tuple[Move, bool], ...] = ()
     progress: str = ""
     map_text: str = ""
-    refused: str = ""  # why the last decision was none
+    rejected: str = ""  # why the last decision was none
     plan: Picture | None = None
 
 
@@ -61,8 +61,8 @@ def step_turn(task: Task, moment: StepPrompt) -> Turn:
     ]
     if moment.done:
         lines.append(f"Your last moves: {_past_moves_text(moment.done)}.")
-    if moment.refused:
-        lines.append(f"Your last reply could not be used, and you did not move: {moment.refused}")
+    if moment.rejected:
+        lines.append(f"Your last reply could not be used, and you did not move: {moment.rejected}")
     if moment.progress:
         lines.append(f"Progress, in your words: {moment.progress}")
     if moment.map_text:

@@ -1,11 +1,14 @@
-"""Where wrong pictures of a question may be taken: near its place, by other moves than the way's.
+"""Wrong pictures of a Next-View question, rendered near its place.
+
+::
 
     turned      the next place with another heading
     other_move  what another move would show
     mirror      where the last moves lead with left and right exchanged
     beside      some steps to a side, or back, from here or from the next place: no move leads there
 
-Every place is one that the world's physics leads to.
+Every place is one that the world's physics leads to. As many pictures as wanted are more like the
+present one than the right one is.
 """
 
 from collections import Counter
@@ -28,11 +31,15 @@ from world2minecraft.navigation.values import Move, Stance
 from world2minecraft.navigation.walk_discretization import StepFunction
 from world2minecraft.navigation.walk_stream import wrap_deg
 
-# Wrong pictures that are taken for a question: as many as wanted more like the present one.
-
 CHOICES = 4
 MAX_OF_A_KIND = 2  # Of one question: three steps beside would tell the right one by being other.
 MAX_TRIES = 3  # Pictures that are taken in full for one that is kept.
+RENDERED_KINDS = ("turned", "other_move", "mirror", "beside")
+TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
+OTHER_TURNS = (1, 2, 4)  # Moves: from as like as can be to as far as a keyframe turns.
+BESIDE_M = (0.25, 0.5, 0.75)  # From here; from the next place the middle one.
+MIRRORED_TURNS = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
+MIRRORED_RUNS = 3  # As many as pictures are shown.
 
 
 class RankBalancer:
@@ -120,14 +127,6 @@ def is_valid_choice(
     if not has_detail(one) or is_near_duplicate(one, now):
         return False
     return all(are_distinguishable(one, other) for other in others)
-
-
-RENDERED_KINDS = ("turned", "other_move", "mirror", "beside")
-TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
-OTHER_TURNS = (1, 2, 4)  # Moves: from as like as can be to as far as a keyframe turns.
-BESIDE_M = (0.25, 0.5, 0.75)  # From here; from the next place the middle one.
-MIRRORED_TURNS = {Move.LEFT: Move.RIGHT, Move.RIGHT: Move.LEFT}
-MIRRORED_RUNS = 3  # As many as pictures are shown.
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.navigation.data.planned_walks import TourPlanner
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
@@ -69,7 +69,7 @@ def make_scenes(
     left = [one for one in orders if not (Path(one.folder) / _FINISHED[one.what]).is_file()]
     if left:
         progress("scenes", 0, len(left))
-        with opened_engine("pool", max(1, min(workers, len(left)))) as engine:
+        with open_engine("pool", max(1, min(workers, len(left)))) as engine:
             for done, (n, _) in enumerate(engine.run(_make, left, lambda _: None), 1):
                 progress("scenes", done, len(left), Path(left[n].folder).name)
     return [Path(one.folder) for one in orders]

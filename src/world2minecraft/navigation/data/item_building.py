@@ -1,4 +1,7 @@
-"""Items of scenes: wrong pictures of elsewhere come from the same split, never from another."""
+"""Build the items of scenes: balanced letters, sizes as the paper's, wrong pictures of elsewhere.
+
+Wrong pictures come from the split of the question, never from another.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,25 +12,6 @@ from world2minecraft.navigation.data.pictures import StoredPicture
 from world2minecraft.navigation.data.scene_items import WALK_VERSION, SceneItems
 from world2minecraft.navigation.data.tasks import ViewQuestion, action_item, view_item
 from world2minecraft.navigation.values import LETTERS, Item, Trajectory
-
-# Which letter the right answer has: by chance, and each as often as every other.
-
-
-class LetterBalancer:
-    """Deals letters from shuffled packs of one each, so that no letter comes more often."""
-
-    def __init__(self, rng: np.random.Generator, choices: int = 4):
-        self._rng, self._letters = rng, LETTERS[:choices]
-        self._pack: list[str] = []
-
-    def deal(self) -> str:
-        """Return the next letter."""
-        if not self._pack:
-            self._pack = [self._letters[n] for n in self._rng.permutation(len(self._letters))]
-        return self._pack.pop()
-
-
-# How many items a set has: all that were made, or as many as the paper counts.
 
 # Of the paper's table of instruction lengths; its table of sizes has the two rows swapped.
 PAPER_SIZE: Mapping[tuple[str, str], int] = {
@@ -45,6 +29,21 @@ PAPER_HELD: Mapping[tuple[str, str], int] = {
 }
 PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together: with room to cut from.
 COMPOSITIONS = ("base", "extend", "combined")
+TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like as is wanted.
+
+
+class LetterBalancer:
+    """Deals letters from shuffled packs of one each, so that no letter comes more often."""
+
+    def __init__(self, rng: np.random.Generator, choices: int = 4):
+        self._rng, self._letters = rng, LETTERS[:choices]
+        self._pack: list[str] = []
+
+    def deal(self) -> str:
+        """Return the next letter."""
+        if not self._pack:
+            self._pack = [self._letters[n] for n in self._rng.permutation(len(self._letters))]
+        return self._pack.pop()
 
 
 def cut_to_paper_size(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
@@ -86,9 +85,6 @@ def _in_turn(items: Sequence[Item]) -> list[Item]:
         own = turns.setdefault(item.scene_id, {})
         own.setdefault(item.trajectory_id, len(own))
     return sorted(items, key=lambda item: turns[item.scene_id][item.trajectory_id])
-
-
-TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like as is wanted.
 
 
 @dataclass(frozen=True)

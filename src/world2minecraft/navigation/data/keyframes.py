@@ -1,4 +1,9 @@
-"""Which walks are worth asking about: not too short, not too long, and with something to see."""
+"""Keyframes of a walk, and which walks are worth asking about.
+
+A keyframe stands after each run of equal moves; a run is one macro action, as the paper words
+them. Long runs are cut, so that what one picture shows is still seen in the next. A valid walk is
+neither too short nor too long and shows something.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,11 +15,6 @@ from world2minecraft.navigation.data.pictures import hash_distance
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
-# Where a walk's pictures are taken: after each run of equal moves.
-#
-# A run is one macro action, as the paper words them. Long runs are cut, so that what one picture
-# shows is still seen in the next.
-
 ACTIONS = {
     Move.STOP: "stop",
     Move.FORWARD: "move forward",
@@ -25,6 +25,7 @@ CHUNK_MOVES = 4  # So many next moves a keyframe tells: what agents are asked fo
 MAX_FORWARD_M = 1.0  # A guess: the next picture still shows what this one does.
 TURN_AROUND_DEG = 140.0  # Who turns farther turns around, by the left or by the right.
 MAX_TURN_DEG = 60.0  # Less than the width of a picture, for the same reason.
+NO_MOVEMENT = "goes nowhere"
 
 
 @dataclass(frozen=True)
@@ -95,9 +96,6 @@ def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) ->
     while last + 1 < len(marks) and marks[last + 1].move == move:
         last += 1
     return sum(mark.run for mark in marks[first : last + 1]) * turn_deg > TURN_AROUND_DEG
-
-
-NO_MOVEMENT = "goes nowhere"
 
 
 @dataclass(frozen=True)

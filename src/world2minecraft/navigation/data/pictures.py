@@ -1,4 +1,4 @@
-"""The pictures of a set as they are made: each is written once, and known by its name."""
+"""The pictures of a set: encoded as JPEG, compared by hashes, each written once."""
 
 import hashlib
 import io
@@ -15,11 +15,13 @@ from world2minecraft.navigation.values import Stance
 from world2minecraft.navigation.walk_stream import wrap_deg
 from world2minecraft.rendering.views.cameras import camera_of
 
-# Pictures of a set: as JPEG, told apart by hashes.
-
 SIZE, FOV_DEG = (640, 360), 70.0  # The game's view; 299 tokens of Qwen2.5-VL.
 QUALITY = 90
 COARSE_PX = (32, 18)  # So small, textures are even and only things vary.
+NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
+MIN_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
+DUPLICATE_HASH_BITS = 4  # Bits of 64 by which two pictures are told apart at all.
+MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right one.
 
 
 def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
@@ -68,12 +70,6 @@ def dhash(image: Image.Image) -> int:
 def hash_distance(one: int, other: int) -> int:
     """Return by how many of 64 bits two hashes differ."""
     return (one ^ other).bit_count()
-
-
-NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
-MIN_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
-DUPLICATE_HASH_BITS = 4  # Bits of 64 by which two pictures are told apart at all.
-MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right one.
 
 
 RenderViews = Callable[[Sequence[Stance]], list[EncodedPicture]]

@@ -1,9 +1,14 @@
-"""A set of many scenes: walked, then asked about, then written.
+"""Build a navigation set of many scenes: walk them, ask about the walks, write the records.
 
-OUT/dataset.json      what it was made of, and how
-OUT/items.jsonl       questions
-OUT/trajectories.jsonl, OUT/episodes.jsonl
-OUT/images/SCENE/TRAJECTORY/NNN.jpg
+::
+
+    OUT/dataset.json      what it was made of, and how
+    OUT/items.jsonl       questions
+    OUT/trajectories.jsonl, OUT/episodes.jsonl
+    OUT/images/SCENE/TRAJECTORY/NNN.jpg
+
+Scenes are worked by one process or by several, with the same result: the random numbers of each
+come from its own name, and results are put in the order in which the scenes were named.
 """
 
 from collections import Counter
@@ -17,7 +22,7 @@ from world2minecraft import __version__
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.navigation.data.item_building import (
     COMPOSITIONS,
@@ -53,10 +58,8 @@ from world2minecraft.navigation.records import (
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.navigation.values import Item
 
-# The scenes of a set, worked by one process or by several: the same comes of it in any case.
-#
-# Each scene is worked by itself, its chances drawn from its own name, and what came of the scenes is
-# put in the order in which they were named.
+WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
+RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ def run_scene_jobs(
     first = sorted(range(len(jobs)), key=lambda n: (-jobs[n].rule.trajectories, n))
     wanted = sum(job.rule.trajectories for job in jobs)
     walks, works = _WalkCounter(wanted, len(jobs), progress), dict[int, SceneItems]()
-    with opened_engine("pool", min(workers, len(jobs))) as engine:
+    with open_engine("pool", min(workers, len(jobs))) as engine:
         for place, work in engine.run(_run_job, [jobs[n] for n in first], walks.add):
             works[first[place]] = work
             own = jobs[first[place]].rule.trajectories
@@ -125,10 +128,6 @@ class _WalkCounter:
         self.add(max(0, asked - given))
         done = self._done if self._left else self._wanted
         self._told(done, self._wanted, f"{name}: {given} walks")
-
-
-WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
-RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 
 @dataclass(frozen=True)

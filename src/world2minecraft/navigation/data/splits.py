@@ -1,4 +1,9 @@
-"""Whether what is scored on was seen in training: pictures, scenes, walks, instructions."""
+"""Which scenes and walks are for training, and whether anything leaks from there.
+
+Scenes and walks are ordered by hashes of their names, so that their order does not matter. Whole
+scenes are kept unseen (``val_unseen``), and of the others whole tours (``val_seen``). What is asked
+of a walk is always in one split.
+"""
 
 import hashlib
 from collections import Counter
@@ -7,11 +12,6 @@ from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.values import Item, Trajectory
-
-# Which scenes and walks are for training: by sums of their names, so that order does not matter.
-#
-# Whole scenes are kept unseen (``val_unseen``), and of the others whole tours (``val_seen``). What is
-# asked of a walk is always in one split.
 
 UNSEEN_SHARE = 0.2  # Of the scenes of each composition: the paper's test share of items is 0.21.
 SEEN_SHARE = 0.1  # Of the tours of the other scenes.

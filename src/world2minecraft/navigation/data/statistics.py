@@ -1,4 +1,9 @@
-"""How long instructions are, drawn as the paper's figure has it: two tasks, three parts."""
+"""Statistics of a set: instruction lengths as the paper's table, answers, wrong choices; a plot.
+
+Lengths are counted by items, in characters and in words; ``std`` is that of a sample (ddof 1), as
+pandas' ``describe`` gives it, which the paper's table looks made by. The plot has the lengths as
+the paper's figure: two tasks, three parts.
+"""
 
 import io
 from collections import Counter
@@ -16,11 +21,6 @@ from world2minecraft.navigation.data.blind_baselines import BaselineRow
 from world2minecraft.navigation.data.splits import Leaks
 from world2minecraft.navigation.values import SPLITS, TASKS, Item
 
-# What a set holds: lengths of instructions as the paper's table has them, answers, wrong choices.
-#
-# Lengths are counted by items, in characters and in words; ``std`` is that of a sample (ddof 1), as
-# pandas' ``describe`` gives it, which the paper's table looks made by.
-
 # Of the paper's table "Statistical Summary of Instruction Lengths", in characters.
 PAPER_LENGTHS = {
     ("next_action", "base"): (769, 79.01, 32.87, 15, 57.0, 78.0, 96.0, 187),
@@ -31,6 +31,9 @@ PAPER_LENGTHS = {
     ("next_view", "combined"): (1422, 155.73, 70.48, 28, 103.0, 145.0, 208.0, 334),
 }
 PARTS = ("base", "extend", "combined")
+_TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
+SIZE_IN, DPI, BIN = (10.76, 5.56), 100, 20  # A bar for so many characters.
+COLOUR = "#5684b4"
 
 
 @dataclass(frozen=True)
@@ -114,11 +117,6 @@ def _evenness(items: Sequence[Item], task: str) -> float:
         return 1.0
     counts = Counter(item.answer for item in own)
     return float(chisquare([counts[letter] for letter in "ABCD"]).pvalue)
-
-
-# The figures of a set as a table for people, and as JSON.
-
-_TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
 
 
 def statistics_text(statistics: SetStatistics, leaks: Leaks) -> str:
@@ -214,10 +212,6 @@ def statistics_json(
             for row in rows
         ],
     }
-
-
-SIZE_IN, DPI, BIN = (10.76, 5.56), 100, 20  # A bar for so many characters.
-COLOUR = "#5684b4"
 
 
 def write_histograms(items: Sequence[Item], path: str | Path) -> None:

@@ -1,4 +1,10 @@
-"""Next-View: which of four pictures comes next? With wrong ones of three grades.
+"""The two tasks of a set: Next-Action and Next-View.
+
+Next-Action: what does one do next? Four actions, one right. In each walk one picture of each action
+is asked about, so no answer is likelier than another, even to someone who knows the instruction: a
+model that sees nothing is right one time in four.
+
+Next-View: which of four pictures comes next? With wrong ones of three grades::
 
     easy    two views of elsewhere in the scene, one of another scene
     medium  elsewhere, another time of the same walk, the next place with another heading, a step
@@ -7,10 +13,9 @@
 
 Who walks on sees much of what was there before. So that the picture most like the present one is
 not mostly the right one, it is drawn how many of the wrong ones are more like it than the right
-one: none to three, each as often, as far as such pictures are found.
-
-A wrong picture is never one that could pass for the right one: from nearly the same stance, or
-with nearly the same hash. Nor is it one that was shown before.
+one: none to three, each as often, as far as such pictures are found. A wrong picture is never one
+that could pass for the right one: from nearly the same stance, or with nearly the same hash. Nor is
+it one that was shown before.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -37,10 +42,22 @@ from world2minecraft.navigation.data.pictures import (
 )
 from world2minecraft.navigation.values import LETTERS, Instruction, Item, Move, Option, Trajectory
 
-# Next-Action: what does one do next? Four actions, one right.
-#
-# In each way one picture of each action is asked about. So no answer is likelier than another, even
-# to someone who knows the instruction: a model that sees nothing is right one time in four.
+HISTORY = 3  # Pictures that are shown; the last is the current one.
+# What is taken for a question, and what serves where nothing is; of a grade.
+RENDERED_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
+FOUND_OF = {
+    "easy": ("elsewhere", "elsewhere", "other_scene"),
+    "medium": ("elsewhere", "temporal", "elsewhere"),
+    "hard": ("temporal", "temporal", "elsewhere"),
+}
+MAX_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
+GRADES = tuple(RENDERED_OF)
+GRADE_SHARES = (
+    0.1,
+    0.45,
+    0.45,
+)  # In easy ones the nearest is mostly right.
+TEMPORAL_OFFSETS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
 
 
 def action_steps(
@@ -109,24 +126,6 @@ def action_item(
         trajectory.split, composition, trajectory.metres_per_block, oracle_version,
         {pictures[step].image: pictures[step].sha256}, extra,
     )  # fmt: skip
-
-
-HISTORY = 3  # Pictures that are shown; the last is the current one.
-# What is taken for a question, and what serves where nothing is; of a grade.
-RENDERED_OF = {"easy": (), "medium": ("turned", "beside"), "hard": RENDERED_KINDS}
-FOUND_OF = {
-    "easy": ("elsewhere", "elsewhere", "other_scene"),
-    "medium": ("elsewhere", "temporal", "elsewhere"),
-    "hard": ("temporal", "temporal", "elsewhere"),
-}
-MAX_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
-GRADES = tuple(RENDERED_OF)
-GRADE_SHARES = (
-    0.1,
-    0.45,
-    0.45,
-)  # In easy ones the nearest is mostly right.
-TEMPORAL_OFFSETS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
 
 
 @dataclass(frozen=True)

@@ -61,13 +61,13 @@ class DiscreteActions:
             return True, [], False
         gone: list[Stance] = []
         for _ in range(count):
-            self.stance, collided = self.made(move)
+            self.stance, collided = self.apply(move)
             gone.append(self.stance)
             if collided:
                 return False, gone, True
         return False, gone, False
 
-    def made(self, move: Move) -> tuple[Stance, bool]:
+    def apply(self, move: Move) -> tuple[Stance, bool]:
         """Return where a move that is no STOP leads, and whether something was in the way."""
         return apply_move(self.scene, self.stance, move, self.move_set, sliding=self.sliding)
 
@@ -105,11 +105,11 @@ class ContinuousActions:
         yaw_deg = wrap_yaw(self.stance.yaw_deg + yaw_by)
         pitch_deg = min(max(self.stance.pitch_deg + pitch_by, -90.0), 90.0)
         keys = Keys(*(bool(key) for key in action["keys"]), yaw_deg=yaw_deg)
-        self.body = self.ticked(keys, pitch_deg)
+        self.body = self.tick(keys, pitch_deg)
         x, y, z = self.body.position
         self.stance = Stance(x, y, z, yaw_deg, pitch_deg)
         return False, [self.stance], self.body.hit_wall
 
-    def ticked(self, keys: Keys, pitch_deg: float) -> Body:
+    def tick(self, keys: Keys, pitch_deg: float) -> Body:
         """Return the body after a tick of keys; where it looks up or down does not matter to it."""
         return step(self.world, self.body, keys, self.scene.scale)

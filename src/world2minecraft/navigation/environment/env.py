@@ -84,15 +84,15 @@ class VlnEnv(gymnasium.Env):
         if not success_m > 0:
             raise UsageError(f"success_m is a length above 0, in metres, not {success_m:g}")
         self.scene = _opened(scene, body, box, blocks_per_metre)
-        self.drawing = EpisodeSampler(
+        self.sampler = EpisodeSampler(
             self.scene, episodes, split, get_move_set(move_set).name, span_m
         )
-        texts = self.drawing.texts if "instruction" in observations else ()
-        self.senses = SensorSuite(self.scene, observations, eyes or Eyes(), texts)
-        self.acting: ActionController = self._acting(
+        texts = self.sampler.texts if "instruction" in observations else ()
+        self.sensors = SensorSuite(self.scene, observations, eyes or Eyes(), texts)
+        self.controller: ActionController = self._make_controller(
             actions == "continuous", get_move_set(move_set), sliding
         )
-        self.observation_space, self.action_space = self.senses.space, self.acting.space
+        self.observation_space, self.action_space = self.sensors.space, self.controller.space
         self.max_steps, self.success_m = max_steps or DEFAULT_MAX_STEPS[actions], success_m
         self.render_mode = render_mode
         self.window: Window | None = None
@@ -116,11 +116,11 @@ class VlnEnv(gymnasium.Env):
         """
         super().reset(seed=seed)
         if seed is not None:
-            self.drawing.rewind(seed)
-        episode = self.drawing.draw(self.np_random, options or {})
+            self.sampler.rewind(seed)
+        episode = self.sampler.sample(self.np_random, options or {})
         check_reachable(episode, self.scene.distance_m(episode.start.feet, episode.goals))
         self.episode = episode
-        self.acting.begin(self.episode.start)
+        self.controller.begin(self.episode.start)
         self.path, self.steps, self.collisions = [self.episode.start], 0, 0
         self._distance_m = self.scene.distance_m(self.episode.start.feet, self.episode.goals)
         self._is_over = False
@@ -135,11 +135,11 @@ class VlnEnv(gymnasium.Env):
         """
         if self._is_over:
             raise gymnasium.error.ResetNeeded("the episode is over; call reset() before step()")
-        stopped, gone, collided = self.acting.act(action)
+        stopped, gone, collided = self.controller.act(action)
         self.path += gone
         self.steps, self.collisions = self.steps + 1, self.collisions + collided
         before = self._distance_m
-        self._distance_m = self.scene.distance_m(self.acting.stance.feet, self._playing.goals)
+        self._distance_m = self.scene.distance_m(self.controller.stance.feet, self._playing.goals)
         nearer = before - self._distance_m if np.isfinite([before, self._distance_m]).all() else 0.0
         success = stopped and self._distance_m < self.success_m
         truncated = not stopped and self.steps >= self.max_steps
@@ -158,7 +158,7 @@ class VlnEnv(gymnasium.Env):
         """
         if self.render_mode is None or not self._playing:
             return None
-        frame = self.senses.rgb(self.acting.stance)
+        frame = self.sensors.rgb(self.controller.stance)
         if self.render_mode == "rgb_array":
             return frame
         self.window = self.window or Window(frame.shape[1])
@@ -171,7 +171,7 @@ class VlnEnv(gymnasium.Env):
             self.window.close()
             self.window = None
 
-    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
+    def _make_controller(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
         """Return what takes the actions; a body elsewhere has its own."""
         if by_keys:
             return ContinuousActions(self.scene)
@@ -193,7 +193,7 @@ class VlnEnv(gymnasium.Env):
     def _look(self) -> dict[str, Any]:
         if self.render_mode == "human":
             self.render()
-        return self.senses.look(self.acting.stance, self._playing.instruction.text)
+        return self.sensors.look(self.controller.stance, self._playing.instruction.text)
 
     def _info(self, collided: bool) -> dict[str, Any]:
         return {

@@ -56,7 +56,7 @@ class EpisodeSampler:
         """Go on from the given episode of a number, counted round."""
         self._next = seed % len(self.given) if self.given else 0
 
-    def draw(self, rng: np.random.Generator, options: Mapping[str, Any]) -> Episode:
+    def sample(self, rng: np.random.Generator, options: Mapping[str, Any]) -> Episode:
         """Return the next episode.
 
         Raises:

@@ -13,7 +13,7 @@ from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Stance
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY
+from world2minecraft.rendering.shading_parameters import DAY
 
 SENSORS = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
 DEFAULT_SENSORS = ("rgb", "pose", "instruction")

@@ -1,6 +1,6 @@
-"""Which items go together: by task, by composition and by split, in an order of chance.
+"""The options of an export, the groups of items that it writes, and the report of each file.
 
-LLaMA-Factory takes the *first* ``max_samples`` rows of a file, so the order must say nothing: it is
+LLaMA-Factory takes the *first* ``max_samples`` rows of a file, so the order must not matter: it is
 that of a hash of the seed and the item's id, the same whatever order the items came in.
 """
 
@@ -12,10 +12,9 @@ from typing import Any
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.values import SPLITS, TASKS, Item
 
-# What an export leaves to choose, and what it tells of each recipe that it wrote.
-
 COMPOSITIONS = ("base", "extend", "combined")
 IMAGE_STYLES = ("paths", "embedded")
+TRAIN_SPLIT, VALIDATION_SPLITS = "train", ("val_unseen", "val_seen")
 
 
 @dataclass(frozen=True)
@@ -75,9 +74,6 @@ class ExportedFile:
     steps: int = 0
     tokens: int = 0
     notes: tuple[str, ...] = ()
-
-
-TRAIN_SPLIT, VALIDATION_SPLITS = "train", ("val_unseen", "val_seen")
 
 
 @dataclass(frozen=True)

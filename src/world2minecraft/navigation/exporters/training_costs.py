@@ -1,4 +1,4 @@
-"""How long a row is for Qwen2.5-VL: what its pictures take, and a bound of what its words take.
+"""What a training recipe costs: steps by the trainers' own loops, tokens a row for Qwen2.5-VL.
 
 One token stands for 28 x 28 pixels (14 a patch, two by two merged). A text has at most as many
 tokens as bytes, because the tokenizer's alphabet is the bytes: a row that fits by this bound fits.
@@ -14,11 +14,13 @@ from world2minecraft.navigation.exporters.pictures import SetPictures
 from world2minecraft.navigation.prompts import IMAGE, Question
 from world2minecraft.navigation.values import Item
 
-# How many steps a recipe takes, by the trainers' own loops, told before anybody pays for them.
-
 # Of the paper's tables.
 SFT_EPOCHS, SFT_BATCH, SFT_ACCUMULATED = 5, 1, 2
 GRPO_EPOCHS, GRPO_BATCH, GRPO_ROLLOUTS = 30, 128, 5
+PIXELS_A_TOKEN_SIDE = 28
+MIN_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
+MAX_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
+CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the model's own template.
 
 
 @dataclass(frozen=True)
@@ -67,12 +69,6 @@ def grpo_plan(rows: int, gpus: int) -> GrpoPlan:
         )
     steps = rows // batch
     return GrpoPlan(batch, steps, steps * GRPO_EPOCHS, rows - steps * batch)
-
-
-PIXELS_A_TOKEN_SIDE = 28
-MIN_PIXELS = 56 * 56  # Qwen2.5-VL's own processor enlarges pictures that have fewer,
-MAX_PIXELS = 14 * 14 * 4 * 1280  # and shrinks those that have more; the trainer's limit is lower.
-CHAT_TOKENS = 64  # A system prompt, roles and the ends of turns: 30 by the model's own template.
 
 
 def image_tokens(width_px: int, height_px: int, max_pixels: int) -> int:

@@ -3,6 +3,11 @@
 Its loader makes an object of each episode by its keys, so no other key may stand there; what is
 ours goes into ``info``. ``instruction_tokens`` are numbers of the one vocabulary of all splits,
 filled up with 0 to 200, and an instruction that is longer is cut, as in R2R's.
+
+Positions are in Habitat's metres: y up, x east, z south, where our exported stages stand. A stage
+of ``w2m convert SCENE NAME.habitat`` stands by the scene's own ``block_to_room``, which is read
+from the ``scene.json`` beside its blocks. A place that has none is taken from its world's origin,
+by the length of a block.
 """
 
 import gzip
@@ -22,13 +27,11 @@ from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.records import resolve_scene_path
 from world2minecraft.navigation.values import SPLITS, Episode, Move, Stance
 
-# World blocks to the metres of Habitat: y up, x east, z south, where our exported stages stand.
-#
-# A stage of ``w2m convert SCENE NAME.habitat`` stands by the scene's own ``block_to_room``, which is
-# read from the ``scene.json`` beside its blocks. A place that has none is taken from its world's
-# origin, by the length of a block.
-
 SCENE_FILE = "scene.json"
+PAD, UNKNOWN = "<pad>", "<unk>"
+TOKENS = 200  # Of VLN-CE's own episodes.
+GOAL_RADIUS_M = 3.0  # Its success distance.
+SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as R2R's are.
 
 
 def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> np.ndarray:
@@ -76,12 +79,6 @@ def _block_to_room(path: Path) -> np.ndarray:
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(path, f"block_to_room must be a 4 x 4 ({error})") from error
     return transform
-
-
-PAD, UNKNOWN = "<pad>", "<unk>"
-TOKENS = 200  # Of VLN-CE's own episodes.
-GOAL_RADIUS_M = 3.0  # Its success distance.
-SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as R2R's are.
 
 
 def write_vlnce(

@@ -16,7 +16,9 @@ def unambiguous_landmarks(landmarks: Sequence[Landmark]) -> list[Landmark]:
         landmarks: all of a scene.
     """
     return [
-        one for one in landmarks if one.is_told and matching_landmarks(one.name, landmarks) == [one]
+        one
+        for one in landmarks
+        if one.is_unambiguous and matching_landmarks(one.name, landmarks) == [one]
     ]
 
 

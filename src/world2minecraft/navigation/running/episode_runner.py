@@ -40,23 +40,23 @@ class EpisodeWalk:
 class Observer(Protocol):
     """What is told of a walk while it goes on."""
 
-    def began(self, episode: Episode, agent: str) -> None:
+    def on_begin(self, episode: Episode, agent: str) -> None:
         """Hear that an episode begins."""
         ...
 
-    def decided(
+    def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
         """Hear what an agent saw and decided, and what was made of it."""
         ...
 
-    def stood(
+    def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
         """Hear where the agent stands, after a move and at the start."""
         ...
 
-    def ended(self, walk: EpisodeWalk) -> None:
+    def on_end(self, walk: EpisodeWalk) -> None:
         """Hear how it went."""
         ...
 
@@ -84,13 +84,13 @@ def walk_episode(
         )
     )  # fmt: skip
     for observer in observers:
-        observer.began(episode, agent.name)
-        observer.stood(episode.start, 0, None, None)
+        observer.on_begin(episode, agent.name)
+        observer.on_stance(episode.start, 0, None, None)
     while state.end is None:
         state.decide()
     walk = state.walk()
     for observer in observers:
-        observer.ended(walk)
+        observer.on_end(walk)
     return walk
 
 
@@ -123,7 +123,7 @@ class _State:
         self.last = tuple(self.made[before:])
         told = self.last if self.end != "stopped" else (*self.last, (Move.STOP, False))
         for observer in self.observers:
-            observer.decided(sight, decision, told)
+            observer.on_decision(sight, decision, told)
         if self.end is None and self.steps >= self.episode.max_steps:
             self.end = "out of steps"
 
@@ -151,7 +151,7 @@ class _State:
                 self.end = "stopped"
                 self._tell(decision, move)
                 return
-            stance, collided = self.ground.after(self.stances[-1], move)
+            stance, collided = self.ground.step(self.stances[-1], move)
             self.stances.append(stance)
             self.made.append((move, collided))
             self._tell(decision, move)
@@ -160,7 +160,7 @@ class _State:
 
     def _tell(self, decision: Decision, move: Move | None) -> None:
         for observer in self.observers:
-            observer.stood(self.stances[-1], self.steps, decision, move)
+            observer.on_stance(self.stances[-1], self.steps, decision, move)
 
     def _score(self) -> EpisodeScore:
         goals = self.episode.goals
@@ -180,5 +180,5 @@ def reference_m(ground: Simulator, episode: Episode) -> np.ndarray:
         stances = [episode.start]
         for move in ground.expert(episode.start, episode.goals, episode.facing):
             if move != Move.STOP:
-                stances.append(ground.imagined.after(stances[-1], move)[0])
+                stances.append(ground.offline.step(stances[-1], move)[0])
     return ground.to_room_m(np.array([one.feet for one in stances]))

@@ -41,18 +41,18 @@ class Film:
         self._agent = ""
         self._last: Image.Image | None = None
 
-    def began(self, episode: Episode, agent: str) -> None:
+    def on_begin(self, episode: Episode, agent: str) -> None:
         """Open the film."""
         self._episode, self._agent, self._stances = episode, agent, []
         self._stack = ExitStack()
         self._write = self._stack.enter_context(animation_writer(self.path, self.rate_hz))
 
-    def decided(
+    def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
         """Draw nothing: moves are drawn as they are made."""
 
-    def stood(
+    def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
         """Draw a frame."""
@@ -68,7 +68,7 @@ class Film:
         )
         self._send(frame, self.rate_hz * HOLD_S if decision is None else 1)
 
-    def ended(self, walk: EpisodeWalk) -> None:
+    def on_end(self, walk: EpisodeWalk) -> None:
         """Say on the last frame how it went, and close the film."""
         if self._last is not None:
             self._send(with_end(self._last, end_text(walk)), self.rate_hz * HOLD_S)
@@ -117,12 +117,12 @@ def compose(
 
 def with_end(frame: Image.Image, text: str) -> Image.Image:
     """Return a frame with a line across the view's foot."""
-    ended = frame.copy()
-    draw = ImageDraw.Draw(ended)
+    final = frame.copy()
+    draw = ImageDraw.Draw(final)
     top = SIZE_PX[1] - 40
     draw.rectangle((0, top, VIEW_PX[0] - 1, SIZE_PX[1]), INK)
     draw.text((12, top + 9), printable(text), PAPER, ImageFont.load_default(18))
-    return ended
+    return final
 
 
 def end_text(walk: EpisodeWalk) -> str:
@@ -184,7 +184,7 @@ def _caption(
     if decision is None:
         return lines
     if decision.outcome != "moves":
-        lines.append((decision.outcome.upper(), str(decision.told.get("problem", ""))))
+        lines.append((decision.outcome.upper(), str(decision.details.get("problem", ""))))
     elif move is not None:
         lines.append(("", f"now: {MOVE_NAMES[move]}"))
     return lines + [

@@ -49,20 +49,20 @@ class HumanAgent:
         """Close the window."""
         self.window.close()
 
-    def began(self, episode: Episode, agent: str) -> None:
+    def on_begin(self, episode: Episode, agent: str) -> None:
         """Hear that an episode begins; ``begin`` told it already."""
 
-    def decided(
+    def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
         """Hear what the person did, who knows."""
 
-    def stood(
+    def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
         """Hear where one stands."""
 
-    def ended(self, walk: "EpisodeWalk") -> None:
+    def on_end(self, walk: "EpisodeWalk") -> None:
         """Say how the walk went, now and beside the next one."""
         from world2minecraft.navigation.running.film import end_text  # noqa: PLC0415  # Imports agents.
 

@@ -1,7 +1,7 @@
-"""Items asked one by one, and what share was right: by task and composition, with intervals.
+"""Evaluate answers to items: select them, ask one by one, score by task and composition.
 
 Each reply is kept. An answer that cannot be read is wrong and counted as such; where a server
-fails several items in a row the run ends, for its score would tell of the server alone.
+fails several items in a row the run ends, for its score would measure the server alone.
 """
 
 import hashlib
@@ -20,18 +20,16 @@ from world2minecraft.navigation.agents.question_answering import Answer
 from world2minecraft.navigation.scores import rate
 from world2minecraft.navigation.values import SPLITS, TASKS, Item
 
-# Lines of JSON, the same bytes for the same values.
+COMPOSITIONS = ("base", "extend", "combined")
+ANSWERS_FILE, RESULT_FILE = "answers.jsonl", "result.json"
+MAX_FAILED = 5  # In a row; each was asked several times.
+TRAININGS = ("none", "sft", "rft", "baseline")
+CHOICES = (*SPLITS, "test", "all")
 
 
 def json_line(value: dict[str, Any]) -> str:
     """Return a value as one line of JSON, with its end."""
     return json.dumps(value, allow_nan=False, sort_keys=True) + "\n"
-
-
-COMPOSITIONS = ("base", "extend", "combined")
-ANSWERS_FILE, RESULT_FILE = "answers.jsonl", "result.json"
-MAX_FAILED = 5  # In a row; each was asked several times.
-TRAININGS = ("none", "sft", "rft", "baseline")
 
 
 class Answerer(Protocol):
@@ -78,7 +76,7 @@ def evaluate(
         failed = failed + 1 if answer.outcome == "failed" else 0
         if failed >= MAX_FAILED:
             raise ServerError(
-                f"{failed} items in a row had no answer ({answer.told.get('problem', '')}); "
+                f"{failed} items in a row had no answer ({answer.details.get('problem', '')}); "
                 "the same command goes on from here"
             )
         if progress is not None:
@@ -149,7 +147,7 @@ def write_result(folder: str | Path, found: Sequence[AnsweredItem], facts: dict[
                 "said": one.answer.letter,
                 "is_right": one.is_right,
                 "outcome": one.answer.outcome,
-                "told": one.answer.told,
+                "told": one.answer.details,
             }
         )
         for one in found
@@ -164,11 +162,6 @@ def write_result(folder: str | Path, found: Sequence[AnsweredItem], facts: dict[
         **facts,
     }
     write_json(out / RESULT_FILE, told)
-
-
-# Which items of a set are asked: by split, task and composition, or a number of them drawn.
-
-CHOICES = (*SPLITS, "test", "all")
 
 
 def select_items(

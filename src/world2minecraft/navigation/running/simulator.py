@@ -1,4 +1,4 @@
-"""A scene as the ground of episodes: its own moves, oracle, distances and pictures."""
+"""What episodes are walked on: a scene with one set of moves, one camera and the oracle's paths."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -13,7 +13,8 @@ from world2minecraft.navigation.running.floor_map import PlanMap, floor_plans
 from world2minecraft.navigation.scene import VlnScene, camera_of
 from world2minecraft.navigation.values import Episode, Move, MoveSet, Stance
 
-# What episodes are walked on: a scene, its moves, its views and its ways, for one set of moves.
+VIEW_PX = (640, 480)
+VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.
 
 
 class Simulator(Protocol):
@@ -31,7 +32,7 @@ class Simulator(Protocol):
         """Return what one who stands so sees, uint8 [H, W, 3]."""
         ...
 
-    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Return where a move leads, and whether something was in the way."""
         ...
 
@@ -53,7 +54,7 @@ class Simulator(Protocol):
         ...
 
     @property
-    def imagined(self) -> "Simulator":
+    def offline(self) -> "Simulator":
         """The same ground for moves that are only thought of; itself, where none is for real."""
         ...
 
@@ -66,24 +67,20 @@ class SimulatorGuide:
     """What the privileged know of an episode on a ground."""
 
     def __init__(self, ground: Simulator, episode: Episode):
-        self._ground, self._goals = ground.imagined, episode.goals
+        self._ground, self._goals = ground.offline, episode.goals
         self._facing = episode.facing
 
     def distance_m(self, stance: Stance) -> float:
         """Return how far it is on foot to the nearest goal."""
         return self._ground.distance_m(stance, self._goals)
 
-    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Return where a move would lead."""
-        return self._ground.after(stance, move)
+        return self._ground.step(stance, move)
 
     def expert(self, stance: Stance) -> tuple[Move, ...]:
         """Return the oracle's moves from here."""
         return self._ground.expert(stance, self._goals, self._facing)
-
-
-VIEW_PX = (640, 480)
-VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.
 
 
 class SceneSimulator:
@@ -108,7 +105,7 @@ class SceneSimulator:
             raise ValueError("the picture has no colour")
         return colour
 
-    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Return where a move leads, and whether something was in the way."""
         return apply_move(self.scene, stance, move, self.move_set)
 
@@ -131,7 +128,7 @@ class SceneSimulator:
         return self.scene.to_room_m(feet)
 
     @property
-    def imagined(self) -> Simulator:
+    def offline(self) -> Simulator:
         """Itself: no move here is for real."""
         return self
 

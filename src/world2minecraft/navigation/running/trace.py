@@ -33,7 +33,7 @@ class TraceWriter:
         self._stream: TextIO | None = None
         self._number = 0
 
-    def began(self, episode: Episode, agent: str) -> None:
+    def on_begin(self, episode: Episode, agent: str) -> None:
         """Begin the file anew, without the views of a walk before."""
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -59,7 +59,7 @@ class TraceWriter:
             }
         )
 
-    def decided(
+    def on_decision(
         self, sight: Observation, decision: Decision, made: Sequence[tuple[Move, bool]]
     ) -> None:
         """Write a decision and the view that it was made from."""
@@ -72,7 +72,7 @@ class TraceWriter:
             "made": [[MOVE_NAMES[move], collided] for move, collided in made],
             "thought": decision.thought,
             "progress": decision.progress,
-            **({"told": decision.told} if decision.told else {}),
+            **({"told": decision.details} if decision.details else {}),
         }
         if sight.colour.shape[0] > 1:
             data = encode_jpeg(sight.colour)
@@ -82,12 +82,12 @@ class TraceWriter:
         self._number += 1
         self._line(line)
 
-    def stood(
+    def on_stance(
         self, stance: Stance, step: int, decision: Decision | None, move: Move | None
     ) -> None:
         """Write nothing: decisions tell it."""
 
-    def ended(self, walk: EpisodeWalk) -> None:
+    def on_end(self, walk: EpisodeWalk) -> None:
         """Write the score and close the file."""
         self._line(
             {

@@ -1,4 +1,8 @@
-"""How an agent acts by a body on a server: moves made by keys, or the keys themselves."""
+"""How an agent acts by a player on a server: moves made by keys, or the keys themselves.
+
+A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
+come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
+"""
 
 from functools import lru_cache
 
@@ -9,17 +13,13 @@ from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.server.player import ServerPlayer
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
-# Which keys to hold, and how long, to go a certain way on foot from rest to rest.
-#
-# A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
-# come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
-
 MAX_SNEAKING_TICKS = 9  # Ticks: with as many, most lengths are met to a hundredth.
 MAX_BLOCKS = 16.0
 _FLAT = BoxWorld([[-99, -1, -99, 99, 0, 99]])
 _WALK = Keys(forward=True)
 _SNEAK = Keys(forward=True, sneak=True)
 _REST = 12  # Ticks, at most, until one who lets go stands.
+MIN_STEP_SHARE = 0.9  # Of a step: who came less far met something.
 
 
 def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
@@ -65,9 +65,6 @@ def _way(walking: int, sneaking: int) -> tuple[float, int]:
     return body.position[2], _REST
 
 
-MIN_STEP_SHARE = 0.9  # Of a step: who came less far met something.
-
-
 class ServerDiscreteActions(DiscreteActions):
     """One move an action. The game knows no whole steps: one goes as far as the way is free."""
 
@@ -80,7 +77,7 @@ class ServerDiscreteActions(DiscreteActions):
         body = self.server.place(stance.feet, stance.yaw_deg)
         self.stance = Stance(*body.position, stance.yaw_deg, stance.pitch_deg)
 
-    def made(self, move: Move) -> tuple[Stance, bool]:
+    def apply(self, move: Move) -> tuple[Stance, bool]:
         """Turn in a tick, or walk by holding keys until the step is done."""
         here, turn = self.stance, self.move_set.turn_deg
         if move == Move.FORWARD:
@@ -108,6 +105,6 @@ class ServerContinuousActions(ContinuousActions):
         self.body = self.server.place(stance.feet, stance.yaw_deg)
         self.stance = Stance(*self.body.position, stance.yaw_deg, stance.pitch_deg)
 
-    def ticked(self, keys: Keys, pitch_deg: float) -> Body:
+    def tick(self, keys: Keys, pitch_deg: float) -> Body:
         """Return the player after a tick of keys."""
         return self.server.hold([keys], pitch_deg)[-1]

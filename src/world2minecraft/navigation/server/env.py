@@ -63,7 +63,7 @@ class ServerEnv(VlnEnv):
         if self._is_owned:
             self.server.close()
 
-    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
+    def _make_controller(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> ActionController:
         if by_keys:
             return ServerContinuousActions(self.scene, self.server)
         return ServerDiscreteActions(self.scene, move_set, self.server)

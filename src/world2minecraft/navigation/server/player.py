@@ -1,7 +1,10 @@
-"""A player on a server: it stands where it is put, holds keys for ticks and tells what is around.
+"""A player on a server: it stands where it is put, holds keys for ticks and reports what is around.
 
 Its time stands still between two calls; the server's goes on. Where it is, the server knows by the
-packets of any player's client, so that all who play there see it walk.
+packets of any player's client, so that all who play there see it walk. Node runs the player; it
+answers lines of JSON, none of them trusted: replies are bounded in size and time, and a process
+that sends too much, too late or nothing that can be read is ended, and every later request is
+refused with the reason.
 """
 
 import json
@@ -27,15 +30,24 @@ from world2minecraft.navigation.server.blocks import (
 )
 from world2minecraft.navigation.server.mineflayer_install import body_folder, node, script
 
-# Lines of JSON to and from a process: one answer for each question, none of them trusted.
-#
-# What comes back is bounded in size and time. A process that says too much, too late or nothing that
-# can be read is ended, and everything asked of it later is refused with the reason.
-
 MAX_LINE = 8 << 20  # Bytes: the blocks of a chunk column take up to 1 MB.
 MAX_WAITING = 16  # Lines that nobody asked for.
 MAX_MESSAGE = 500  # Characters of an error of the other side.
 _LAST_WORDS = 2_000  # Bytes of what it wrote to stderr.
+PORT = 25565
+DEFAULT_NAME = "w2m_walker"
+JOIN_S = 45.0
+MOVE_S = 5.0  # Until a server has done what /tp says.
+STREAM_S = 10.0  # Until a chunk that is near has come.
+SLACK_S = 10.0
+MAX_TICKS = 400  # In one question, as body.mjs has it.
+PLACE_TRIES = 4
+SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
+NEAR = 0.05  # Blocks: where /tp leads to.
+_KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
+_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
+_PLAYER = re.compile(r"[A-Za-z0-9_]{3,16}")
+_VERSION = re.compile(r"1\.[0-9]{1,2}(\.[0-9]{1,2})?")
 
 
 class JsonLineProcess:
@@ -158,22 +170,6 @@ def _plain(text: Any) -> str:
     """Return a text of others on one line, of printable characters, not too long."""
     kept = "".join(c if c.isprintable() else " " for c in str(text)[-MAX_MESSAGE:])
     return " ".join(kept.split())
-
-
-PORT = 25565
-DEFAULT_NAME = "w2m_walker"
-JOIN_S = 45.0
-MOVE_S = 5.0  # Until a server has done what /tp says.
-STREAM_S = 10.0  # Until a chunk that is near has come.
-SLACK_S = 10.0
-MAX_TICKS = 400  # In one question, as body.mjs has it.
-PLACE_TRIES = 4
-SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
-NEAR = 0.05  # Blocks: where /tp leads to.
-_KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
-_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
-_PLAYER = re.compile(r"[A-Za-z0-9_]{3,16}")
-_VERSION = re.compile(r"1\.[0-9]{1,2}(\.[0-9]{1,2})?")
 
 
 class Change(NamedTuple):

@@ -1,8 +1,8 @@
-"""What a server has streamed, as a scene to walk in and to look at.
+"""The blocks that a server has streamed, as a scene to walk in and to look at.
 
 The walker is the game's own player, whatever the scale of the build: at 4 blocks a metre a robot of
-0.45 m. Doors stand as they stand. The eyes see blocks change; floor, ways and things with names are
-those of the moment in which the scene was made.
+0.45 m. Doors stand as they stand. The eyes see blocks change; floor, paths and things with names
+are those of the moment in which the scene was made. ``ServerSimulator`` walks episodes there.
 """
 
 from functools import cached_property
@@ -161,28 +161,25 @@ def _is_in(cell: np.ndarray, shape: tuple[int, ...]) -> bool:
     return bool(((cell >= 0) & (cell < shape)).all())
 
 
-# A scene on a server as the ground of episodes: moves are made by its player.
-
-
 class ServerSimulator(SceneSimulator):
-    """A scene whose player stands on a server; see ``imagined`` for moves that it does not make."""
+    """A scene whose player stands on a server; see ``offline`` for moves that it does not make."""
 
     def __init__(
         self, scene: ServerScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
     ):
         super().__init__(scene, move_set, camera)
-        self._acting = ServerDiscreteActions(scene, self.move_set, scene.server)
+        self._controller = ServerDiscreteActions(scene, self.move_set, scene.server)
 
-    def after(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
         """Make a move; the player is put where it begins, if it stands elsewhere."""
-        if stance != self._acting.stance:
-            self._acting.begin(stance)
+        if stance != self._controller.stance:
+            self._controller.begin(stance)
         if move == Move.STOP:
             return stance, False
-        self._acting.stance, collided = self._acting.made(move)
-        return self._acting.stance, collided
+        self._controller.stance, collided = self._controller.apply(move)
+        return self._controller.stance, collided
 
     @property
-    def imagined(self) -> Simulator:
+    def offline(self) -> Simulator:
         """The scene alone: what the oracle thinks of moves no player."""
         return SceneSimulator(self.scene, self.move_set, self.camera)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN
-from world2minecraft.networks.completion.samples import Sample, cut
+from world2minecraft.networks.completion.samples import Sample, crop_input
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 CROP = (48, 48, 40)
@@ -16,15 +16,15 @@ CROP = (48, 48, 40)
 NO_HINT, NO_VOTES, NO_COLOUR, NO_OFFSET, NO_HEIGHT, NO_FREE = 0.25, 0.45, 0.2, 0.12, 0.1, 0.05
 
 
-def augmented(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> Sample:
+def augment_sample(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> Sample:
     """Return a sample of ``crop`` cells, the truth of what it has not 255."""
-    sample = turned(sample, int(rng.integers(4)), bool(rng.integers(2)))
-    sample = cropped(sample, _window(sample, rng, crop), crop)
-    sight = _without_channels(_spoilt(sample.sight, rng), rng)
+    sample = rotate_sample(sample, int(rng.integers(4)), bool(rng.integers(2)))
+    sample = crop_sample(sample, _window(sample, rng, crop), crop)
+    sight = _drop_channels(_corrupt_input(sample.sight, rng), rng)
     return replace(sample, sight=sight)
 
 
-def turned(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Sample:
+def rotate_sample(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Sample:
     """Return a sample turned counter-clockwise from above, after being mirrored along x."""
     order = np.zeros(sample.sight.log_odds.shape, np.int32)
     order.reshape(-1)[sample.sight.at] = np.arange(1, len(sample.sight.at) + 1)
@@ -47,7 +47,7 @@ def turned(sample: Sample, quarter_turns: int, is_mirrored: bool) -> Sample:
     return replace(sample, sight=sight, truth=truth)
 
 
-def cropped(sample: Sample, start: np.ndarray, shape: tuple[int, int, int]) -> Sample:
+def crop_sample(sample: Sample, start: np.ndarray, shape: tuple[int, int, int]) -> Sample:
     """Return a window of a sample; ``start`` may be negative, and then there is nothing."""
     truth = np.full(shape, UNKNOWN, np.uint8)
     old = sample.truth.shape
@@ -55,7 +55,7 @@ def cropped(sample: Sample, start: np.ndarray, shape: tuple[int, int, int]) -> S
     if (first < last).all():
         target = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
         truth[target] = sample.truth[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
-    return replace(sample, sight=cut(sample.sight, start, shape), truth=truth)
+    return replace(sample, sight=crop_input(sample.sight, start, shape), truth=truth)
 
 
 def _window(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> np.ndarray:
@@ -74,7 +74,7 @@ def _rows(sight: Sight, rows: np.ndarray, **changes: np.ndarray) -> Sight:
     return replace(sight, **kept, **changes)
 
 
-def _spoilt(sight: Sight, rng: np.random.Generator) -> Sight:
+def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
     """Return a sight with lost cells, boxes cut away, no top, and specks that are not there."""
     odds = sight.log_odds.copy()
     flat = odds.reshape(-1)
@@ -92,11 +92,11 @@ def _spoilt(sight: Sight, rng: np.random.Generator) -> Sight:
     kept = np.flatnonzero(flat[sight.at] > 0)
     sight = _rows(sight, kept, log_odds=odds, at=sight.at[kept])
     if len(sight.at) and rng.random() < 0.3:
-        return _with_specks(sight, rng)
+        return _add_specks(sight, rng)
     return sight
 
 
-def _with_specks(sight: Sight, rng: np.random.Generator) -> Sight:
+def _add_specks(sight: Sight, rng: np.random.Generator) -> Sight:
     """Return a sight with up to 60 more occupied cells, which look like some other cell."""
     odds = sight.log_odds.copy()
     empty = np.flatnonzero(odds.reshape(-1) <= 0)
@@ -108,7 +108,7 @@ def _with_specks(sight: Sight, rng: np.random.Generator) -> Sight:
     return _rows(sight, rows[order], log_odds=odds, at=at[order])
 
 
-def _without_channels(sight: Sight, rng: np.random.Generator) -> Sight:
+def _drop_channels(sight: Sight, rng: np.random.Generator) -> Sight:
     """Return a sight with some of its channels missing, and its colours in another light."""
     draws = rng.random(5)
     colour = sight.colour

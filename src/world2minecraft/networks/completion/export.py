@@ -11,7 +11,7 @@ from torch import nn
 
 from world2minecraft.core.files import write_bytes
 from world2minecraft.networks.completion.network import CompletionNet
-from world2minecraft.networks.onnx_export import SMALL, with_stored_weights
+from world2minecraft.networks.onnx_export import SMALL, compress_weights
 from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS
 
 OPSET = 17
@@ -24,13 +24,13 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
     Weights are rounded to half precision first, so that both say the same; what that costs is a
     matter of scores. ``about`` is written into the file.
     """
-    network = halved(network).eval()
-    data = _stored(_onnx_bytes(network), about)
+    network = to_half_precision(network).eval()
+    data = _store_weights(_onnx_bytes(network), about)
     write_bytes(path, data)
     return parity(network, data)
 
 
-def halved(network: CompletionNet) -> CompletionNet:
+def to_half_precision(network: CompletionNet) -> CompletionNet:
     """Return a float32 copy of a network, its norms folded, its weights halves' values."""
     copy = CompletionNet(network.size)
     copy.load_state_dict(network.state_dict())
@@ -70,11 +70,11 @@ def _onnx_bytes(network: nn.Module) -> bytes:
     return buffer.getvalue()
 
 
-def _stored(data: bytes, about: dict[str, str]) -> bytes:
+def _store_weights(data: bytes, about: dict[str, str]) -> bytes:
     """Return a model whose large weights are stored as halves, and which says what it is."""
     model = onnx.load_from_string(data)
     onnx.helper.set_model_props(model, dict(sorted(about.items())))
-    return with_stored_weights(model, "half").SerializeToString()
+    return compress_weights(model, "half").SerializeToString()
 
 
 @torch.no_grad()

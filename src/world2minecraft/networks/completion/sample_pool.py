@@ -7,13 +7,13 @@ import torch
 from torch import Tensor
 
 from world2minecraft.core.errors import InputError
-from world2minecraft.networks.completion.augmentation import augmented
+from world2minecraft.networks.completion.augmentation import augment_sample
 from world2minecraft.networks.completion.samples import Sample, read_samples
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 # A walk is what the program is mostly given, a single view the hardest.
 KIND_WEIGHTS = {"walk": 0.42, "few": 0.18, "single": 0.4}
-LOOK_AGAIN = 100  # Steps after which new files are looked for.
+REFRESH_EVERY_STEPS = 100  # Steps after which new files are looked for.
 
 
 class SamplePool:
@@ -60,11 +60,11 @@ class SamplePool:
         self, rng: np.random.Generator, count: int, crop: tuple[int, int, int]
     ) -> tuple[Tensor, Tensor, Tensor]:
         """Return inputs [B, C, X, Y, Z], truth int64 [B, X, Y, Z], and the observed surface."""
-        chosen = [augmented(self.draw(rng), rng, crop) for _ in range(count)]
-        return as_batch(chosen)
+        chosen = [augment_sample(self.draw(rng), rng, crop) for _ in range(count)]
+        return collate_samples(chosen)
 
 
-def as_batch(samples: list[Sample]) -> tuple[Tensor, Tensor, Tensor]:
+def collate_samples(samples: list[Sample]) -> tuple[Tensor, Tensor, Tensor]:
     """Return samples of one shape as tensors."""
     cells = torch.from_numpy(np.stack([network_input(sample.sight) for sample in samples]))
     truth = torch.from_numpy(np.stack([sample.truth for sample in samples]).astype(np.int64))

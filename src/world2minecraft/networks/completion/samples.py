@@ -1,7 +1,11 @@
-"""One sample: what the network is told of a virtual scan, and what is true of the same cells.
+"""Make training samples: the input of the completion network for a virtual scan, and the truth.
 
-Truth is the room's own grid carried into the cells by the rule that scores reconstructions. It is
+Truth is the room's own grid resampled to the cells by the rule that scores reconstructions. It is
 255 beyond the rooms that the scan looked into: nobody can learn what lies behind a wall.
+
+Rooms are of every kind and shape, tidy or cluttered, and houses. Training takes seeds from 10,000
+on, so that no seed of a benchmark (1000 to 1049, 2000 to 2019, 500 to 549 to tune) is ever learnt;
+``held_out`` seeds lie below.
 """
 
 from dataclasses import dataclass, replace
@@ -19,16 +23,16 @@ from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.networks.completion.sensor_noise import ScanNoise, draw_noise
 from world2minecraft.networks.completion.virtual_views import (
     TOUR_VIEWS,
-    Look,
-    LookKind,
-    draw_look,
-    scan_look,
+    ScanKind,
+    VirtualScan,
+    draw_scan,
+    fuse_scan,
 )
 from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo import prepare_photos
 from world2minecraft.procgen.sensors.trajectory import plan_tour
-from world2minecraft.reconstruction.fusion import CleanParameters, read_out, remove_floaters
+from world2minecraft.reconstruction.fusion import CleanParameters, extract_grid, remove_floaters
 from world2minecraft.reconstruction.semantics.completion import hint_of
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
@@ -48,9 +52,9 @@ KIND_SHARES = {
     "bathroom": 0.06,
     "hall": 0.04,
 }
-LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
+LOOKS: tuple[ScanKind, ...] = ("walk", "few", "single", "single", "single")
 SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
-MOST_CELLS = (96, 96, 44)
+MAX_CELLS = (96, 96, 44)
 FRAME_CELLS = (60, 60, 36)  # Of the grids of single frames.
 PLAN_CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
 FIELDS = ("log_odds", "at", "hits", "colour", "offset", "votes", "hint")
@@ -68,8 +72,6 @@ def training_room(seed: int) -> Room:
         return generate_room(seed, kind=kind, clutter=clutter, shape=shape)
     except World2MinecraftError:  # A few kinds do not fit into a few shapes.
         return generate_room(seed, kind=kind, clutter=clutter)
-
-
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,23 +98,27 @@ def make_samples(seed: int) -> list[Sample]:
     samples = []
     for number, kind in enumerate(LOOKS):
         rng = np.random.default_rng([seed, 13, number])
-        look = draw_look(kind, tour, rng)
+        look = draw_scan(kind, tour, rng)
         noise = draw_noise(rng, kind)
         try:
-            evidence = scan_look(room, scene, look, noise, rng)
+            evidence = fuse_scan(room, scene, look, noise, rng)
         except CaptureError:
             continue
-        sample = sample_of(room, look, noise, evidence, rng)
+        sample = make_sample(room, look, noise, evidence, rng)
         if len(sample.sight.at) > 300:
             samples.append(sample)
     return samples
 
 
-def sample_of(
-    room: Room, look: Look, noise: ScanNoise, evidence: FusedEvidence, rng: np.random.Generator
+def make_sample(
+    room: Room,
+    look: VirtualScan,
+    noise: ScanNoise,
+    evidence: FusedEvidence,
+    rng: np.random.Generator,
 ) -> Sample:
     """Return the sample of a fused look."""
-    grid = remove_floaters(read_out(evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleanParameters())
     hint = hint_of(*GeometricLabeller().traced(grid, evidence)) if look.in_room_axes else None
     truth_to_grid = look.room_to_grid.copy()
     truth_to_grid[:3, :3] = truth_to_grid[:3, :3] @ rotation_about_z(noise.yaw_error_deg)[:3, :3]
@@ -123,14 +129,16 @@ def sample_of(
         room.labels, room.voxel_m, room.origin_m, truth_to_grid, shape, low * voxel_m, voxel_m
     )
     start = low - np.round(evidence.origin_m / voxel_m).astype(np.int64)
-    sight = replace(cut(sight_of(grid, evidence, hint), start, shape), bottom_m=low[2] * voxel_m)
-    truth[~seen_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)] = UNKNOWN
+    sight = replace(
+        crop_input(sight_of(grid, evidence, hint), start, shape), bottom_m=low[2] * voxel_m
+    )
+    truth[~mask_seen_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)] = UNKNOWN
     there = truth.reshape(-1)[sight.at]
     false = float((there == 0).sum() / max((there != UNKNOWN).sum(), 1))
     return Sample(sight, truth, look.kind, hint is not None, false)
 
 
-def cut(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:
+def crop_input(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:
     """Return the part of a sight in a box of cells; what it has not is unknown."""
     old = sight.log_odds.shape
     first, last = np.maximum(start, 0), np.minimum(start + shape, old)
@@ -153,7 +161,7 @@ def cut(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:
 
 def _box(
     room: Room,
-    look: Look,
+    look: VirtualScan,
     evidence: FusedEvidence,
     room_to_grid: np.ndarray,
     rng: np.random.Generator,
@@ -175,14 +183,14 @@ def _box(
     low = np.minimum(seen_low, np.floor(walls.min(axis=0)).astype(np.int64))
     high = np.maximum(seen_high, np.ceil(walls.max(axis=0)).astype(np.int64))
     # Of a house, the part around what was seen.
-    shape = np.minimum(high - low, MOST_CELLS)
+    shape = np.minimum(high - low, MAX_CELLS)
     middle = (seen_low + seen_high) // 2
     low = np.clip(middle - shape // 2, low, high - shape)
     low[2] = max(low[2], -4)
     return low, tuple(int(side) for side in shape)  # type: ignore[return-value]
 
 
-def seen_rooms(
+def mask_seen_rooms(
     room: Room, room_to_grid: np.ndarray, low: np.ndarray, voxel_m: float, log_odds: np.ndarray
 ) -> np.ndarray:
     """Return the cells of the rooms that were looked into, their shells with them, bool [X, Y, Z].

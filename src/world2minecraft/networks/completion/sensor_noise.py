@@ -60,7 +60,7 @@ def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
     )
 
 
-def lost_pixels(
+def draw_lost_pixels(
     noise: ScanNoise, labels: np.ndarray, depth_m: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     """Return which pixels lose their depth to glass and to blots, bool [H, W]."""
@@ -74,7 +74,7 @@ def lost_pixels(
     return lost
 
 
-def wrong_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
+def corrupt_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
     """Return a label image of which a share, in patches, says another class."""
     height, width = labels.shape
     side = max(round(width * PATCH_SHARE), 1)

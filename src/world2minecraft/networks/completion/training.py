@@ -1,7 +1,8 @@
-"""Training of the completion network, step by step, so that a broken run goes on where it ended.
+"""Train the completion network, step by step, so that an interrupted run continues where it ended.
 
-The rate is constant and falls to nothing over the last part, so that a run may be made longer from
-any state before its fall. What is kept is the running mean of the weights.
+Losses are cross entropy of the classes, a Jaccard loss and one of the geometry. The learning rate
+is constant and falls to nothing over the last part, so that a run may be made longer from any state
+before its fall. The result is the running mean of the weights.
 """
 
 from collections.abc import Callable
@@ -18,8 +19,8 @@ from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.files import write_text
 from world2minecraft.networks.completion.augmentation import CROP
 from world2minecraft.networks.completion.network import CompletionNet, CompletionSize
-from world2minecraft.networks.completion.sample_pool import LOOK_AGAIN, SamplePool
-from world2minecraft.networks.validation import autocast_of
+from world2minecraft.networks.completion.sample_pool import REFRESH_EVERY_STEPS, SamplePool
+from world2minecraft.networks.validation import autocast
 
 # About the fourth root of how rare a class is in the samples; empty cells are the most by far.
 CLASS_WEIGHTS = (0.6, 0.9, 0.8, 0.7, 1.8, 1.9, 1.2, 1.4, 1.6, 2.6, 0.9, 1.3)
@@ -61,8 +62,6 @@ def _jaccard(share: Tensor, wanted: Tensor) -> Tensor:
     return 1 - (both / either.clamp(min=1e-6))[there].mean()
 
 
-
-
 @dataclass(frozen=True)
 class CompletionRun:
     """What decides a run, beside its samples."""
@@ -98,7 +97,7 @@ class Trainer:
         """Train up to a step; ``report`` is told of losses every so many steps."""
         sums: dict[str, float] = {}
         while self.step < min(until, self.run.steps):
-            if self.step and self.step % LOOK_AGAIN == 0:
+            if self.step and self.step % REFRESH_EVERY_STEPS == 0:
                 self.pool.refresh()
             for name, value in self._one().items():
                 sums[name] = sums.get(name, 0.0) + value / every
@@ -114,7 +113,7 @@ class Trainer:
         torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
         cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
         self.network.train()
-        with autocast_of("auto", cells.device):
+        with autocast("auto", cells.device):
             logits = self.network(cells)
         losses = completion_loss(logits, truth, surface)
         self.optimiser.zero_grad(set_to_none=True)

@@ -12,7 +12,11 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import Camera, FusedEvidence, View
-from world2minecraft.networks.completion.sensor_noise import ScanNoise, lost_pixels, wrong_labels
+from world2minecraft.networks.completion.sensor_noise import (
+    ScanNoise,
+    corrupt_labels,
+    draw_lost_pixels,
+)
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import jittered_pose, scale_factor, sense_depth
 from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
@@ -20,23 +24,23 @@ from world2minecraft.procgen.sensors.shots import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
-LookKind = Literal["walk", "few", "single"]
+ScanKind = Literal["walk", "few", "single"]
 FOCAL_SHARE = 0.8107  # NYU's: 518.86 px at 640.
 WALK_WIDE_PX, FEW_WIDE_PX = 160, 320
 TOUR_VIEWS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class VirtualScan:
     """One scan of a room: its views, and the frame in which they are fused."""
 
-    kind: LookKind
+    kind: ScanKind
     poses: np.ndarray  # float64 [F, 4, 4], camera_to_room
     room_to_grid: np.ndarray  # float64 [4, 4], the frame of the fused cells
     in_room_axes: bool
 
 
-def draw_look(kind: LookKind, tour: np.ndarray, rng: np.random.Generator) -> Look:
+def draw_scan(kind: ScanKind, tour: np.ndarray, rng: np.random.Generator) -> VirtualScan:
     """Draw a look from the poses of a tour, float64 [F, 4, 4]."""
     if kind == "walk":
         poses = tour[: int(rng.integers(8, len(tour) + 1))]
@@ -46,7 +50,7 @@ def draw_look(kind: LookKind, tour: np.ndarray, rng: np.random.Generator) -> Loo
     else:
         poses = tour[int(rng.integers(len(tour)))][None]
     by_camera = kind == "single" and rng.random() < 0.65
-    return Look(kind, poses, _frame(poses[0], by_camera, rng), not by_camera)
+    return VirtualScan(kind, poses, _frame(poses[0], by_camera, rng), not by_camera)
 
 
 def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.ndarray:
@@ -69,8 +73,8 @@ def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.nd
     return frame
 
 
-def scan_look(
-    room: Room, scene: PhotoScene, look: Look, noise: ScanNoise, rng: np.random.Generator
+def fuse_scan(
+    room: Room, scene: PhotoScene, look: VirtualScan, noise: ScanNoise, rng: np.random.Generator
 ) -> FusedEvidence:
     """Return what our fusion makes of a look.
 
@@ -94,18 +98,18 @@ def _view(
     pose: np.ndarray,
     noise: ScanNoise,
     rng: np.random.Generator,
-    kind: LookKind,
+    kind: ScanKind,
 ) -> View:
     """Return one view as its sensor hands it over, in the frame of the room."""
     photo = take_photo(scene, camera, pose)
     luminance = photo.colour.astype(np.float32) @ LUMINANCE
     depth_m = sense_depth(noise.sensor, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
     labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
-    depth_m[lost_pixels(noise, labels, depth_m, rng)] = 0
+    depth_m[draw_lost_pixels(noise, labels, depth_m, rng)] = 0
     depth_m *= np.float32(scale_factor(noise.frame_scale, rng) * noise.scan_scale)
     said = None
     if noise.label_error is not None:
-        said = wrong_labels(labels, noise.label_error, rng)
+        said = corrupt_labels(labels, noise.label_error, rng)
     # A single look has no tracker: where it stands is part of the scan's misfit.
     stated = pose if kind == "single" else jittered_pose(noise.sensor, pose, rng)
     return View(

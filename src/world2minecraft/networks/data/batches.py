@@ -1,4 +1,15 @@
-"""Frames as tensors: batches that a run draws, and batches in order for validation."""
+"""Frames as batches: which frame is drawn when, how it is augmented, and the data loaders.
+
+A draw takes a set with a probability in proportion to its weight, whatever its size, and then the
+next frame of that set's own order: each comes once before any comes again. All of it follows from
+the seed, and draw number n is the same whether the draws before it were made or not; so a run that
+was stopped continues at its draw.
+
+A mirrored frame is a frame of the mirrored room: image, depth, principal point, pose and cells turn
+over together, so that a cell still falls on the pixels that show it. The pose stays a rotation:
+camera and grid are mirrored both. ``grid_to_room`` is left as it was: no network is given it, and a
+mirrored frame is of no room.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,7 +23,7 @@ from world2minecraft.networks.batch import OccInput, OccTarget
 from world2minecraft.networks.config import Grid, RunConfig
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
-from world2minecraft.networks.data.sequences import Companions, count_of
+from world2minecraft.networks.data.sequences import SequenceSampler, sequence_length
 
 LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
 
@@ -51,10 +62,7 @@ def draw_rng(seed: int, draw: int) -> np.random.Generator:
     return np.random.default_rng([seed, 2**20, draw])
 
 
-
-
-
-def flipped(frame: Frame, voxel_m: float) -> Frame:
+def flip_frame(frame: Frame, voxel_m: float) -> Frame:
     """Return the frame of the room mirrored left to right, across the middle of its grid."""
     intrinsics = frame.intrinsics.copy()
     intrinsics[0, 2] = frame.image.shape[1] - intrinsics[0, 2]
@@ -72,7 +80,7 @@ def flipped(frame: Frame, voxel_m: float) -> Frame:
     )
 
 
-def jittered(image: np.ndarray, strength: float, rng: np.random.Generator) -> np.ndarray:
+def jitter_colour(image: np.ndarray, strength: float, rng: np.random.Generator) -> np.ndarray:
     """Return a picture with other brightness, contrast and saturation, in an order by chance.
 
     Args:
@@ -85,11 +93,11 @@ def jittered(image: np.ndarray, strength: float, rng: np.random.Generator) -> np
     values = image.astype(np.float32)
     order, factors = rng.permutation(3), rng.uniform(1 - strength, 1 + strength, 3)
     for kind in order:
-        values = _changed(values, int(kind), np.float32(factors[kind]))
+        values = _adjust_colour(values, int(kind), np.float32(factors[kind]))
     return (values + np.float32(0.5)).astype(np.uint8)
 
 
-def _changed(values: np.ndarray, kind: int, factor: np.float32) -> np.ndarray:
+def _adjust_colour(values: np.ndarray, kind: int, factor: np.float32) -> np.ndarray:
     """Return values mixed with black, with their mean grey, or with each pixel's own grey."""
     if kind == 0:
         mixed = values * factor
@@ -100,20 +108,20 @@ def _changed(values: np.ndarray, kind: int, factor: np.float32) -> np.ndarray:
     return np.clip(mixed, 0, 255)
 
 
-def augmented(
+def augment_frame(
     frame: Frame, voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
 ) -> Frame:
     """Return a frame mirrored with chance ``flip``, its colours changed by ``jitter``."""
-    return augmented_together([frame], voxel_m, flip, jitter, rng)[0]
+    return augment_sequence([frame], voxel_m, flip, jitter, rng)[0]
 
 
-def augmented_together(
+def augment_sequence(
     frames: Sequence[Frame], voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
 ) -> list[Frame]:
     """Return frames of one grid, all mirrored or none, each in colours of its own."""
     turn_over = rng.random() < flip
-    changed = [replace(one, image=jittered(one.image, jitter, rng)) for one in frames]
-    return [flipped(one, voxel_m) for one in changed] if turn_over else changed
+    changed = [replace(one, image=jitter_colour(one.image, jitter, rng)) for one in frames]
+    return [flip_frame(one, voxel_m) for one in changed] if turn_over else changed
 
 
 class Batch(NamedTuple):
@@ -124,25 +132,25 @@ class Batch(NamedTuple):
     more: tuple[OccInput, ...] = ()
 
 
-class TrainingPart(NamedTuple):
+class TrainingSet(NamedTuple):
     """The training frames of one set."""
 
     frames: Frames
     rows: list[int]
 
 
-class DrawnFrames(Dataset):
+class DrawnDataset(Dataset):
     """The frames of a run's draws from one on, each changed as its draw says.
 
     Each is a list: the frame, then those of its scene that are seen with it, if any.
     """
 
     def __init__(
-        self, parts: Sequence[TrainingPart], draws: Draws, config: RunConfig, first: int = 0
+        self, parts: Sequence[TrainingSet], draws: Draws, config: RunConfig, first: int = 0
     ):
         self._parts, self._draws, self._config, self._first = parts, draws, config, first
         fuses, voxel_m = config.fused > 1, config.cells.voxel_m
-        self._companions = [Companions(*part, voxel_m) for part in parts] if fuses else []
+        self._companions = [SequenceSampler(*part, voxel_m) for part in parts] if fuses else []
 
     def __len__(self) -> int:
         return len(self._draws.source) - self._first
@@ -154,14 +162,14 @@ class DrawnFrames(Dataset):
         row = part.rows[self._draws.row[draw]]
         frames = [part.frames[row]]
         if self._companions:
-            count = count_of(config.seed, draw // config.batch, config.fused) - 1
+            count = sequence_length(config.seed, draw // config.batch, config.fused) - 1
             rng = np.random.default_rng([config.seed, 2**22, draw])
             frames += self._companions[source].beside(row, frames[0], count, rng) if count else []
         rng = draw_rng(config.seed, draw)
-        return augmented_together(frames, config.cells.voxel_m, config.flip, config.jitter, rng)
+        return augment_sequence(frames, config.cells.voxel_m, config.flip, config.jitter, rng)
 
 
-class RowFrames(Dataset):
+class OrderedDataset(Dataset):
     """Some rows of a set, in their order and as they are."""
 
     def __init__(self, frames: Frames, rows: Sequence[int]):
@@ -174,7 +182,7 @@ class RowFrames(Dataset):
         return [self._frames[self._rows[index]]]
 
 
-class Stacked:
+class FrameCollator:
     """Makes a batch of frames; a class, so that worker processes can be sent it."""
 
     def __init__(self, grid: Grid, depth: str):
@@ -184,9 +192,9 @@ class Stacked:
         """Return the frames one upon the other."""
         frames, *beside = (list(column) for column in zip(*samples, strict=True))
         target = OccTarget(
-            labels=_stacked(frames, "labels").long(),
-            in_frustum=_stacked(frames, "in_frustum"),
-            depth_m=_stacked(frames, "depth_m") if self._depth != "none" else None,
+            labels=_stack(frames, "labels").long(),
+            in_frustum=_stack(frames, "in_frustum"),
+            depth_m=_stack(frames, "depth_m") if self._depth != "none" else None,
         )
         more = tuple(self._inputs(others) for others in beside)
         return Batch(self._inputs(frames), target, more)
@@ -196,39 +204,39 @@ class Stacked:
         image = torch.from_numpy(np.stack([frame.image for frame in frames]))
         return OccInput(
             image=image.permute(0, 3, 1, 2).float().div_(255).contiguous(),
-            intrinsics=_stacked(frames, "intrinsics"),
-            camera_to_grid=_stacked(frames, "camera_to_grid"),
+            intrinsics=_stack(frames, "intrinsics"),
+            camera_to_grid=_stack(frames, "camera_to_grid"),
             grid_shape=shape,
             voxel_m=voxel_m,
-            depth_m=_stacked(frames, "depth_m") if self._depth == "given" else None,
+            depth_m=_stack(frames, "depth_m") if self._depth == "given" else None,
         )
 
 
-def drawn_batches(
-    parts: Sequence[TrainingPart], draws: Draws, config: RunConfig, first_step: int = 0
+def training_loader(
+    parts: Sequence[TrainingSet], draws: Draws, config: RunConfig, first_step: int = 0
 ) -> DataLoader:
     """Return the batches of a run from a step on."""
-    frames = DrawnFrames(parts, draws, config, first_step * config.batch)
-    return _loader(frames, config, config.workers)
+    frames = DrawnDataset(parts, draws, config, first_step * config.batch)
+    return _data_loader(frames, config, config.workers)
 
 
-def ordered_batches(frames: Frames, rows: Sequence[int], config: RunConfig) -> DataLoader:
+def ordered_loader(frames: Frames, rows: Sequence[int], config: RunConfig) -> DataLoader:
     """Return batches of some rows in their order; the last may be smaller."""
-    return _loader(RowFrames(frames, rows), config, 0)
+    return _data_loader(OrderedDataset(frames, rows), config, 0)
 
 
-def _loader(frames: Dataset, config: RunConfig, workers: int) -> DataLoader:
+def _data_loader(frames: Dataset, config: RunConfig, workers: int) -> DataLoader:
     return DataLoader(
         frames,
         batch_size=config.batch,
         shuffle=False,
         num_workers=workers,
         persistent_workers=workers > 0,
-        collate_fn=Stacked(config.cells, config.depth),
+        collate_fn=FrameCollator(config.cells, config.depth),
         # Without a generator of its own a loader draws from torch's at each start.
         generator=torch.Generator().manual_seed(config.seed),
     )
 
 
-def _stacked(frames: list[Frame], name: str) -> torch.Tensor:
+def _stack(frames: list[Frame], name: str) -> torch.Tensor:
     return torch.from_numpy(np.stack([getattr(frame, name) for frame in frames]))

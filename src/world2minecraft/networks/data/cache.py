@@ -20,14 +20,14 @@ from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
-from world2minecraft.networks.data.frames import Frame, FrameRule, frame_of
+from world2minecraft.networks.data.frames import Frame, FrameRule, make_frame
 
 VERSION = 1  # Of what lies in the folder.
 ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "grid_to_room", "labels", "masks")
 READY = "frames.json"  # Written last.
 MASKS = {"in_frustum": 1, "seen": 2, "free": 4}  # Bits of ``masks``.
 DEPTH_UNIT_M = 0.001
-MOST_DEPTH = 65_535
+MAX_DEPTH = 65_535
 
 
 class Frames(Protocol):
@@ -58,7 +58,7 @@ class StreamedFrames:
         return len(self.keys)
 
     def __getitem__(self, row: int) -> Frame:
-        return frame_of(self._source[self.keys[row]], self._rule)
+        return make_frame(self._source[self.keys[row]], self._rule)
 
     def labels(self, rows: Sequence[int]) -> Iterator[np.ndarray]:
         """Yield the labels of some frames, uint8 [X, Y, Z]."""
@@ -66,7 +66,7 @@ class StreamedFrames:
 
 
 class CachedFrames:
-    """Frames of a folder that ``cached_frames`` filled."""
+    """Frames of a folder that ``open_cached_frames`` filled."""
 
     def __init__(self, folder: Path):
         self._folder = folder
@@ -106,7 +106,7 @@ class CachedFrames:
         return (self._arrays["labels"][row] for row in rows)
 
 
-def cached_frames(
+def open_cached_frames(
     source: ImportedSet,
     rule: FrameRule,
     root: Path | None = None,
@@ -136,7 +136,7 @@ def cached_frames(
     return CachedFrames(folder)
 
 
-def frames_bytes(count: int, rule: FrameRule) -> int:
+def cache_bytes(count: int, rule: FrameRule) -> int:
     """Return how many bytes the cache of so many frames takes."""
     return sum(
         int(np.prod(shape)) * np.dtype(kind).itemsize
@@ -160,7 +160,7 @@ def _layout(count: int, rule: FrameRule) -> dict[str, tuple[tuple[int, ...], typ
 
 def _fill(source: ImportedSet, rule: FrameRule, folder: Path, progress: Progress) -> None:
     keys = source.keys()
-    need = frames_bytes(len(keys), rule)
+    need = cache_bytes(len(keys), rule)
     if need > shutil.disk_usage(folder.parent).free:
         raise OutputError(
             folder,
@@ -173,7 +173,7 @@ def _fill(source: ImportedSet, rule: FrameRule, folder: Path, progress: Progress
     }
     scenes, has_depth = [], []
     for row, key in enumerate(keys):
-        frame = frame_of(source[key], rule)
+        frame = make_frame(source[key], rule)
         for name, values in _stored(frame).items():
             arrays[name][row] = values
         scenes.append(frame.scene_id)
@@ -190,7 +190,7 @@ def _stored(frame: Frame) -> dict[str, np.ndarray]:
         masks |= getattr(frame, name).astype(np.uint8) * np.uint8(bit)
     return {
         "image": frame.image,
-        "depth": np.clip(np.rint(frame.depth_m / DEPTH_UNIT_M), 0, MOST_DEPTH).astype(np.uint16),
+        "depth": np.clip(np.rint(frame.depth_m / DEPTH_UNIT_M), 0, MAX_DEPTH).astype(np.uint16),
         "intrinsics": frame.intrinsics,
         "camera_to_grid": frame.camera_to_grid,
         "grid_to_room": frame.grid_to_room,

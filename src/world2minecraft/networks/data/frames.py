@@ -16,7 +16,7 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.metrics.protocols import KnownCells
 from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
-from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
 from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.networks.config import Grid
 
@@ -56,7 +56,7 @@ class Frame:
         return KnownCells(self.labels, self.in_frustum, *masks)
 
 
-def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
+def make_frame(sample: OccSample, rule: FrameRule) -> Frame:
     """Return the frame of a sample.
 
     Raises:
@@ -67,7 +67,7 @@ def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
     if any(sample.camera.distortion):
         raise InputError(sample.key, "its lens distorts; undistort the pictures first")
     crop = _Crop(sample.camera, rule)
-    known = known_cells(sample, rule.grid)
+    known = cells_with_masks(sample, rule.grid)
     grid_to_room = sample.occ.region.region_to_room
     camera_to_grid = invert_rigid(grid_to_room) @ sample.camera_to_room
     nothing = np.zeros(known.labels.shape, bool)
@@ -95,7 +95,7 @@ def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
     )
 
 
-def known_cells(sample: OccSample, grid: Grid) -> KnownCells:
+def cells_with_masks(sample: OccSample, grid: Grid) -> KnownCells:
     """Return the truth of a sample in the cells of a grid, pictures or not.
 
     Raises:
@@ -105,7 +105,7 @@ def known_cells(sample: OccSample, grid: Grid) -> KnownCells:
     if factor == 1:
         labels, inside = occ.labels, occ.in_frustum
     else:
-        labels = downsampled(occ.labels, factor)
+        labels = downsample_labels(occ.labels, factor)
         grid_to_camera = invert_rigid(sample.camera_to_room) @ occ.region.region_to_room
         inside = cells_in_image(grid.shape, grid.voxel_m, grid_to_camera, sample.camera)[0]
     seen, free = (_any_of(mask, factor) for mask in (occ.visible, occ.free))

@@ -13,17 +13,17 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import RunConfig
-from world2minecraft.networks.data.batches import TrainingPart
-from world2minecraft.networks.data.cache import Frames, StreamedFrames, cached_frames
+from world2minecraft.networks.data.batches import TrainingSet
+from world2minecraft.networks.data.cache import Frames, StreamedFrames, open_cached_frames
 from world2minecraft.networks.data.class_weights import class_counts
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.splits import Split, counted, evenly, split_rows
+from world2minecraft.networks.data.splits import Split, describe_counts, split_rows, take_evenly
 
-COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
+MAX_COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
 
 
 @dataclass(frozen=True)
-class CachePlace:
+class CacheLocation:
     """Where decoded frames are kept; nowhere where they are not to be."""
 
     keep: bool = True
@@ -39,7 +39,7 @@ class CachePlace:
 class RunData:
     """The sets of a run."""
 
-    parts: tuple[TrainingPart, ...]
+    parts: tuple[TrainingSet, ...]
     weights: tuple[float, ...]
     target: Frames
     split: Split  # Of the target.
@@ -47,13 +47,13 @@ class RunData:
     described: tuple[str, ...]
 
 
-def rule_of(config: RunConfig) -> FrameRule:
+def frame_rule(config: RunConfig) -> FrameRule:
     """Return how the frames of a run are made."""
     return FrameRule(config.cells, *config.image)
 
 
 def open_run_data(
-    config: RunConfig, cache: CachePlace | None = None, progress: Progress = silent
+    config: RunConfig, cache: CacheLocation | None = None, progress: Progress = silent
 ) -> RunData:
     """Open the sets of a run and split them.
 
@@ -61,7 +61,7 @@ def open_run_data(
         InputError: a set is none, or its frames do not make the run's grid. UsageError: it cannot
         be split as the run says.
     """
-    rule, place = rule_of(config), cache or CachePlace()
+    rule, place = frame_rule(config), cache or CacheLocation()
     parts, splits, told = [], [], []
     total = np.zeros(12)
     for source in config.data:
@@ -70,10 +70,10 @@ def open_run_data(
         held_out = config.val_share if not parts else 0.0
         split = _split(found, frames, held_out, is_target=not parts)
         splits.append(split)
-        parts.append(TrainingPart(frames, split.train))
-        counts = class_counts(frames.labels(evenly(split.train, COUNTED_FRAMES)))
+        parts.append(TrainingSet(frames, split.train))
+        counts = class_counts(frames.labels(take_evenly(split.train, MAX_COUNTED_FRAMES)))
         total += counts * (source.weight / max(counts.sum(), 1))
-        told.append(f"{source.path}: {found.format}, {counted(split._asdict())}")
+        told.append(f"{source.path}: {found.format}, {describe_counts(split._asdict())}")
     return RunData(
         parts=tuple(parts),
         weights=tuple(source.weight for source in config.data),
@@ -85,12 +85,12 @@ def open_run_data(
 
 
 def open_frames(
-    found: ImportedSet, rule: FrameRule, place: CachePlace, progress: Progress = silent
+    found: ImportedSet, rule: FrameRule, place: CacheLocation, progress: Progress = silent
 ) -> Frames:
     """Return the frames of a set, from the cache where one is kept."""
     if not place.keep:
         return StreamedFrames(found, rule)
-    return cached_frames(found, rule, place.root, progress)
+    return open_cached_frames(found, rule, place.root, progress)
 
 
 def _split(found: ImportedSet, frames: Frames, val_share: float, *, is_target: bool) -> Split:

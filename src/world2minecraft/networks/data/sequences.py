@@ -14,11 +14,11 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
 
-AHEAD_M = 2.0  # So far before a camera lies what it looks at: a room's middle from its wall.
-TRIED = 4  # Frames that are looked at for each that is wanted.
+LOOK_AHEAD_M = 2.0  # So far before a camera lies what it looks at: a room's middle from its wall.
+TRIES_PER_FRAME = 4  # Frames that are looked at for each that is wanted.
 
 
-class Companions:
+class SequenceSampler:
     """Finds frames of a scene beside one of them.
 
     Args:
@@ -42,16 +42,16 @@ class Companions:
         order = [others[n] for n in rng.permutation(len(others))]
         found: list[Frame] = []
         spare: list[Frame] = []
-        for other in order[: TRIED * count]:
+        for other in order[: TRIES_PER_FRAME * count]:
             if len(found) == count:
                 break
-            moved = seen_from(frame, self._frames[other])
-            (found if looks_into(moved, self._voxel_m) else spare).append(moved)
+            moved = move_to_grid(frame, self._frames[other])
+            (found if views_grid(moved, self._voxel_m) else spare).append(moved)
         chosen = (found + spare)[:count]
         return [chosen[n % len(chosen)] for n in range(count)]
 
 
-def seen_from(anchor: Frame, other: Frame) -> Frame:
+def move_to_grid(anchor: Frame, other: Frame) -> Frame:
     """Return another frame of the scene with its camera in the grid of ``anchor``.
 
     Its labels and masks are those of ``anchor``: they are of the same cells.
@@ -68,13 +68,13 @@ def seen_from(anchor: Frame, other: Frame) -> Frame:
     )
 
 
-def looks_into(frame: Frame, voxel_m: float) -> bool:
-    """Whether what a camera looks at lies over the box: ``AHEAD_M`` before it, or itself."""
+def views_grid(frame: Frame, voxel_m: float) -> bool:
+    """Whether what a camera looks at lies over the box: ``LOOK_AHEAD_M`` before it, or itself."""
     sides_m = np.array(frame.labels.shape[:2]) * voxel_m
-    at_m = frame.camera_to_grid[:2, 3] + AHEAD_M * frame.camera_to_grid[:2, 2]
+    at_m = frame.camera_to_grid[:2, 3] + LOOK_AHEAD_M * frame.camera_to_grid[:2, 2]
     return bool(((at_m >= 0) & (at_m <= sides_m)).all())
 
 
-def count_of(seed: int, step: int, most: int) -> int:
+def sequence_length(seed: int, step: int, most: int) -> int:
     """Return how many frames the samples of a step have, 1 to ``most``, each as likely."""
     return 1 + int(np.random.default_rng([seed, 2**21, step]).integers(most))

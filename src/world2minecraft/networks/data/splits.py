@@ -60,14 +60,14 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
     return Split(train, [row for row in pool if scenes[row] in held], test)
 
 
-def evenly(rows: list[int], most: int) -> list[int]:
+def take_evenly(rows: list[int], most: int) -> list[int]:
     """Return at most so many of the rows, spread evenly."""
     if len(rows) <= most:
         return rows
     return [rows[n * len(rows) // most] for n in range(most)]
 
 
-def counted(splits: Mapping[str, list[int]]) -> str:
+def describe_counts(splits: Mapping[str, list[int]]) -> str:
     """Return counts in words, such as ``80 train, 10 val``."""
     return ", ".join(f"{len(rows):,} {name}" for name, rows in splits.items() if rows)
 

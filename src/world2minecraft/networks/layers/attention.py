@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.networks.layers.projection import sample
+from world2minecraft.networks.layers.projection import sample_grid
 
 
 class DeformableAttention(nn.Module):
@@ -55,13 +55,13 @@ class DeformableAttention(nn.Module):
         carried = carried.reshape(batch * self.heads, -1, *value.shape[2:])
         at = (places * sides)[:, :, None, None] + shifts
         at = at.transpose(1, 2).reshape(batch * self.heads, count * self.points, self.axes)
-        found = sample(carried, at).unflatten(2, (count, self.points))
+        found = sample_grid(carried, at).unflatten(2, (count, self.points))
         weights = weights.transpose(1, 2).reshape(batch * self.heads, 1, count, self.points)
         found = (found * weights).sum(dim=-1)  # [B heads, C / heads, Q]
         return found.unflatten(0, (batch, self.heads)).flatten(1, 2).transpose(1, 2)
 
 
-class Attention(nn.Module):
+class MultiHeadAttention(nn.Module):
     """Plain attention of several heads over what is not in space."""
 
     def __init__(self, channels: int, heads: int):
@@ -83,7 +83,7 @@ class Attention(nn.Module):
         return self.out((scores.softmax(dim=-1) @ value).transpose(1, 2).flatten(2))
 
 
-class AfterAttention(nn.Module):
+class FeedForward(nn.Module):
     """What follows each attention: added, normalised, and two layers of each query by itself."""
 
     def __init__(self, channels: int, widening: int = 4):

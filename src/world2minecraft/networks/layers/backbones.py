@@ -1,4 +1,10 @@
-"""What turns a picture into features: our own small network, or one of transformers."""
+"""Backbones, which turn an image into features: our own small network, or one of transformers.
+
+Feature maps of a transformers backbone, of whatever strides, are resized to the strides that the
+decoder expects: the first of them at 1/4, the last at 1/32 (a vision transformer's are all at 1/14
+or so). At 1/2 a kernel of our own looks at the image. The library's image processors are not used,
+as they need torchvision.
+"""
 
 import re
 from collections.abc import Sequence
@@ -10,16 +16,16 @@ from torch import Tensor, nn
 
 from world2minecraft.core.errors import InputError, MissingExtraError, UsageError
 from world2minecraft.networks.layers.normalization import Norm
-from world2minecraft.networks.layers.unet2d import STRIDES, Decoder, Encoder, PictureWidths, UNet2D
+from world2minecraft.networks.layers.unet2d import STRIDES, BackboneWidths, Decoder, Encoder, UNet2D
 
 MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
 LEVELS = 4  # At 1/4, 1/8, 1/16 and 1/32.
 WIDTHS = {
-    "tiny": PictureWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
-    "small": PictureWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
-    "full": PictureWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
+    "tiny": BackboneWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
+    "small": BackboneWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
+    "full": BackboneWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
     # As full, without the wide top that EfficientNet-B7 has: for networks that never had it.
-    "lean": PictureWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
+    "lean": BackboneWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
 }
 NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch", "lean": "batch"}
 PREFIX = "hf:"
@@ -33,10 +39,10 @@ class HuggingFaceEncoder(nn.Module):
         InputError: the backbone cannot be had.
     """
 
-    def __init__(self, model: str, widths: PictureWidths):
+    def __init__(self, model: str, widths: BackboneWidths):
         super().__init__()
-        self.network = _loaded(model)
-        self.multiple = _multiple_of(self.network.config)
+        self.network = _load_model(model)
+        self.multiple = _size_multiple(self.network.config)
         given = list(self.network.channels)
         self.levels = [min(level, len(given) - 1) for level in range(LEVELS)]
         self.fine = nn.Sequential(nn.Conv2d(3, widths.taps[0], 3, 2, 1), nn.ReLU())
@@ -49,21 +55,21 @@ class HuggingFaceEncoder(nn.Module):
         """Return five maps, at 1/2 to 1/32, for a normalised picture [B, 3, H, W]."""
         sides = [[-(-int(side) // stride) for side in picture.shape[2:]] for stride in STRIDES]
         wanted = [max(round(int(s) / self.multiple), 1) * self.multiple for s in picture.shape[2:]]
-        maps = self.network(pixel_values=_resized(picture, wanted)).feature_maps
+        maps = self.network(pixel_values=_resize(picture, wanted)).feature_maps
         coarse = [
-            _resized(carry(maps[level]), side)
+            _resize(carry(maps[level]), side)
             for carry, level, side in zip(self.carry, self.levels, sides[1:], strict=True)
         ]
         return [self.fine(picture), *coarse]
 
 
-def _resized(values: Tensor, sides: list[int]) -> Tensor:
+def _resize(values: Tensor, sides: list[int]) -> Tensor:
     if list(values.shape[2:]) == sides:
         return values
     return nn.functional.interpolate(values, sides, mode="bilinear", align_corners=False)
 
 
-def _loaded(model: str) -> Any:
+def _load_model(model: str) -> Any:
     try:
         import transformers  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
     except ImportError:
@@ -73,7 +79,7 @@ def _loaded(model: str) -> Any:
     transformers.utils.logging.disable_progress_bar()
     try:
         config = transformers.AutoConfig.from_pretrained(model)
-        config.out_indices = _taps_of(config)
+        config.out_indices = _feature_channels(config)
         # The library's own way by a name refuses folders; the class that it would take does not.
         with torch.device("meta"):
             kind = type(transformers.AutoBackbone.from_config(config))
@@ -83,7 +89,7 @@ def _loaded(model: str) -> Any:
         raise InputError(model, f"no backbone of transformers: {reason}") from None
 
 
-def _taps_of(config: Any) -> list[int]:
+def _feature_channels(config: Any) -> list[int]:
     """Return four of the stages that a backbone can give, the last of them among these."""
     names = list(getattr(config, "stage_names", None) or [])
     count = len(names) - 1 if names else int(getattr(config, "num_hidden_layers", LEVELS))
@@ -92,13 +98,11 @@ def _taps_of(config: Any) -> list[int]:
     return [round((level + 1) * count / LEVELS) for level in range(LEVELS)]
 
 
-def _multiple_of(config: Any) -> int:
+def _size_multiple(config: Any) -> int:
     """Return what a picture's sides must be a multiple of."""
     patch = getattr(config, "patch_size", None)
     patch = patch[0] if isinstance(patch, (list, tuple)) else patch
     return int(patch) if isinstance(patch, int) and patch > 4 else STRIDES[-1]
-
-
 
 
 def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[int]) -> UNet2D:
@@ -118,7 +122,7 @@ def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[i
     return UNet2D(encoder, Decoder(widths.taps, widths.decoder, channels, norm, scales))
 
 
-def make_encoder(name: str | None, widths: PictureWidths, norm: Norm) -> nn.Module:
+def make_encoder(name: str | None, widths: BackboneWidths, norm: Norm) -> nn.Module:
     """Return a network from normalised pictures to maps at 1/2 to 1/32; see ``make_backbone``."""
     if name is None:
         return Encoder(widths, norm)

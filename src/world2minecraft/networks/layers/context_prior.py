@@ -9,7 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from world2minecraft.networks.layers.normalization import Norm
-from world2minecraft.networks.layers.residual_3d import Reaches, axis_blocks
+from world2minecraft.networks.layers.residual_3d import ASPP, ddr_blocks
 
 RELATIONS = 4
 
@@ -36,12 +36,12 @@ class ContextPrior(nn.Module):
         self.mega_shape = mega_shape(shape)
         megas = self.mega_shape[0] * self.mega_shape[1] * self.mega_shape[2]
         around = ((shape[0] + 1) % 2, (shape[1] + 1) % 2, (shape[2] + 1) % 2)
-        self.reaches = Reaches(channels, norm, reaches)
+        self.reaches = ASPP(channels, norm, reaches)
         self.gather = nn.Conv3d(channels, 2 * channels, 3, stride=2, padding=around)
         self.relations = nn.ModuleList(nn.Conv3d(channels, megas, 1) for _ in range(RELATIONS))
         self.merge = nn.Sequential(
             nn.Conv3d(channels * (2 * RELATIONS + 1), channels, 1, bias=False),
-            axis_blocks(channels, norm, (1,)),
+            ddr_blocks(channels, norm, (1,)),
         )
 
     def forward(self, cells: Tensor) -> tuple[Tensor, Tensor]:

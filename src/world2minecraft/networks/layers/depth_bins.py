@@ -7,10 +7,10 @@ from torch import Tensor, nn
 
 from world2minecraft.networks.batch import OccInput
 from world2minecraft.networks.layers.normalization import Norm, conv2d
-from world2minecraft.networks.layers.projection import Sight, sample
+from world2minecraft.networks.layers.projection import CellProjection, sample_grid
 from world2minecraft.networks.layers.unet2d import ResidualBlock
 
-FARTHEST_M = 10.0  # ISO's range for rooms, from 0.
+MAX_DEPTH_M = 10.0  # ISO's range for rooms, from 0.
 BEYOND_M = 1e6  # Stands for no depth among depths of which the least is sought.
 
 
@@ -20,33 +20,33 @@ def bin_edges_m(bins: int) -> list[float]:
     >>> bin_edges_m(4)
     [0.0, 1.0, 3.0, 6.0, 10.0]
     """
-    return [FARTHEST_M * k * (k + 1) / (bins * (bins + 1)) for k in range(bins + 1)]
+    return [MAX_DEPTH_M * k * (k + 1) / (bins * (bins + 1)) for k in range(bins + 1)]
 
 
-def bin_place(depth_m: Tensor, bins: int) -> Tensor:
+def bin_coordinate(depth_m: Tensor, bins: int) -> Tensor:
     """Return where depths lie among the bins, as a real number: k at the lower edge of bin k.
 
     Between edges it grows as the edges' own rule does, so that it is smooth.
     """
-    scaled = depth_m.clamp(min=0) * (bins * (bins + 1) / FARTHEST_M)
+    scaled = depth_m.clamp(min=0) * (bins * (bins + 1) / MAX_DEPTH_M)
     return torch.sqrt(scaled + 0.25) - 0.5
 
 
 def bin_of(depth_m: Tensor, bins: int) -> tuple[Tensor, Tensor]:
     """Return the bin of each depth, int64, and whether it has one: above 0 and below 10 m."""
-    known = (depth_m > 0) & (depth_m < FARTHEST_M)
-    place = bin_place(torch.where(known, depth_m, torch.zeros_like(depth_m)), bins)
+    known = (depth_m > 0) & (depth_m < MAX_DEPTH_M)
+    place = bin_coordinate(torch.where(known, depth_m, torch.zeros_like(depth_m)), bins)
     return place.floor().long().clamp(0, bins - 1), known
 
 
-def bin_middles_m(bins: int, like: Tensor) -> Tensor:
+def bin_centers_m(bins: int, like: Tensor) -> Tensor:
     """Return the depth in the middle of each bin, [bins], of the type of ``like``."""
     edges = bin_edges_m(bins)
     middles = [(near + far) / 2 for near, far in pairwise(edges)]
     return torch.tensor(middles, device=like.device, dtype=like.dtype)
 
 
-def least_depth(depth_m: Tensor, scale: int) -> Tensor:
+def min_pool_depth(depth_m: Tensor, scale: int) -> Tensor:
     """Return the least depth that is not 0 of each block of pixels; 0 where there is none.
 
     Args:
@@ -99,21 +99,21 @@ class DepthBranch(nn.Module):
         """Return the depth that is given, [B, 1, h, w], as a share of 10 m; 0 where none is."""
         if inputs.depth_m is None:
             return torch.zeros_like(values[:, :1])
-        return least_depth(inputs.depth_m, self.scale)[:, None].to(values.dtype) / FARTHEST_M
+        return min_pool_depth(inputs.depth_m, self.scale)[:, None].to(values.dtype) / MAX_DEPTH_M
 
 
 def known_depth(logits: Tensor, inputs: OccInput, scale: int) -> Tensor:
     """Return the depth of each pixel of a map, [B, h, w]: what is given, else what is expected."""
     shares = torch.softmax(logits.float(), dim=1)
-    middles = bin_middles_m(int(logits.shape[1]), shares)
+    middles = bin_centers_m(int(logits.shape[1]), shares)
     expected = (shares * middles[:, None, None]).sum(dim=1)
     if inputs.depth_m is None:
         return expected
-    given = least_depth(inputs.depth_m, scale)
+    given = min_pool_depth(inputs.depth_m, scale)
     return torch.where(given > 0, given, expected)
 
 
-def along_rays(shares: Tensor, sight: Sight, scale: int) -> Tensor:
+def weight_by_depth(shares: Tensor, sight: CellProjection, scale: int) -> Tensor:
     """Return what a depth branch says of each cell, [B, C, N].
 
     Args:
@@ -125,5 +125,7 @@ def along_rays(shares: Tensor, sight: Sight, scale: int) -> Tensor:
     """
     bins = int(shares.shape[2])
     rows, columns = sight.pixels[..., 1] / scale, sight.pixels[..., 0] / scale
-    found = sample(shares, torch.stack([bin_place(sight.depth_m, bins), rows, columns], dim=-1))
+    found = sample_grid(
+        shares, torch.stack([bin_coordinate(sight.depth_m, bins), rows, columns], dim=-1)
+    )
     return found * sight.inside[:, None]

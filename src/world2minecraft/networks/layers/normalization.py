@@ -1,7 +1,14 @@
-"""How layers are normalised, and the small blocks of two and three dimensions.
+"""Normalised convolutions of two and three dimensions, with group or batch normalisation.
 
-``batch`` is what the papers use, on many GPUs. ``group`` says the same whatever else is in the
-batch, which on two CPU cores is one or two pictures.
+``batch`` is what the papers use, on many GPUs. ``group`` does not depend on what else is in the
+batch, which on two CPU cores is one or two images. Its gradient is computed in float32: torch's own
+gradient of bfloat16 with the channels last takes a CPU three times as long and is less exact.
+
+Dilated convolutions are trained as plain ones. A CPU takes ten times as long for the gradient of a
+dilated 3x3x3 kernel as for that of a plain one (43 ms of one core against 4, [4, 32, 30, 30, 18] in
+bfloat16). Cells that lie a whole number of dilations apart never meet the others: each such phase
+is a small grid of its own, and over all of them, laid side by side in the batch, the kernel is a
+plain one. Same result, same weights.
 """
 
 from typing import Any, Literal
@@ -23,11 +30,11 @@ class DilatedConv3d(nn.Conv3d):
             return super().forward(input)
         sides, steps = input.shape[2:], self.dilation
         kept = [kernel // 2 for kernel in self.kernel_size]
-        found = functional.conv3d(families(input, steps), self.weight, self.bias, padding=kept)
-        return joined(found, steps, sides)
+        found = functional.conv3d(split_phases(input, steps), self.weight, self.bias, padding=kept)
+        return merge_phases(found, steps, sides)
 
 
-def families(cells: Tensor, steps: tuple[int, ...]) -> Tensor:
+def split_phases(cells: Tensor, steps: tuple[int, ...]) -> Tensor:
     """Return each family of cells as a grid of its own, [B * i * j * k, C, X / i, Y / j, Z / k].
 
     Sides that the steps do not divide are filled up with zeros, as a padded convolution does.
@@ -41,16 +48,14 @@ def families(cells: Tensor, steps: tuple[int, ...]) -> Tensor:
     return split.reshape(batch * i * j * k, x, y, z, channels).permute(0, 4, 1, 2, 3)
 
 
-def joined(cells: Tensor, steps: tuple[int, ...], sides: tuple[int, ...]) -> Tensor:
-    """Return the grid [B, C, *sides] whose families these are: the inverse of ``families``."""
+def merge_phases(cells: Tensor, steps: tuple[int, ...], sides: tuple[int, ...]) -> Tensor:
+    """Return the grid [B, C, *sides] whose families these are: the inverse of ``split_phases``."""
     i, j, k = steps
     many, channels, x, y, z = cells.shape
     batch = many // (i * j * k)
     split = cells.permute(0, 2, 3, 4, 1).reshape(batch, i, j, k, x, y, z, channels)
     whole = split.permute(0, 4, 1, 5, 2, 6, 3, 7).reshape(batch, x * i, y * j, z * k, channels)
     return whole[:, : sides[0], : sides[1], : sides[2]].permute(0, 4, 1, 2, 3)
-
-
 
 
 class GroupNorm(nn.GroupNorm):
@@ -62,10 +67,10 @@ class GroupNorm(nn.GroupNorm):
         if input.dtype != torch.bfloat16 or layout == torch.contiguous_format or not trains:
             return super().forward(input)
         packed = input.contiguous(memory_format=layout)
-        return _Normalised.apply(packed, self.weight, self.bias, self.num_groups, self.eps)
+        return _GroupNormFunction.apply(packed, self.weight, self.bias, self.num_groups, self.eps)
 
 
-class _Normalised(torch.autograd.Function):
+class _GroupNormFunction(torch.autograd.Function):
     @staticmethod
     def forward(
         ctx: Any, values: Tensor, weight: Tensor, bias: Tensor, groups: int, eps: float
@@ -96,8 +101,6 @@ def _layout(values: Tensor) -> torch.memory_format:
 
 def _sizes(values: Tensor) -> tuple[int, int, int]:
     return len(values), values.shape[1], values[0, 0].numel()
-
-
 
 
 def norm2d(kind: Norm, channels: int) -> nn.Module:

@@ -1,9 +1,14 @@
-"""Where cells lie in a picture, and lifting: each cell takes the features of its pixel (FLoSP).
+"""Project cells into an image, and lift features: each cell takes those of its pixel (FLoSP).
 
 The arithmetic is that of the data set's frustum masks: the centre of a cell is carried into the
 camera, divided by its depth, and lies in the pixel that holds the point. Pixel (i, j) spans
-[i, i + 1) x [j, j + 1). Nothing asks whether something stands between: a feature is laid on all
-cells of its ray, and three dimensions have to tell which of them it belongs to.
+[i, i + 1) x [j, j + 1). Occlusion is ignored: a feature is laid on all cells of its ray, and the 3D
+layers have to find out which of them it belongs to.
+
+``sample_grid`` reads values between the cells of maps and volumes: coordinates are in cells, cell i
+spans [i, i + 1), and beyond the centres of the outermost cells values fade to 0. PyTorch has a
+kernel for this; ONNX of opset 17 has it for maps alone, so that volumes are exported as sums over
+the eight cells around.
 """
 
 from collections.abc import Mapping
@@ -15,10 +20,10 @@ from torch import Tensor
 
 from world2minecraft.networks.batch import OccInput
 
-NEAREST_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
+MIN_DEPTH_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
 
 
-def sample(values: Tensor, places: Tensor) -> Tensor:
+def sample_grid(values: Tensor, places: Tensor) -> Tensor:
     """Return what lies at places, mixed linearly from the cells around: [B, C, N].
 
     Args:
@@ -26,7 +31,7 @@ def sample(values: Tensor, places: Tensor) -> Tensor:
         places: [B, N, 2] or [B, N, 3], in the order of the axes of ``values``.
     """
     if values.ndim == 5 and torch.onnx.is_in_onnx_export():
-        return sample_by_corners(values, places)
+        return sample_corners(values, places)
     sides = torch.tensor(values.shape[2:], device=values.device, dtype=places.dtype)
     values = values.to(places.dtype)  # Not the other way: half precision is too coarse for places.
     # The kernel's places run from -1 to 1, with the last axis first.
@@ -35,8 +40,8 @@ def sample(values: Tensor, places: Tensor) -> Tensor:
     return torch.nn.functional.grid_sample(values, grid, align_corners=False).flatten(2)
 
 
-def sample_by_corners(values: Tensor, places: Tensor) -> Tensor:
-    """Return the same as ``sample`` of volumes, by what any runtime can do."""
+def sample_corners(values: Tensor, places: Tensor) -> Tensor:
+    """Return the same as ``sample_grid`` of volumes, by what any runtime can do."""
     sides = [int(side) for side in values.shape[2:]]
     low = torch.floor(places - 0.5)
     after = places - 0.5 - low  # [B, N, 3], the share of the later cell.
@@ -59,10 +64,8 @@ def sample_by_corners(values: Tensor, places: Tensor) -> Tensor:
     return found
 
 
-
-
 @dataclass(frozen=True)
-class Sight:
+class CellProjection:
     """Where the N cells of a grid lie in their pictures, in C order."""
 
     pixels: Tensor  # float32 [B, N, 2]: u to the right, v down
@@ -71,18 +74,18 @@ class Sight:
     size_px: tuple[int, int]  # height, width
 
 
-def sight_of(inputs: OccInput) -> Sight:
+def project_cells(inputs: OccInput) -> CellProjection:
     """Return where the centres of all cells lie in the pictures of a batch."""
     height, width = int(inputs.image.shape[-2]), int(inputs.image.shape[-1])
     in_camera = cells_in_camera(inputs)
     depth = in_camera[..., 2]
-    ahead = depth > NEAREST_M
+    ahead = depth > MIN_DEPTH_M
     across = in_camera[..., :2] / torch.where(ahead, depth, torch.ones_like(depth))[..., None]
     focal = torch.stack([inputs.intrinsics[:, 0, 0], inputs.intrinsics[:, 1, 1]], dim=-1)
     pixels = across * focal[:, None] + inputs.intrinsics[:, None, :2, 2]
     u, v = pixels[..., 0], pixels[..., 1]
     inside = ahead & (u >= 0) & (u < width) & (v >= 0) & (v < height)
-    return Sight(pixels, depth, inside, (height, width))
+    return CellProjection(pixels, depth, inside, (height, width))
 
 
 def cells_in_camera(inputs: OccInput) -> Tensor:
@@ -90,10 +93,10 @@ def cells_in_camera(inputs: OccInput) -> Tensor:
     centers = cell_centers_m(inputs.grid_shape, inputs.voxel_m, inputs.camera_to_grid)
     turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
     # A turn's inverse is its transpose.
-    return turned(centers[None] - place[:, None], turn.transpose(1, 2))
+    return transform_points(centers[None] - place[:, None], turn.transpose(1, 2))
 
 
-def turned(places: Tensor, turn: Tensor) -> Tensor:
+def transform_points(places: Tensor, turn: Tensor) -> Tensor:
     """Return places [B, N, 3] turned by [B, 3, 3], whatever precision layers work in.
 
     Matrix products are rounded to half precision where training is mixed: to some ten pixels.
@@ -108,7 +111,9 @@ def cell_centers_m(shape: tuple[int, int, int], voxel_m: float, like: Tensor) ->
     return places.reshape(-1, 3) * voxel_m
 
 
-def lift(features: Mapping[int, Tensor], sight: Sight, shape: tuple[int, int, int]) -> Tensor:
+def lift_features(
+    features: Mapping[int, Tensor], sight: CellProjection, shape: tuple[int, int, int]
+) -> Tensor:
     """Return the sum over scales of the feature at each cell's pixel, [B, C, X, Y, Z].
 
     Args:
@@ -127,7 +132,7 @@ def lift(features: Mapping[int, Tensor], sight: Sight, shape: tuple[int, int, in
     return (found * sight.inside[:, None]).unflatten(2, shape)
 
 
-def _places(sight: Sight, scale: int, values: Tensor) -> Tensor:
+def _places(sight: CellProjection, scale: int, values: Tensor) -> Tensor:
     """Return the number of each cell's pixel in a map, int64 [B, C, N]."""
     height, width = int(values.shape[-2]), int(values.shape[-1])
     pixels = torch.floor(sight.pixels / scale)

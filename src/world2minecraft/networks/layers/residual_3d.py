@@ -1,9 +1,10 @@
-"""Residual blocks of cells whose 3x3x3 kernel is three kernels of one axis each (DDR, CVPR 2019).
+"""3D blocks: dimensional decomposition residual blocks (DDR, CVPR 2019), ASPP and the class head.
 
-The first kernel runs along z, the second along y, the third along x, each seeing what those before
-it found. Shortcuts between them are plain where the grid stays; where it is halved they are pooled
-and carried by kernels of one cell. The published code owns such kernels in the blocks that halve
-nothing too, where nothing flows through them: here they are left out.
+A DDR block replaces a 3x3x3 kernel by three kernels of one axis each: the first runs along z, the
+second along y, the third along x, each seeing what those before it found. Shortcuts between them
+are plain where the grid stays; where it is halved they are pooled and carried by kernels of one
+cell. The published code owns such kernels in the blocks that halve nothing too, where nothing flows
+through them: here they are left out.
 """
 
 from collections.abc import Sequence
@@ -15,9 +16,7 @@ from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.networks.layers.normalization import DilatedConv3d, Norm, conv3d, norm3d
 
 
-
-
-class AxisBlock(nn.Module):
+class DDRBlock(nn.Module):
     """A bottleneck of DDR: a quarter of the channels, three axes, and back.
 
     Args:
@@ -32,15 +31,15 @@ class AxisBlock(nn.Module):
         inner, made = max(channels // 4, 1), channels * (2 if halve else 1)
         self.reduce = conv3d(channels, inner, norm, kernel=1)
         self.along = nn.ModuleList(
-            _along(axis, inner, norm, dilation, 2 if halve else 1) for axis in (2, 1, 0)
+            _axis_conv(axis, inner, norm, dilation, 2 if halve else 1) for axis in (2, 1, 0)
         )
         self.expand = conv3d(inner, made, norm, kernel=1)
         self.halve = halve
         if halve:
-            self.second = _Halved(inner, inner, norm, (False, True, False))
-            self.third = _Halved(inner, inner, norm, (True, False, False))
-            self.fourth = _Halved(inner, inner, norm, (True, False, False))
-            self.around = _Halved(channels, made, norm, (True, True, True))
+            self.second = _PooledConv(inner, inner, norm, (False, True, False))
+            self.third = _PooledConv(inner, inner, norm, (True, False, False))
+            self.fourth = _PooledConv(inner, inner, norm, (True, False, False))
+            self.around = _PooledConv(channels, made, norm, (True, True, True))
 
     def forward(self, cells: Tensor) -> Tensor:
         """Return [B, C, X, Y, Z], or [B, 2 C, ...] with half the sides, rounded up."""
@@ -55,12 +54,12 @@ class AxisBlock(nn.Module):
         return torch.relu(out + (self.around(cells) if self.halve else cells))
 
 
-def axis_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)) -> nn.Sequential:
+def ddr_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)) -> nn.Sequential:
     """Return blocks with growing reach."""
-    return nn.Sequential(*(AxisBlock(channels, norm, dilation=reach) for reach in dilations))
+    return nn.Sequential(*(DDRBlock(channels, norm, dilation=reach) for reach in dilations))
 
 
-class Double(nn.Module):
+class Upsample3d(nn.Module):
     """Doubles the sides of a grid, or one less where that is what was halved before."""
 
     def __init__(self, channels: int, made: int, norm: Norm):
@@ -74,7 +73,7 @@ class Double(nn.Module):
         return torch.relu(self.norm(self.up(cells, output_size=wanted)))
 
 
-class _Halved(nn.Module):
+class _PooledConv(nn.Module):
     """Means of two along some axes, the last cell of an odd side counting twice; then a kernel."""
 
     def __init__(self, channels: int, made: int, norm: Norm, axes: tuple[bool, bool, bool]):
@@ -93,7 +92,7 @@ class _Halved(nn.Module):
         return self.carry(nn.functional.avg_pool3d(cells, self.sides, self.sides))
 
 
-def _along(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> nn.Sequential:
+def _axis_conv(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> nn.Sequential:
     def only(value: int, other: int) -> tuple[int, int, int]:
         return tuple(value if k == axis else other for k in range(3))  # type: ignore[return-value]
 
@@ -105,9 +104,7 @@ def _along(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> 
     return nn.Sequential(conv, norm3d(norm, channels))
 
 
-
-
-class Reaches(nn.Module):
+class ASPP(nn.Module):
     """Pairs of 3x3x3 kernels of several dilations, summed and added to what came in."""
 
     def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
@@ -129,13 +126,13 @@ class Reaches(nn.Module):
         return torch.relu(found)
 
 
-class ClassHead(nn.Module):
+class SegmentationHead(nn.Module):
     """From features of cells to the logits of the 12 classes."""
 
     def __init__(self, channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)):
         super().__init__()
         self.enter = nn.Conv3d(channels, channels, 3, padding=1)
-        self.reaches = Reaches(channels, norm, dilations)
+        self.reaches = ASPP(channels, norm, dilations)
         self.classes = nn.Conv3d(channels, CLASS_COUNT, 3, padding=1)
 
     def forward(self, cells: Tensor) -> Tensor:

@@ -15,11 +15,11 @@ from world2minecraft.networks.layers.normalization import Norm, conv2d
 
 STRIDES = (2, 4, 8, 16, 32)
 # What ImageNet's pictures have, so that trained backbones fit in: red, green, blue.
-MEAN, SPREAD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
+MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 
 
 @dataclass(frozen=True)
-class PictureWidths:
+class BackboneWidths:
     """How wide and deep a backbone is.
 
     ``taps`` are the channels at 1/2, 1/4, 1/8, 1/16 and 1/32, ``blocks`` the residual blocks that
@@ -35,13 +35,13 @@ class PictureWidths:
 class Encoder(nn.Module):
     """From a picture to features at 1/2, 1/4, 1/8, 1/16 and 1/32."""
 
-    def __init__(self, widths: PictureWidths, norm: Norm):
+    def __init__(self, widths: BackboneWidths, norm: Norm):
         super().__init__()
         self.taps = widths.taps
         made = (*widths.taps[:4], widths.inner)
         given = (3, *made[:4])
         self.stages = nn.ModuleList(
-            _stage(before, after, count, norm)
+            _make_stage(before, after, count, norm)
             for before, after, count in zip(given, made, widths.blocks, strict=True)
         )
         wider = widths.inner != widths.taps[4]
@@ -74,7 +74,7 @@ class Decoder(nn.Module):
             if scale < finest:
                 break
             wide, narrow = max(channels >> step, 4), max(channels >> (step + 1), 4)
-            self.steps[str(scale)] = _Up(wide + tap, narrow, norm)
+            self.steps[str(scale)] = _UpBlock(wide + tap, narrow, norm)
             if scale in scales:
                 self.give[str(scale)] = nn.Conv2d(narrow, made, 1)
 
@@ -98,13 +98,13 @@ class UNet2D(nn.Module):
 
     def forward(self, picture: Tensor) -> dict[int, Tensor]:
         """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)] of [B, 3, H, W]."""
-        picture = normalised(picture)
+        picture = normalize_image(picture)
         return self.decoder(picture, self.encoder(picture))
 
 
-def normalised(picture: Tensor) -> Tensor:
+def normalize_image(picture: Tensor) -> Tensor:
     """Return a picture of 0 to 1 with ImageNet's mean and spread taken out."""
-    mean, spread = (torch.tensor(v, device=picture.device)[:, None, None] for v in (MEAN, SPREAD))
+    mean, spread = (torch.tensor(v, device=picture.device)[:, None, None] for v in (MEAN, STD))
     return ((picture - mean) / spread).to(picture.dtype)
 
 
@@ -122,7 +122,7 @@ class ResidualBlock(nn.Module):
         return torch.relu(values + self.path(values))
 
 
-class _Up(nn.Module):
+class _UpBlock(nn.Module):
     def __init__(self, given: int, made: int, norm: Norm):
         super().__init__()
         self.path = nn.Sequential(
@@ -135,6 +135,6 @@ class _Up(nn.Module):
         return self.path(torch.cat([values, beside], dim=1))
 
 
-def _stage(given: int, made: int, count: int, norm: Norm) -> nn.Sequential:
+def _make_stage(given: int, made: int, count: int, norm: Norm) -> nn.Sequential:
     blocks = (ResidualBlock(made, norm) for _ in range(count))
     return nn.Sequential(conv2d(given, made, norm, stride=2), nn.ReLU(), *blocks)

@@ -7,7 +7,12 @@ from torch import Tensor, nn
 
 from world2minecraft.networks.layers.context_prior import ContextPrior
 from world2minecraft.networks.layers.normalization import Norm
-from world2minecraft.networks.layers.residual_3d import AxisBlock, ClassHead, Double, axis_blocks
+from world2minecraft.networks.layers.residual_3d import (
+    DDRBlock,
+    SegmentationHead,
+    Upsample3d,
+    ddr_blocks,
+)
 
 
 class UNet3D(nn.Module):
@@ -31,13 +36,13 @@ class UNet3D(nn.Module):
         context: bool = True,
     ):
         super().__init__()
-        self.down = _down(channels, norm, reaches)
-        self.down_again = _down(2 * channels, norm, reaches)
-        quarter = coarsest(shape)
+        self.down = _downsample(channels, norm, reaches)
+        self.down_again = _downsample(2 * channels, norm, reaches)
+        quarter = coarsest_shape(shape)
         self.context = ContextPrior(4 * channels, quarter, norm, reaches) if context else None
-        self.up = Double(4 * channels, 2 * channels, norm)
-        self.up_again = Double(2 * channels, channels, norm)
-        self.head = ClassHead(channels, norm, reaches)
+        self.up = Upsample3d(4 * channels, 2 * channels, norm)
+        self.up_again = Upsample3d(2 * channels, channels, norm)
+        self.head = SegmentationHead(channels, norm, reaches)
 
     def forward(self, cells: Tensor) -> tuple[Tensor, Tensor | None]:
         """Return logits [B, 12, X, Y, Z], and those of the relations where they are asked for."""
@@ -49,15 +54,15 @@ class UNet3D(nn.Module):
         return self.head(self.up_again(half, cells.shape[2:]) + cells), relations
 
 
-def coarsest(shape: tuple[int, int, int]) -> tuple[int, int, int]:
+def coarsest_shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
     """Return the sides of a grid that was halved twice, rounded up each time.
 
-    >>> coarsest((60, 60, 36)), coarsest((30, 30, 18))
+    >>> coarsest((60, 60, 36)), coarsest_shape((30, 30, 18))
     ((15, 15, 9), (8, 8, 5))
     """
     return (-(-shape[0] // 4), -(-shape[1] // 4), -(-shape[2] // 4))
 
 
-def _down(channels: int, norm: Norm, reaches: tuple[int, ...]) -> nn.Sequential:
-    blocks = axis_blocks(channels, norm, reaches)
-    return nn.Sequential(blocks, AxisBlock(channels, norm, halve=True))
+def _downsample(channels: int, norm: Norm, reaches: tuple[int, ...]) -> nn.Sequential:
+    blocks = ddr_blocks(channels, norm, reaches)
+    return nn.Sequential(blocks, DDRBlock(channels, norm, halve=True))

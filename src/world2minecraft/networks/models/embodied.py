@@ -1,15 +1,19 @@
 """The embodied network: frame after frame adds to the evidence of a scene, which is then read.
 
-Each frame alone says of the cells before it how sure it is that they are occupied (log-odds), what
-they are (votes), and features that words have no name for; a gate says how much each cell is worth
-of it. All that is added to what came before, by the gate. A second network reads the sums and
-answers: it may complete and correct, but what it says is never written back. So nothing is ever
-forgotten, and the same frames give the same scene in any order.
+Each frame alone predicts, for the cells before it, how likely they are occupied (log-odds), what
+they are (votes), and further features; a gate weighs each cell. All that is added, by the gate, to
+the ``SceneEvidence`` so far. A second network reads the sums and answers: it may complete and
+correct, but its answer is never written back. So nothing is ever forgotten, and the same frames
+give the same scene in any order.
 
 It stands in for EmbodiedOcc (Wu et al., 2024) and differs from it throughout: cells in place of
 Gaussians, sums in place of a filter whose gain is 0.5, no scene size that must be known by the
-network, no compiled operator. There a Gaussian that was refined once is half frozen, and what the
-order of frames was shows in the result. Written from the paper alone.
+network, no compiled operator. There a Gaussian that was refined once is half frozen, and the order
+of frames shows in the result. Written from the paper alone.
+
+``SceneStream`` adds a stream of frames to one scene's grid. The window of cells of a frame lies
+before its camera, turned to it by quarter turns, on the scene's own cells: so nothing is resampled
+when its evidence is added.
 """
 
 import math
@@ -23,10 +27,10 @@ from torch import Tensor, nn
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.networks.batch import OccInput, OccOutput
 from world2minecraft.networks.layers.backbones import NORMS, make_backbone
-from world2minecraft.networks.layers.depth_bins import DepthBranch, along_rays
+from world2minecraft.networks.layers.depth_bins import DepthBranch, weight_by_depth
 from world2minecraft.networks.layers.normalization import conv3d
-from world2minecraft.networks.layers.projection import lift, sight_of
-from world2minecraft.networks.layers.residual_3d import axis_blocks
+from world2minecraft.networks.layers.projection import lift_features, project_cells
+from world2minecraft.networks.layers.residual_3d import ddr_blocks
 from world2minecraft.networks.layers.unet3d import UNet3D
 
 ODDS_AT = 1
@@ -34,7 +38,7 @@ VOTES_AT = 2
 FEATURES_AT = VOTES_AT + CLASS_COUNT
 SCALES = (1, 2, 4, 8)
 DEPTH_SCALE = 4
-MOST_ODDS = 3.0  # Of one frame, in log-odds.
+MAX_LOG_ODDS = 3.0  # Of one frame, in log-odds.
 BELOW_M = 1.6  # How far under a camera its box begins: the floor under a person's eyes.
 
 
@@ -75,10 +79,8 @@ class SceneEvidence:
         return torch.cat([weight / (weight + 1), odds, means], dim=1)
 
 
-
-
 @dataclass(frozen=True)
-class Choice:
+class SizeConfig:
     """What a size decides."""
 
     channels: int  # of a cell while a frame is looked at
@@ -91,10 +93,10 @@ class Choice:
     turns: bool = True  # Scenes are read at any quarter turn in training.
 
 
-CHOICES = {
-    "tiny": Choice(16, 12, 16, 12, 32, "tiny", (2,), False),
-    "small": Choice(32, 16, 32, 64, 64, "small"),
-    "full": Choice(128, 64, 128, 256, 64, "lean"),
+SIZE_CONFIGS = {
+    "tiny": SizeConfig(16, 12, 16, 12, 32, "tiny", (2,), False),
+    "small": SizeConfig(32, 16, 32, 64, 64, "small"),
+    "full": SizeConfig(128, 64, 128, 256, 64, "lean"),
 }
 
 
@@ -109,7 +111,7 @@ class Embodied(nn.Module):
         backbone: str | None = None,
     ):
         super().__init__()
-        chosen, norm = CHOICES[size], NORMS[size]
+        chosen, norm = SIZE_CONFIGS[size], NORMS[size]
         self.turns, self.features = chosen.turns, chosen.features
         self.picture = make_backbone(backbone, chosen.picture, chosen.channels, SCALES)
         self.depth = DepthBranch(
@@ -118,7 +120,7 @@ class Embodied(nn.Module):
         self.look = nn.Sequential(
             conv3d(chosen.channels + 3, chosen.channels, norm),
             nn.ReLU(),
-            axis_blocks(chosen.channels, norm, chosen.reaches[:2]),
+            ddr_blocks(chosen.channels, norm, chosen.reaches[:2]),
             nn.Conv3d(chosen.channels, 2 + CLASS_COUNT + chosen.features, 1),
         )
         self.enter = nn.Conv3d(2 + CLASS_COUNT + chosen.features, chosen.reading, 1)
@@ -149,17 +151,17 @@ class Embodied(nn.Module):
 
     def observe(self, inputs: OccInput) -> tuple[SceneEvidence, Tensor]:
         """Return the evidence of each frame alone, in its own grid, and its depth logits."""
-        features, sight = self.picture(inputs.image), sight_of(inputs)
+        features, sight = self.picture(inputs.image), project_cells(inputs)
         depth_logits = self.depth(features[DEPTH_SCALE], inputs)
         shares = torch.softmax(depth_logits, dim=1)
         before = torch.cumsum(shares, dim=1)
         # Of each cell: how likely its pixel's surface is there, nearer, and farther.
-        ways = along_rays(torch.stack([shares, before, 1 - before], dim=1), sight, DEPTH_SCALE)
-        lifted = lift(features, sight, inputs.grid_shape)
+        ways = weight_by_depth(torch.stack([shares, before, 1 - before], dim=1), sight, DEPTH_SCALE)
+        lifted = lift_features(features, sight, inputs.grid_shape)
         said = self.look(torch.cat([lifted, ways.unflatten(2, inputs.grid_shape)], dim=1))
         in_view = sight.inside.unflatten(1, inputs.grid_shape)[:, None]
         gate = torch.sigmoid(said[:, :1]) * in_view
-        odds = MOST_ODDS * torch.tanh(said[:, 1:2])
+        odds = MAX_LOG_ODDS * torch.tanh(said[:, 1:2])
         votes = torch.softmax(said[:, 2 : 2 + CLASS_COUNT], dim=1)
         kept = torch.tanh(said[:, 2 + CLASS_COUNT :])
         told = torch.cat([torch.ones_like(gate), odds, votes, kept], dim=1) * gate
@@ -170,11 +172,8 @@ class Embodied(nn.Module):
         return self.read_cells(self.enter(evidence.readable()))[0]
 
 
-
-
-
 @dataclass(frozen=True)
-class Window:
+class FrameWindow:
     """The box of cells before a camera: quarter turns, and where its lowest cell lies."""
 
     quarters: int  # counter-clockwise from above; 0 looks along the scene's y
@@ -195,7 +194,9 @@ class Window:
         return matrix
 
 
-def window_before(camera_to_scene: Tensor, shape: tuple[int, int, int], voxel_m: float) -> Window:
+def window_in_front(
+    camera_to_scene: Tensor, shape: tuple[int, int, int], voxel_m: float
+) -> FrameWindow:
     """Return the box before a camera [4, 4], metres from the minimum corner of the scene's grid."""
     ahead_x, ahead_y = (float(value) for value in camera_to_scene[:2, 2])
     quarters = round(math.atan2(-ahead_x, ahead_y) / (math.pi / 2)) % 4
@@ -208,7 +209,7 @@ def window_before(camera_to_scene: Tensor, shape: tuple[int, int, int], voxel_m:
         (x, y - right / 2),
     )[quarters]
     floor = round(z - BELOW_M / voxel_m)
-    return Window(quarters, (round(low[0]), round(low[1]), floor), shape)
+    return FrameWindow(quarters, (round(low[0]), round(low[1]), floor), shape)
 
 
 class SceneStream:
@@ -254,7 +255,7 @@ class SceneStream:
             camera_to_scene: [4, 4], metres from the minimum corner of the scene's grid.
             depth_m: float32 [H, W], 0 where there is none.
         """
-        window = window_before(camera_to_scene, self.box_shape, self.voxel_m)
+        window = window_in_front(camera_to_scene, self.box_shape, self.voxel_m)
         scene_to_box = torch.linalg.inv(window.box_to_scene(self.voxel_m))
         camera_to_box = (scene_to_box @ camera_to_scene.double().cpu()).float()
         inputs = OccInput(
@@ -281,7 +282,9 @@ class SceneStream:
         said = values.new_zeros(CLASS_COUNT, *sides)
         weights = values.new_zeros(sides)
         near = _nearness(self.box_shape).to(values)
-        starts = (_starts(side, box) for side, box in zip(sides, self.box_shape, strict=True))
+        starts = (
+            _window_starts(side, box) for side, box in zip(sides, self.box_shape, strict=True)
+        )
         for low in product(*starts):
             box = tuple(slice(a, a + n) for a, n in zip(low, self.box_shape, strict=True))
             here = SceneEvidence(values[(slice(None), slice(None), *box)])
@@ -299,10 +302,10 @@ class SceneStream:
         self._values[(slice(None), slice(None), *scene)] += told[(slice(None), slice(None), *box)]
 
 
-def _starts(whole: int, side: int) -> list[int]:
+def _window_starts(whole: int, side: int) -> list[int]:
     """Return where boxes begin along an axis, so that each overlaps the next by half or more.
 
-    >>> _starts(30, 30), _starts(50, 20)
+    >>> _starts(30, 30), _window_starts(50, 20)
     ([0], [0, 10, 20, 30])
     """
     return sorted({min(start, whole - side) for start in range(0, whole, max(side // 2, 1))})

@@ -7,7 +7,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 
 SIZES = ("tiny", "small", "full")
-LEAST_SIDE = 8  # Cells; the coarsest level has a quarter of them, in mega-voxels of two.
+MIN_SIDE = 8  # Cells; the coarsest level has a quarter of them, in mega-voxels of two.
 
 NETWORKS = Registry(
     "network",
@@ -53,17 +53,17 @@ def make_network(
     """
     if size not in SIZES:
         raise UnknownNameError("size of a network", size, SIZES)
-    if len(grid_shape) != 3 or min(grid_shape) < LEAST_SIDE:
-        raise UsageError(f"a grid has three sides of {LEAST_SIDE} cells or more, not {grid_shape}")
+    if len(grid_shape) != 3 or min(grid_shape) < MIN_SIDE:
+        raise UsageError(f"a grid has three sides of {MIN_SIDE} cells or more, not {grid_shape}")
     if not voxel_m > 0:
         raise UsageError(f"cells are larger than 0 m, not {voxel_m}")
     kind = NETWORKS.load(name)
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)
-        return _channels_last(kind(size, tuple(grid_shape), voxel_m, backbone))
+        return _use_channels_last(kind(size, tuple(grid_shape), voxel_m, backbone))
 
 
-def _channels_last(network: nn.Module) -> nn.Module:
+def _use_channels_last(network: nn.Module) -> nn.Module:
     """Lay the kernels of cells out so that a cell's channels lie together: a quarter faster."""
     for part in network.modules():
         if isinstance(part, (nn.Conv3d, nn.ConvTranspose3d)):

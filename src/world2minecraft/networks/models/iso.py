@@ -15,8 +15,8 @@ from torch import nn
 
 from world2minecraft.networks.batch import OccInput, OccOutput
 from world2minecraft.networks.layers.backbones import NORMS, make_backbone
-from world2minecraft.networks.layers.depth_bins import DepthBranch, along_rays
-from world2minecraft.networks.layers.projection import lift, sight_of
+from world2minecraft.networks.layers.depth_bins import DepthBranch, weight_by_depth
+from world2minecraft.networks.layers.projection import lift_features, project_cells
 from world2minecraft.networks.layers.unet3d import UNet3D
 
 SCALES = (1, 2, 4, 8)
@@ -24,7 +24,7 @@ DEPTH_SCALE = 4
 
 
 @dataclass(frozen=True)
-class Choice:
+class SizeConfig:
     """What a size decides."""
 
     channels: int  # of a cell at the full grid
@@ -33,10 +33,10 @@ class Choice:
     reaches: tuple[int, ...] = (1, 2, 3)  # dilations
 
 
-CHOICES = {
-    "tiny": Choice(16, 12, 32, (2,)),
-    "small": Choice(32, 64, 64),
-    "full": Choice(200, 256, 64),
+SIZE_CONFIGS = {
+    "tiny": SizeConfig(16, 12, 32, (2,)),
+    "small": SizeConfig(32, 64, 64),
+    "full": SizeConfig(200, 256, 64),
 }
 
 
@@ -51,7 +51,7 @@ class Iso(nn.Module):
         backbone: str | None = None,
     ):
         super().__init__()
-        chosen, norm = CHOICES[size], NORMS[size]
+        chosen, norm = SIZE_CONFIGS[size], NORMS[size]
         self.picture = make_backbone(backbone, size, chosen.channels, SCALES)
         self.depth = DepthBranch(
             chosen.channels, chosen.depth_channels, chosen.bins, DEPTH_SCALE, norm
@@ -60,10 +60,10 @@ class Iso(nn.Module):
 
     def forward(self, inputs: OccInput) -> OccOutput:
         """Return logits [B, 12, X, Y, Z], those of the relations and those of depth."""
-        features, sight = self.picture(inputs.image), sight_of(inputs)
+        features, sight = self.picture(inputs.image), project_cells(inputs)
         depth_logits = self.depth(features[DEPTH_SCALE], inputs)
-        likely = along_rays(torch.softmax(depth_logits, dim=1)[:, None], sight, DEPTH_SCALE)
-        lifted = lift(features, sight, inputs.grid_shape)
+        likely = weight_by_depth(torch.softmax(depth_logits, dim=1)[:, None], sight, DEPTH_SCALE)
+        lifted = lift_features(features, sight, inputs.grid_shape)
         gated = lifted * likely.unflatten(2, inputs.grid_shape)
         logits, relations = self.cells(lifted + gated)
         return OccOutput(logits, relations=relations, depth_logits=depth_logits)

@@ -15,21 +15,21 @@ from torch import nn
 
 from world2minecraft.networks.batch import OccInput, OccOutput
 from world2minecraft.networks.layers.backbones import NORMS, make_backbone
-from world2minecraft.networks.layers.projection import lift, sight_of
+from world2minecraft.networks.layers.projection import lift_features, project_cells
 from world2minecraft.networks.layers.unet3d import UNet3D
 
 SCALES = (1, 2, 4, 8)
 
 
 @dataclass(frozen=True)
-class Choice:
+class SizeConfig:
     """What a size decides."""
 
     channels: int  # of a cell at the full grid
     reaches: tuple[int, ...] = (1, 2, 3)  # dilations
 
 
-CHOICES = {"tiny": Choice(16, (2,)), "small": Choice(32), "full": Choice(200)}
+SIZE_CONFIGS = {"tiny": SizeConfig(16, (2,)), "small": SizeConfig(32), "full": SizeConfig(200)}
 
 
 class MonoScene(nn.Module):
@@ -43,12 +43,14 @@ class MonoScene(nn.Module):
         backbone: str | None = None,
     ):
         super().__init__()
-        chosen = CHOICES[size]
+        chosen = SIZE_CONFIGS[size]
         self.picture = make_backbone(backbone, size, chosen.channels, SCALES)
         self.cells = UNet3D(chosen.channels, grid_shape, NORMS[size], reaches=chosen.reaches)
 
     def forward(self, inputs: OccInput) -> OccOutput:
         """Return logits [B, 12, X, Y, Z] and those of the relations."""
         features = self.picture(inputs.image)
-        logits, relations = self.cells(lift(features, sight_of(inputs), inputs.grid_shape))
+        logits, relations = self.cells(
+            lift_features(features, project_cells(inputs), inputs.grid_shape)
+        )
         return OccOutput(logits, relations=relations)

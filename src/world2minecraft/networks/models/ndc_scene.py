@@ -1,12 +1,15 @@
 """NDC-Scene (Yao et al., ICCV 2023): depth is found in the camera's own space, then resampled.
 
-A volume of pixels and depths grows out of the picture (see ``parts.ndc``); cells read it where they
-lie in the camera, at four scales; then MonoScene's 3D U-Net and context prior.
+``DepthVolume`` grows a volume of pixels and depths out of the image. Its first axis is depth in
+bins that grow linearly, its others are the image's. It begins at 1/32 with an eighth of the bins,
+taken out of the channels of the coarsest map; each step doubles all three axes, and lays the
+image's map of that scale over the depths at which it belongs. Cells read the volume where they lie
+in the camera, at four scales; then come MonoScene's 3D U-Net and context prior.
 
 What differs from the paper, and written from the paper alone: the encoder is our own or one of
 transformers; depth runs in bins that grow linearly to 10 m; pixels give their features to depths by
 one gate each, where the paper's depth-adaptive attention has several heads; the finest volume is at
-1/4 of the picture with 128 bins. The published 3D part has 133.5 M parameters, fewer than
+1/4 of the image with 128 bins. The published 3D part has 133.5 M parameters, fewer than
 MonoScene's; 180 channels, with the same layers, come nearest to it.
 """
 
@@ -19,11 +22,11 @@ from torch import Tensor, nn
 
 from world2minecraft.networks.batch import OccInput, OccOutput
 from world2minecraft.networks.layers.backbones import NORMS, WIDTHS, make_backbone
-from world2minecraft.networks.layers.depth_bins import along_rays
+from world2minecraft.networks.layers.depth_bins import weight_by_depth
 from world2minecraft.networks.layers.normalization import Norm
-from world2minecraft.networks.layers.projection import Sight, sight_of
-from world2minecraft.networks.layers.residual_3d import AxisBlock, Double
-from world2minecraft.networks.layers.unet2d import normalised
+from world2minecraft.networks.layers.projection import CellProjection, project_cells
+from world2minecraft.networks.layers.residual_3d import DDRBlock, Upsample3d
+from world2minecraft.networks.layers.unet2d import normalize_image
 from world2minecraft.networks.layers.unet3d import UNet3D
 
 STEPS = (16, 8, 4)  # The scales after 1/32.
@@ -45,7 +48,7 @@ class DepthVolume(nn.Module):
         self.first = bins // 2 ** len(STEPS)
         self.start = nn.Conv2d(given, channels[0] * self.first, 1)
         self.steps = nn.ModuleList(
-            _Step(wide, beside, narrow, norm) for wide, narrow in pairwise(channels)
+            _UpsampleStep(wide, beside, narrow, norm) for wide, narrow in pairwise(channels)
         )
 
     def forward(self, coarsest: Tensor, maps: Mapping[int, Tensor]) -> dict[int, Tensor]:
@@ -69,26 +72,26 @@ class VolumeToCells(nn.Module):
         )
 
     def forward(
-        self, volumes: Mapping[int, Tensor], sight: Sight, shape: tuple[int, int, int]
+        self, volumes: Mapping[int, Tensor], sight: CellProjection, shape: tuple[int, int, int]
     ) -> Tensor:
         """Return [B, C, X, Y, Z]; cells out of the picture or beyond the last bin are all alike."""
         found = None
         for scale, volume in volumes.items():
-            here = self.carry[str(scale)](along_rays(volume, sight, scale))
+            here = self.carry[str(scale)](weight_by_depth(volume, sight, scale))
             found = here if found is None else found + here
         if found is None:
             raise ValueError("cells are read from one volume or more")
         return found.unflatten(2, shape)
 
 
-class _Step(nn.Module):
+class _UpsampleStep(nn.Module):
     """Doubles a volume; each pixel then gives its feature to the depths that ask for it."""
 
     def __init__(self, given: int, beside: int, made: int, norm: Norm):
         super().__init__()
-        self.up = Double(given, made, norm)
+        self.up = Upsample3d(given, made, norm)
         self.key, self.value = nn.Conv2d(beside, made, 1), nn.Conv2d(beside, made, 1)
-        self.refine = AxisBlock(made, norm)
+        self.refine = DDRBlock(made, norm)
 
     def forward(self, volume: Tensor, picture: Tensor) -> Tensor:
         sides = (2 * int(volume.shape[2]), int(picture.shape[2]), int(picture.shape[3]))
@@ -99,7 +102,7 @@ class _Step(nn.Module):
 
 
 @dataclass(frozen=True)
-class Choice:
+class SizeConfig:
     """What a size decides."""
 
     channels: int  # of a cell at the full grid
@@ -109,10 +112,10 @@ class Choice:
     reaches: tuple[int, ...] = (1, 2, 3)  # dilations
 
 
-CHOICES = {
-    "tiny": Choice(16, 12, (12, 12, 8, 8), 16, (2,)),
-    "small": Choice(32, 32, (64, 32, 24, 16), 32),
-    "full": Choice(180, 200, (256, 128, 96, 64), 128),
+SIZE_CONFIGS = {
+    "tiny": SizeConfig(16, 12, (12, 12, 8, 8), 16, (2,)),
+    "small": SizeConfig(32, 32, (64, 32, 24, 16), 32),
+    "full": SizeConfig(180, 200, (256, 128, 96, 64), 128),
 }
 
 
@@ -127,7 +130,7 @@ class NdcScene(nn.Module):
         backbone: str | None = None,
     ):
         super().__init__()
-        chosen, norm = CHOICES[size], NORMS[size]
+        chosen, norm = SIZE_CONFIGS[size], NORMS[size]
         self.picture = make_backbone(backbone, size, chosen.picture, STEPS)
         given = WIDTHS[size].taps[4]
         self.volume = DepthVolume(given, chosen.picture, chosen.volumes, chosen.bins, norm)
@@ -136,9 +139,9 @@ class NdcScene(nn.Module):
 
     def forward(self, inputs: OccInput) -> OccOutput:
         """Return logits [B, 12, X, Y, Z] and those of the relations."""
-        picture = normalised(inputs.image)
+        picture = normalize_image(inputs.image)
         taps = self.picture.encoder(picture)
         volumes = self.volume(taps[4], self.picture.decoder(picture, taps))
-        cells = self.to_cells(volumes, sight_of(inputs), inputs.grid_shape)
+        cells = self.to_cells(volumes, project_cells(inputs), inputs.grid_shape)
         logits, relations = self.cells(cells)
         return OccOutput(logits, relations=relations)

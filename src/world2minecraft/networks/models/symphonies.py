@@ -1,14 +1,14 @@
-"""Symphonies (Jiang et al., CVPR 2024): instances carry what they see from the picture to cells.
+"""Symphonies (Jiang et al., CVPR 2024): instances carry what they see from the image to cells.
 
-Cells of twice the size that the depth says are surface look at the picture first (voxel proposal).
-Three layers follow (see ``parts.symphony``); each gives an answer of its own in training, the last
-one is that of the network.
+Cells of twice the size that the depth says are surface look at the image first (voxel proposal).
+Three layers follow: in each, instances look at the image, cells query them, they look at cells.
+Each layer gives an answer of its own in training; the last one is that of the network.
 
 What differs from the paper: the instance queries are learned vectors with learned places in the
-picture, where the paper takes queries, places and maps of a MaskDINO that was trained on COCO, with
+image, where the paper takes queries, places and maps of a MaskDINO that was trained on COCO, with
 its ResNet-50; maps are at 1/4, 1/8 and 1/16 of our own backbone. Depth that is not given comes
 from a depth branch like ISO's. Attention of the grid is of three axes; the published code folds z
-into x and uses a kernel of two. Any number of pictures may be in a batch.
+into x and uses a kernel of two. Any number of images may be in a batch.
 """
 
 from collections.abc import Sequence
@@ -20,14 +20,18 @@ from torch import Tensor, nn
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.networks.batch import OccInput, OccOutput
 from world2minecraft.networks.layers.attention import (
-    AfterAttention,
-    Attention,
     DeformableAttention,
+    FeedForward,
+    MultiHeadAttention,
 )
 from world2minecraft.networks.layers.backbones import NORMS, make_backbone
 from world2minecraft.networks.layers.depth_bins import DepthBranch, known_depth
-from world2minecraft.networks.layers.projection import cell_centers_m, sight_of, turned
-from world2minecraft.networks.layers.residual_3d import Double, Reaches
+from world2minecraft.networks.layers.projection import (
+    cell_centers_m,
+    project_cells,
+    transform_points,
+)
+from world2minecraft.networks.layers.residual_3d import ASPP, Upsample3d
 
 SCALES = (4, 8, 16)
 DEPTH_SCALE = 4
@@ -65,14 +69,14 @@ class SymphonyLayer(nn.Module):
     def __init__(self, channels: int, heads: int, levels: int, points: int, *, again: bool):
         super().__init__()
         self.look = DeformableAttention(channels, heads, levels, points, 2)
-        self.ask = Attention(channels, heads)
+        self.ask = MultiHeadAttention(channels, heads)
         self.spread = DeformableAttention(channels, heads, 1, 2 * points, 3)
-        self.after = nn.ModuleList(AfterAttention(channels, widening) for widening in (2, 4, 4))
+        self.after = nn.ModuleList(FeedForward(channels, widening) for widening in (2, 4, 4))
         self.again = again
         if again:
             self.read = DeformableAttention(channels, heads, 1, 2 * points, 3)
-            self.agree = Attention(channels, heads)
-            self.after_again = nn.ModuleList(AfterAttention(channels, 2) for _ in range(2))
+            self.agree = MultiHeadAttention(channels, heads)
+            self.after_again = nn.ModuleList(FeedForward(channels, 2) for _ in range(2))
 
     def forward(self, cells: Tensor, queries: Tensor, stage: Stage) -> tuple[Tensor, Tensor]:
         """Return cells [B, N, C] and queries [B, Q, C]; cells out of view stay as they are."""
@@ -81,26 +85,24 @@ class SymphonyLayer(nn.Module):
         marked = queries + stage.query_mark
         found = self.ask(cells + stage.cell_mark, marked, queries)
         told = self.after[1](cells, found)
-        grid = as_grid(torch.where(stage.in_view[..., None], told, cells), stage.shape)
+        grid = to_grid(torch.where(stage.in_view[..., None], told, cells), stage.shape)
         found = self.spread(told + stage.cell_mark, stage.cell_place, [grid])
         cells = torch.where(stage.in_view[..., None], self.after[2](told, found), cells)
         if not self.again:
             return cells, queries
-        found = self.read(marked, stage.query_cell, [as_grid(cells, stage.shape)])
+        found = self.read(marked, stage.query_cell, [to_grid(cells, stage.shape)])
         queries = self.after_again[0](queries, found)
         marked = queries + stage.query_mark
         return cells, self.after_again[1](queries, self.agree(marked, marked, queries))
 
 
-def as_grid(cells: Tensor, shape: tuple[int, int, int]) -> Tensor:
+def to_grid(cells: Tensor, shape: tuple[int, int, int]) -> Tensor:
     """Return [B, C, X, Y, Z] of cells [B, N, C]."""
     return cells.transpose(1, 2).unflatten(2, shape)
 
 
-
-
 @dataclass(frozen=True)
-class Choice:
+class SizeConfig:
     """What a size decides."""
 
     channels: int
@@ -112,10 +114,10 @@ class Choice:
     picture: str  # of ``WIDTHS``
 
 
-CHOICES = {
-    "tiny": Choice(24, 2, 16, 2, 12, 32, "tiny"),
-    "small": Choice(64, 4, 64, 4, 64, 64, "small"),
-    "full": Choice(128, 8, 300, 4, 256, 64, "lean"),
+SIZE_CONFIGS = {
+    "tiny": SizeConfig(24, 2, 16, 2, 12, 32, "tiny"),
+    "small": SizeConfig(64, 4, 64, 4, 64, 64, "small"),
+    "full": SizeConfig(128, 8, 300, 4, 256, 64, "lean"),
 }
 
 
@@ -130,7 +132,7 @@ class Symphonies(nn.Module):
         backbone: str | None = None,
     ):
         super().__init__()
-        chosen, norm = CHOICES[size], NORMS[size]
+        chosen, norm = SIZE_CONFIGS[size], NORMS[size]
         channels = chosen.channels
         self.shape = (-(-grid_shape[0] // 2), -(-grid_shape[1] // 2), -(-grid_shape[2] // 2))
         self.picture = make_backbone(backbone, chosen.picture, channels, SCALES)
@@ -143,13 +145,13 @@ class Symphonies(nn.Module):
         self.query_places = nn.Parameter(torch.randn(chosen.queries, 2))  # Before a sigmoid.
         levels = len(SCALES)
         self.propose = DeformableAttention(channels, chosen.heads, levels, chosen.points, 2)
-        self.proposed = AfterAttention(channels)
+        self.proposed = FeedForward(channels)
         self.layers = nn.ModuleList(
             SymphonyLayer(channels, chosen.heads, levels, chosen.points, again=n < LAYERS - 1)
             for n in range(LAYERS)
         )
-        self.reaches = Reaches(channels, norm, (1, 2))
-        self.up = Double(channels, channels, norm)
+        self.reaches = ASPP(channels, norm, (1, 2))
+        self.up = Upsample3d(channels, channels, norm)
         self.classes = nn.Conv3d(channels, CLASS_COUNT, 1)
 
     def forward(self, inputs: OccInput) -> OccOutput:
@@ -160,7 +162,7 @@ class Symphonies(nn.Module):
         halved = OccInput(
             inputs.image, inputs.intrinsics, inputs.camera_to_grid, self.shape, 2 * inputs.voxel_m
         )
-        sight = sight_of(halved)
+        sight = project_cells(halved)
         stage = self._stage(halved, list(maps.values()), depth_m, sight.inside)
         pixel = (sight.pixels / torch.tensor(sight.size_px[::-1]).to(sight.pixels)).flip(-1)
         cells = self._proposed(stage, pixel.clamp(-1, 2), self._hit(halved, depth_m))
@@ -170,7 +172,7 @@ class Symphonies(nn.Module):
             cells, queries = layer(cells, queries, stage)
             last = number == len(self.layers) - 1
             if self.training or last:
-                answers.append(self._answer(as_grid(cells, self.shape), inputs.grid_shape, last))
+                answers.append(self._answer(to_grid(cells, self.shape), inputs.grid_shape, last))
         return OccOutput(answers[-1], tuple(answers[:-1]), depth_logits=depth_logits)
 
     def _answer(self, grid: Tensor, shape: tuple[int, int, int], last: bool) -> Tensor:
@@ -242,4 +244,4 @@ def _points_m(inputs: OccInput, depth_m: Tensor, pixel: Tensor) -> Tensor:
     down = (pixel[..., 0] * inputs.image.shape[-2] - lens[:, None, 1, 2]) / lens[:, None, 1, 1]
     in_camera = torch.stack([across, down, torch.ones_like(down)], dim=-1) * depth[..., None]
     turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
-    return turned(in_camera, turn) + place[:, None]
+    return transform_points(in_camera, turn) + place[:, None]

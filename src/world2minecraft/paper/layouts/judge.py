@@ -24,12 +24,12 @@ from world2minecraft.external_models.structured_replies import (
     ask_structured,
     extract_json_object,
 )
-from world2minecraft.rendering.light_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.output.images import colour_bytes
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
 from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
 from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
 

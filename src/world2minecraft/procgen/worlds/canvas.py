@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.finishing import settle
+from world2minecraft.construction.finishing import apply_block_updates
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
@@ -56,7 +56,7 @@ class WorldCanvas(Canvas):
 
     def settle(self) -> int:
         """Connect what joins, and take away what would not stay; return how many blocks went."""
-        taken = settle(self)
+        taken = apply_block_updates(self)
         self.design[self.states == 0] = 0
         return taken
 

@@ -1,6 +1,6 @@
 """Stage 3: the evidence of all views becomes one map of the room.
 
-``fuse_views`` accumulates and settles what is solid, ``read_out`` says what each cell is, and
+``fuse_views`` accumulates and settles what is solid, ``extract_grid`` says what each cell is, and
 ``clean`` takes floaters away and closes holes. This stands in place of the paper's F_embodied (a
 memory of Gaussians). ``calibrate`` says of each labelled cell how surely it is right.
 """
@@ -20,7 +20,7 @@ from world2minecraft.reconstruction.fusion.confidence import (
     calibrate,
     confidence_table,
 )
-from world2minecraft.reconstruction.fusion.extract_grid import read_out
+from world2minecraft.reconstruction.fusion.extract_grid import extract_grid
 
 __all__ = [
     "CleanParameters",
@@ -31,6 +31,6 @@ __all__ = [
     "close_structure",
     "confidence_table",
     "fuse_views",
-    "read_out",
+    "extract_grid",
     "remove_floaters",
 ]

@@ -1,10 +1,10 @@
-"""Evidence in, one view after the other; at any time the map is there.
+"""Accumulate the evidence of views, one after the other, in a map that can be read at any time.
 
 In: PointEvidence or GridEvidence in the scan's frame. Out: FusedEvidence in the room frame. The
 map grows with what is seen, so that a capture is read once and nothing must be known of its size.
 A cell holds log-odds of being occupied: a view that sees a surface in it adds ``hit_log_odds``, a
 ray that crosses it adds ``free_log_odds``; what no ray reached stays 0, unknown. Where surfaces
-were met, their planes are kept too, and ``settle`` decides by them what is solid.
+were met, their planes are kept too, and ``decide_surface`` decides by them what is solid.
 """
 
 import math
@@ -17,12 +17,13 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.fusion.integration import (
+    ViewRules,
     add_colours,
     add_hits,
     add_labels,
     add_votes,
+    carve_free_space,
     face_normals,
-    free_rays,
     number_cells,
     places_of,
     sum_cells,
@@ -30,7 +31,11 @@ from world2minecraft.reconstruction.fusion.integration import (
 )
 from world2minecraft.reconstruction.fusion.network_grids import grid_gains
 from world2minecraft.reconstruction.fusion.parameters import FuseParameters
-from world2minecraft.reconstruction.fusion.surface_decision import inherit, settle
+from world2minecraft.reconstruction.fusion.surface_decision import (
+    SurfaceRules,
+    decide_surface,
+    move_sums,
+)
 from world2minecraft.reconstruction.fusion.voxel_blocks import BLOCK_CELLS, MAX_DENSE, SIDE, Blocks
 
 REACH_CELLS = 2  # A nudged point may leave its cell by one.
@@ -70,8 +75,10 @@ class EvidenceMap:
             array[: int(blocks.used[1]) + 1].copy()
             for array in (blocks.votes, blocks.colour_sum, blocks.offset_sum, blocks.hits)
         ]
-        log_odds, heir = settle(log_odds, record, blocks.faces, values.voxel_m, self._settle_rules)
-        inherit(record, heir, values.voxel_m, *sums)
+        log_odds, heir = decide_surface(
+            log_odds, record, blocks.faces, values.voxel_m, self._surface_rules
+        )
+        move_sums(record, heir, values.voxel_m, *sums)
         seen = np.argwhere(log_odds != 0)
         if not len(seen):
             raise CaptureError(
@@ -137,35 +144,27 @@ class EvidenceMap:
         )
         given = _NO_NORMALS if evidence.normals is None else evidence.normals
         normals = face_normals(points, given, camera, self.scan_to_room[:3, :3])
-        where = (blocks.low, blocks.table, blocks.used)
         nudge = self.parameters.nudge_m / voxel_m
         owner, cells, places = number_cells(
-            points, normals, nudge, *where, blocks.mark, self._base
-        )  # fmt: skip
-        trust = _NO_TRUST if evidence.trust is None else evidence.trust
-        count, area, target, faces, sure = sum_cells(
-            points, normals, evidence.weight, trust, camera, owner, cells, voxel_m
+            points, normals, nudge, blocks.by_cell, blocks.mark, self._base
         )
+        trust = _NO_TRUST if evidence.trust is None else evidence.trust
+        sums = sum_cells(points, normals, evidence.weight, trust, camera, owner, cells, voxel_m)
         blocks.reserve_records(len(cells))
-        taken = add_hits(
-            places, count, area, faces, sure, rules, blocks.log_odds, blocks.record, blocks.used,
-            blocks.hits, blocks.offset_sum, blocks.faces,
-        )  # fmt: skip
-        self._add_attributes(evidence, owner, taken, places)
-        free_rays(
-            camera, target, count, sure, rules, *where, blocks.log_odds, blocks.mark, self._base
-        )  # fmt: skip
+        taken = add_hits(places, sums, rules, blocks.used, blocks.cells, blocks.records)
+        self._add_attributes(evidence, np.where(taken, blocks.record[places], 0)[owner])
+        carve_free_space(camera, sums, rules, blocks.by_cell, blocks.cells, self._base)
         self._base += len(cells) + 1
 
-    def _add_attributes(self, evidence: PointEvidence, owner, taken, places) -> None:
+    def _add_attributes(self, evidence: PointEvidence, rows: np.ndarray) -> None:
+        """Add colours and votes of points to their records, int32 [N], 0 for none."""
         blocks = self.blocks
-        at = (owner, taken, places, blocks.record)
         if evidence.colour is not None:
-            add_colours(evidence.colour, *at, blocks.colour_sum)
+            add_colours(evidence.colour, rows, blocks.colour_sum)
         if evidence.labels is not None:
-            add_labels(evidence.labels, *at, blocks.votes)
+            add_labels(evidence.labels, rows, blocks.votes)
         if evidence.votes is not None:
-            add_votes(evidence.votes.astype(np.float32), *at, blocks.votes)
+            add_votes(evidence.votes.astype(np.float32), rows, blocks.votes)
 
     def _add_grid(self, evidence: GridEvidence) -> None:
         found = grid_gains(evidence, self.scan_to_room, self.parameters)
@@ -174,46 +173,47 @@ class EvidenceMap:
         blocks = self.blocks
         low, high = found.cells.min(axis=0), found.cells.max(axis=0) + 1
         blocks.reserve_box(low, high, self.parameters.voxel_m)
-        at = places_of(found.cells, blocks.low, blocks.table, blocks.used)
+        at = places_of(found.cells, blocks.by_cell)
         blocks.log_odds[at] += found.gains
-        said = found.votes.any(axis=1)
-        at = at[said]
+        voted = found.votes.any(axis=1)
+        at = at[voted]
         blocks.reserve_records(len(at))
         fresh = at[blocks.record[at] == 0]
         blocks.record[fresh] = blocks.used[1] + 1 + np.arange(len(fresh), dtype=np.int32)
         blocks.used[1] += len(fresh)
         record = blocks.record[at]
-        blocks.votes[record] += found.votes[said]
-        blocks.colour_sum[record] += found.colour[said]
-        blocks.hits[record] += found.coloured[said]
+        blocks.votes[record] += found.votes[voted]
+        blocks.colour_sum[record] += found.colour[voted]
+        blocks.hits[record] += found.coloured[voted]
 
     @property
-    def _rules(self) -> np.ndarray:
+    def _rules(self) -> ViewRules:
         """What the kernels of a view need: lengths along rays in cells, the rest in metres."""
         values = self.parameters
         face_m2 = values.voxel_m**2
-        return np.array(
-            [
-                values.hit_log_odds,
-                values.free_log_odds,
-                values.limit_log_odds,
-                values.min_share * face_m2,
-                values.min_points,
-                face_m2,
-                values.sigma_m,
-                values.sigma_growth,
-                values.pose_m,
-                values.pose_growth,
-                values.clear_m / values.voxel_m,
-                values.clear_growth,
-            ]
+        return ViewRules(
+            hit_log_odds=float(values.hit_log_odds),
+            free_log_odds=float(values.free_log_odds),
+            limit_log_odds=float(values.limit_log_odds),
+            min_area_m2=values.min_share * face_m2,
+            min_points=int(values.min_points),
+            face_m2=face_m2,
+            sigma_m=float(values.sigma_m),
+            sigma_growth=float(values.sigma_growth),
+            pose_m=float(values.pose_m),
+            pose_growth=float(values.pose_growth),
+            clear_cells=values.clear_m / values.voxel_m,
+            clear_growth=float(values.clear_growth),
         )
 
     @property
-    def _settle_rules(self) -> np.ndarray:
+    def _surface_rules(self) -> SurfaceRules:
+        """What decides which cells are solid."""
         values = self.parameters
         least = min(max(math.ceil(values.solid_share * ALL_SUB_CELLS - 1e-9), 1), ALL_SUB_CELLS)
-        return np.array([least, values.merge_m, values.merge_sigmas, values.sure_m])
+        return SurfaceRules(
+            least, float(values.merge_m), float(values.merge_sigmas), float(values.sure_m)
+        )
 
 
 def fuse_views(

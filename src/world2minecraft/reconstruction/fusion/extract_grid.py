@@ -6,7 +6,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OBSERVED, UNSEEN, FusedEvidence, OccupancyGrid
 
 
-def read_out(evidence: FusedEvidence) -> OccupancyGrid:
+def extract_grid(evidence: FusedEvidence) -> OccupancyGrid:
     """Return the grid that the evidence stands for, not yet cleaned or labelled.
 
     A cell is occupied where its log-odds are above 0, free where below, unknown where 0. An

@@ -1,4 +1,4 @@
-"""The inner loops of fusion: the points of one view into cells.
+"""Kernels that integrate one view: its points into cells, its rays into free space.
 
 Everything is in cell units of the room: a point at 3.7 lies in cell 3, wherever the map begins, so
 that a map that has grown holds the same bits as one that was large from the start. ``mark`` of a
@@ -6,6 +6,8 @@ cell is ``base`` where a ray of this view crossed it, ``base + 1 + n`` where it 
 which this view met a surface, and less where neither. The plain reading of the kernels is in the
 tests, which hold them against it.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,7 +18,39 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import (
     FACES,
     MASK,
     SHIFT,
+    BlockTable,
+    CellArrays,
+    RecordArrays,
 )
+
+
+class ViewRules(NamedTuple):
+    """What decides how a view is integrated; see ``FuseParameters``."""
+
+    hit_log_odds: float
+    free_log_odds: float
+    limit_log_odds: float
+    min_area_m2: float  # What a view must see of a cell,
+    min_points: int  # and by how many points.
+    face_m2: float
+    sigma_m: float
+    sigma_growth: float
+    pose_m: float
+    pose_growth: float
+    clear_cells: float  # Rays stop so far before their point, in cells,
+    clear_growth: float  # and so much farther a cell of distance.
+
+
+class CellSums(NamedTuple):
+    """The sums over the points of one view in each of the M cells where it met a surface."""
+
+    hits: np.ndarray  # int64 [M], points
+    area: np.ndarray  # float64 [M], square metres
+    target: np.ndarray  # float64 [M, 3], of points
+    # For each side that points face: their count, sums of their offsets from the cell's centre in
+    # metres, of normals and of distances in metres.
+    faces: np.ndarray  # float64 [M, 6, 8]
+    trust: np.ndarray  # float64 [M], the mean trust of the points, 1 where none is given
 
 
 @njit
@@ -37,24 +71,25 @@ def to_cells(points_m, scan_to_cells):
 
 
 @njit
-def place_of(i, j, k, low, table, used):
+def place_of(i, j, k, blocks: BlockTable):
     """Return where cell (i, j, k) of the room lies in the flat arrays; its block is made."""
+    low = blocks.low
     a, b, c = (i >> SHIFT) - low[0], (j >> SHIFT) - low[1], (k >> SHIFT) - low[2]
-    block = table[a, b, c]
+    block = blocks.numbers[a, b, c]
     if block == 0:
-        used[0] += 1
-        block = used[0]
-        table[a, b, c] = block
+        blocks.used[0] += 1
+        block = blocks.used[0]
+        blocks.numbers[a, b, c] = block
     inner = ((i & MASK) << SHIFT | (j & MASK)) << SHIFT | (k & MASK)
     return block * BLOCK_CELLS + inner
 
 
 @njit
-def places_of(cells, low, table, used):
+def places_of(cells, blocks: BlockTable):
     """Return int64 [N]: where cells int64 [N, 3] lie in the flat arrays."""
     places = np.empty(len(cells), np.int64)
     for n in range(len(cells)):
-        places[n] = place_of(cells[n, 0], cells[n, 1], cells[n, 2], low, table, used)
+        places[n] = place_of(cells[n, 0], cells[n, 1], cells[n, 2], blocks)
     return places
 
 
@@ -80,16 +115,14 @@ def face_normals(points, normals, camera, turn):
 
 
 @njit
-def number_cells(points, normals, nudge, low, table, used, mark, base):
+def number_cells(points, normals, nudge, blocks: BlockTable, mark, base):
     """Number the cells in which a view met a surface.
 
     Args:
         points: float32 [N, 3] in cells of the room.
         normals: float32 [N, 3], towards the camera.
         nudge: how far behind its point the matter lies, in cells.
-        low: int64 [3], the first block of the table.
-        table: int32 [X, Y, Z], the numbers of the blocks.
-        used: int64 [2], blocks and records in use.
+        blocks: where cells lie.
         mark: int64 [C]; see the module's text.
         base: the view's number in ``mark``.
 
@@ -107,7 +140,7 @@ def number_cells(points, normals, nudge, low, table, used, mark, base):
         k = int(np.floor(points[n, 2] - normals[n, 2] * nudge))
         # Neighbouring pixels mostly lie in one cell.
         if last < 0 or cells[last, 0] != i or cells[last, 1] != j or cells[last, 2] != k:
-            place = place_of(i, j, k, low, table, used)
+            place = place_of(i, j, k, blocks)
             if mark[place] <= base:
                 mark[place] = base + 1 + count
                 cells[count] = i, j, k
@@ -120,13 +153,17 @@ def number_cells(points, normals, nudge, low, table, used, mark, base):
 
 @njit
 def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
-    """Sum up the points of each cell.
+    """Return the ``CellSums`` of a view.
 
-    Returns:
-        ``count`` int64 [M]; ``area`` float64 [M], square metres; ``target`` float64 [M, 3], sums
-        of points; ``faces`` float64 [M, 6, 8]: for each side that points face, their count, sums
-        of their offsets from the cell's centre in metres, of normals and of distances in metres;
-        ``sure`` float64 [M], the mean trust of the points, which is 1 where ``trust`` is empty.
+    Args:
+        points: float32 [N, 3] in cells of the room.
+        normals: float32 [N, 3], towards the camera.
+        weight: float32 [N], the area that each point stands for.
+        trust: float32 [N], or empty.
+        camera: float64 [3] in cells of the room.
+        owner: int32 [N] of ``number_cells``, as are the cells.
+        cells: int64 [M, 3].
+        voxel_m: the cell.
     """
     count = np.zeros(len(cells), np.int64)
     sure = np.zeros(len(cells), np.float64)
@@ -153,132 +190,115 @@ def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
         face[7] += np.sqrt(square) * voxel_m
     for s in range(len(cells)):
         sure[s] /= max(count[s], 1)
-    return count, area, target, faces, sure
+    return CellSums(count, area, target, faces, sure)
 
 
 @njit
 def add_hits(
-    places, count, area, faces, sure, rules, log_odds, record, used, hits, offset_sum, sides
-):  # fmt: skip
+    places, sums: CellSums, rules: ViewRules, used, cells: CellArrays, records: RecordArrays
+):
     """Raise the cells that a view saw enough of; return which, bool [M].
 
     Each face of such a cell adds one measurement of its plane, weighed by one over its variance:
     that of the pose as seen at its distance, and of the mean of its points. Both count by trust.
 
     Args:
-        places: int64 [M], as are the results of ``sum_cells`` that follow.
-        count: int64 [M].
-        area: float64 [M].
-        faces: float64 [M, 6, 8].
-        sure: float64 [M].
-        rules: float64; see ``EvidenceMap``.
-        log_odds: float32 [C], as is ``record`` int32.
-        record: int32 [C].
-        used: int64 [2].
-        hits: int64 [R], the records, as are the next two.
-        offset_sum: float32 [R, 3].
-        sides: float32 [R, 6, 8].
+        places: int64 [M], where the cells lie.
+        sums: what the view saw in them.
+        rules: what is enough, and how sure it is.
+        used: int64 [2], blocks and records in use; new records are counted up.
+        cells: changed in place.
+        records: changed in place.
     """
-    hit, limit, least_m2, least, face_m2 = rules[0], rules[2], rules[3], rules[4], rules[5]
-    sigma_m, growth, pose_m, pose_growth = rules[6], rules[7], rules[8], rules[9]
+    count, area, faces, trust = sums.hits, sums.area, sums.faces, sums.trust
+    log_odds, record = cells.log_odds, cells.record
     taken = np.zeros(len(places), np.bool_)
     for s in range(len(places)):
-        if count[s] < least or area[s] < least_m2:
+        if count[s] < rules.min_points or area[s] < rules.min_area_m2:
             continue
         taken[s] = True
         place = places[s]
-        log_odds[place] = min(limit, log_odds[place] + hit * sure[s])
+        log_odds[place] = min(rules.limit_log_odds, log_odds[place] + rules.hit_log_odds * trust[s])
         if record[place] == 0:
             used[1] += 1
             record[place] = used[1]
         row = record[place]
-        hits[row] += count[s]
+        records.hits[row] += count[s]
         for f in range(FACES):
             points = faces[s, f, 0]
             if points == 0:
                 continue
             for axis in range(3):
-                offset_sum[row, axis] += faces[s, f, 1 + axis]
+                records.offset_sum[row, axis] += faces[s, f, 1 + axis]
             z = faces[s, f, 7] / points
-            sigma = sigma_m + growth * (z - 0.4) ** 2
-            pose = pose_m + pose_growth * z
-            share = min(area[s] * points / count[s] / face_m2, 1.0)
-            w = sure[s] * share / (pose * pose + sigma * sigma / points)
-            sides[row, f, 0] += w
+            sigma = rules.sigma_m + rules.sigma_growth * (z - 0.4) ** 2
+            pose = rules.pose_m + rules.pose_growth * z
+            share = min(area[s] * points / count[s] / rules.face_m2, 1.0)
+            w = trust[s] * share / (pose * pose + sigma * sigma / points)
+            records.faces[row, f, 0] += w
             for m in range(1, 7):
-                sides[row, f, m] += w * faces[s, f, m] / points
-            sides[row, f, 7] += w * sigma
+                records.faces[row, f, m] += w * faces[s, f, m] / points
+            records.faces[row, f, 7] += w * sigma
     return taken
 
 
 @njit
-def add_colours(colour, owner, taken, places, record, colour_sum):
-    """Add the colours uint8 [N, 3] of the points whose cells were taken."""
+def add_colours(colour, rows, colour_sum):
+    """Add the colours uint8 [N, 3] of points to their records, int32 [N], 0 for none."""
     for n in range(len(colour)):
-        if taken[owner[n]]:
-            row = record[places[owner[n]]]
+        if rows[n] > 0:
             for channel in range(3):
-                colour_sum[row, channel] += colour[n, channel]
+                colour_sum[rows[n], channel] += colour[n, channel]
 
 
 @njit
-def add_labels(labels, owner, taken, places, record, votes):
+def add_labels(labels, rows, votes):
     """Add one vote for each point's label, uint8 [N]; 0 and what is no class vote for nothing."""
     for n in range(len(labels)):
-        if taken[owner[n]] and 0 < labels[n] < votes.shape[1]:
-            votes[record[places[owner[n]]], labels[n]] += 1
+        if rows[n] > 0 and 0 < labels[n] < votes.shape[1]:
+            votes[rows[n], labels[n]] += 1
 
 
 @njit
-def add_votes(shares, owner, taken, places, record, votes):
-    """Add the votes float32 [N, 12] of the points whose cells were taken."""
+def add_votes(shares, rows, votes):
+    """Add the votes float32 [N, 12] of points to their records, int32 [N], 0 for none."""
     for n in range(len(shares)):
-        if taken[owner[n]]:
-            row = record[places[owner[n]]]
+        if rows[n] > 0:
             for label in range(shares.shape[1]):
-                votes[row, label] += shares[n, label]
-
-
-# The free space of a view: every cell that its rays cross before they meet a surface.
+                votes[rows[n], label] += shares[n, label]
 
 
 @njit
-def free_rays(camera, target, count, sure, rules, low, table, used, log_odds, mark, base):
-    """Lower the log-odds of each cell crossed, once a view.
+def carve_free_space(
+    camera, sums: CellSums, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base
+):
+    """Lower the log-odds of each cell that rays cross before they meet a surface, once a view.
 
     One ray goes to the mean point of each cell with enough points that are trusted by half.
 
     Args:
         camera: float64 [3] in cells of the room.
-        target: float64 [M, 3], sums of points.
-        count: int64 [M], how many points.
-        sure: float64 [M], their mean trust.
-        rules: float64; see ``EvidenceMap``.
-        low: int64 [3], the first block of the table.
-        table: int32 [X, Y, Z], the numbers of the blocks.
-        used: int64 [2], blocks and records in use.
-        log_odds: float32 [C].
-        mark: int64 [C]; see kernels.py.
+        sums: what the view saw in cells.
+        rules: how much a ray lowers, and where it stops.
+        blocks: where cells lie.
+        cells: changed in place.
         base: the view's number in ``mark``.
     """
-    for s in range(len(target)):
-        if count[s] >= rules[4] and sure[s] >= 0.5:
-            _free_ray(
-                camera, target[s] / count[s], rules, low, table, used, log_odds, mark, base
-            )  # fmt: skip
+    for s in range(len(sums.hits)):
+        if sums.hits[s] >= rules.min_points and sums.trust[s] >= 0.5:
+            _carve_ray(camera, sums.target[s] / sums.hits[s], rules, blocks, cells, base)
 
 
 @njit
-def _free_ray(camera, target, rules, low, table, used, log_odds, mark, base):
+def _carve_ray(camera, target, rules: ViewRules, blocks: BlockTable, cells: CellArrays, base):
     """Walk from the camera to a surface point.
 
     A cell counts as crossed where the middle of the ray's way through it lies nearer than the
     clearance before the point. Cells that the view saw a surface in are left alone.
     """
-    free, limit = rules[1], rules[2]
     way = target - camera
     length = np.sqrt((way * way).sum())
-    end = length - rules[10] - rules[11] * length
+    end = length - rules.clear_cells - rules.clear_growth * length
     if end <= 0:
         return
     way /= length
@@ -295,10 +315,12 @@ def _free_ray(camera, target, rules, low, table, used, log_odds, mark, base):
         axis = 0 if at[0] <= at[1] and at[0] <= at[2] else (1 if at[1] <= at[2] else 2)
         leave = at[axis]
         if (entry + leave) / 2 < end:
-            place = place_of(cell[0], cell[1], cell[2], low, table, used)
-            if mark[place] < base:
-                log_odds[place] = max(-limit, log_odds[place] + free)
-                mark[place] = base
+            place = place_of(cell[0], cell[1], cell[2], blocks)
+            if cells.mark[place] < base:
+                cells.log_odds[place] = max(
+                    -rules.limit_log_odds, cells.log_odds[place] + rules.free_log_odds
+                )
+                cells.mark[place] = base
         cell[axis] += step[axis]
         at[axis] += gap[axis]
         entry = leave

@@ -1,4 +1,4 @@
-"""Which cells the surface leaves solid: the read-out of the map by the rule that truth is made by.
+"""Decide which cells the surface leaves solid, by the rule that truth is made by.
 
 Noise spreads the points of one surface over two or three cells along its normal. So the planes of
 a cell and of its neighbours along the axis that they face are joined where they may be one
@@ -8,6 +8,7 @@ them, with the plane in the cell before it, and the points were spill to the bac
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +22,17 @@ SPILL_MORE, SPILL_MOST = 0.05, 0.2
 SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
 
 
+class SurfaceRules(NamedTuple):
+    """What decides whether a cell is solid; see ``FuseParameters``."""
+
+    min_sub_cells: int  # Sub-cells behind its surface that make a cell solid.
+    merge_m: float  # Planes are one nearer than this distance
+    merge_sigmas: float  # and so many sigmas.
+    sure_m: float  # The metres of margin that give one log-odd.
+
+
 @njit
-def settle(log_odds, record, faces, voxel_m, rules):
+def decide_surface(log_odds, record, faces, voxel_m, rules: SurfaceRules):
     """Decide every cell that holds a record, by its planes.
 
     Args:
@@ -30,14 +40,13 @@ def settle(log_odds, record, faces, voxel_m, rules):
         record: int32 [X, Y, Z], 0 where no surface was met.
         faces: float32 [R, 6, 8].
         voxel_m: the cell.
-        rules: float64 [4]: sub-cells that make a cell solid, distance and sigmas within which
-            planes are one, and the metres of margin that give one log-odd.
+        rules: what is solid, and how sure that is.
 
     Returns:
-        ``settled`` float32 [X, Y, Z], log-odds of the decision; ``heir`` int32 [X, Y, Z], the
+        ``decided`` float32 [X, Y, Z], log-odds of the decision; ``heir`` int32 [X, Y, Z], the
         record that takes over what was summed in each cell's own: of its neighbour for spill.
     """
-    settled = log_odds.copy()
+    decided = log_odds.copy()
     heir = record.copy()
     verdict = np.zeros(log_odds.shape, np.uint8)
     facing = np.zeros(log_odds.shape, np.int8)
@@ -47,38 +56,38 @@ def settle(log_odds, record, faces, voxel_m, rules):
             for k in range(size[2]):
                 if record[i, j, k] == 0 or log_odds[i, j, k] <= 0:
                     continue
-                said, margin_m, face = _judge(i, j, k, record, faces, voxel_m, rules)
-                verdict[i, j, k], facing[i, j, k] = said, face
-                if said == SOLID:
-                    settled[i, j, k] = min(log_odds[i, j, k], margin_m / rules[3])
-                elif said == SPILL_BEFORE:
-                    settled[i, j, k] = max(-log_odds[i, j, k], margin_m / rules[3])
-                elif said == SPILL_BEHIND:
-                    settled[i, j, k] = 0
+                decision, margin_m, face = _decide_cell(i, j, k, record, faces, voxel_m, rules)
+                verdict[i, j, k], facing[i, j, k] = decision, face
+                if decision == SOLID:
+                    decided[i, j, k] = min(log_odds[i, j, k], margin_m / rules.sure_m)
+                elif decision == SPILL_BEFORE:
+                    decided[i, j, k] = max(-log_odds[i, j, k], margin_m / rules.sure_m)
+                elif decision == SPILL_BEHIND:
+                    decided[i, j, k] = 0
     for i in range(size[0]):
         for j in range(size[1]):
             for k in range(size[2]):
                 if verdict[i, j, k] == SPILL_BEFORE or verdict[i, j, k] == SPILL_BEHIND:
                     heir[i, j, k] = _heir(i, j, k, facing[i, j, k], record, verdict)
-    return settled, heir
+    return decided, heir
 
 
 @njit
-def _judge(i, j, k, record, faces, voxel_m, rules):
-    """Return the verdict on a cell, its margin in metres and the face that told it.
+def _decide_cell(i, j, k, record, faces, voxel_m, rules: SurfaceRules):
+    """Return the verdict on a cell, its margin in metres and the face that decided it.
 
     Any face that leaves the cell solid decides; else the weightiest. Without any plane, as from a
     network's grid, there is no verdict (0).
     """
     best, best_face, heaviest = -np.inf, -1, 0.0
-    said, margin_m, face = 0, 0.0, 0
-    plane = np.zeros(7)
+    decision, margin_m, face = 0, 0.0, 0
+    plane = np.zeros(6)
     for f in range(FACES):
         weight = faces[record[i, j, k], f, 0]
         if weight <= 0:
             continue
         _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane)
-        depth, whole = _depth_of_solid(plane, voxel_m, int(rules[0]))
+        depth, whole = _depth_of_solid(plane, voxel_m, rules.min_sub_cells)
         # The same plane leaves the neighbour before this cell solid too, and this one whole.
         before = depth - abs(plane[3 + f // 2]) * voxel_m
         behind = False
@@ -90,10 +99,10 @@ def _judge(i, j, k, record, faces, voxel_m, rules):
             best, best_face = depth, f
         if weight > heaviest:
             heaviest, face, margin_m = weight, f, depth
-            said = SPILL_BEHIND if behind else SPILL_BEFORE
+            decision = SPILL_BEHIND if behind else SPILL_BEFORE
     if best_face >= 0:
         return SOLID, best, best_face
-    return said, margin_m, face
+    return decision, margin_m, face
 
 
 @njit
@@ -123,8 +132,8 @@ def _weight_before(i, j, k, f, record, faces):
 
 
 @njit
-def _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane):
-    """Fill ``plane`` with a point (metres from the cell's centre) and unit normal of a face.
+def _joined_plane(i, j, k, f, record, faces, voxel_m, rules: SurfaceRules, plane):
+    """Fill ``plane``, float64 [6], with a point (metres from the cell's centre) and a unit normal.
 
     Neighbours along the face's axis join in by their weight where they may be of one surface.
     """
@@ -155,7 +164,7 @@ def _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane):
             apart += (other[1 + m] / other[0] + shift - own[1 + m] / own[0]) * normal
             length += normal * normal
         sigma = max(own[7] / own[0], other[7] / other[0])
-        if abs(apart) < (rules[1] + rules[2] * sigma) * np.sqrt(length):
+        if abs(apart) < (rules.merge_m + rules.merge_sigmas * sigma) * np.sqrt(length):
             weight += other[0]
             for m in range(6):
                 plane[m] += other[1 + m]
@@ -213,12 +222,12 @@ def _heir(i, j, k, face, record, verdict):
 
 
 @njit
-def inherit(record, heir, voxel_m, votes, colour_sum, offset_sum, hits):
+def move_sums(record, heir, voxel_m, votes, colour_sum, offset_sum, hits):
     """Hand what was summed in cells of spill to their heirs, in place.
 
     Args:
         record: int32 [X, Y, Z].
-        heir: int32 [X, Y, Z] from ``settle``.
+        heir: int32 [X, Y, Z] from ``decide_surface``.
         voxel_m: the cell; offsets are carried to the heir's centre.
         votes: float32 [R, 12].
         colour_sum: float32 [R, 3].

@@ -1,10 +1,12 @@
-"""The map's memory: blocks of cells where rays passed, records where surfaces were met.
+"""The storage of the map: blocks of cells where rays passed, records where surfaces were met.
 
 A cell (i, j, k) of the room lies in block (i >> 3, j >> 3, k >> 3). ``table`` gives the number of
 each block, 0 for none; block n holds the cells from ``n * 512`` of the flat cell arrays. A cell in
 which a surface was met has a record: its number stands in ``record``, 0 for none. So memory grows
 with the space that was seen, and the many sums with the surface in it.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +26,32 @@ MAX_TABLE = 16_000_000
 MAX_DENSE = MAX_ARRAY_BYTES // (2 * CLASS_COUNT)
 
 
+class BlockTable(NamedTuple):
+    """Where each cell of the room lies in the flat arrays."""
+
+    low: np.ndarray  # int64 [3], the block at table[0, 0, 0]
+    numbers: np.ndarray  # int32 [X, Y, Z], the number of each block, 0 for none
+    used: np.ndarray  # int64 [2], blocks and records in use
+
+
+class CellArrays(NamedTuple):
+    """The flat arrays of cells."""
+
+    log_odds: np.ndarray  # float32 [C]
+    record: np.ndarray  # int32 [C], 0 for none
+    mark: np.ndarray  # int64 [C], the view that touched a cell last; see integration.py
+
+
+class RecordArrays(NamedTuple):
+    """What was summed in cells where a surface was met; row 0 is unused."""
+
+    votes: np.ndarray  # float32 [R, 12]
+    colour_sum: np.ndarray  # float32 [R, 3]
+    offset_sum: np.ndarray  # float32 [R, 3], metres from the cell's centre
+    hits: np.ndarray  # int64 [R]
+    faces: np.ndarray  # float32 [R, 6, 8]
+
+
 class Blocks:
     """Cells and records that grow. Numbers begin at 1, so that fresh memory means nothing yet."""
 
@@ -33,12 +61,27 @@ class Blocks:
         self.used = np.zeros(2, np.int64)  # Blocks and records in use; kernels count them up.
         self.log_odds = np.zeros(0, np.float32)
         self.record = np.zeros(0, np.int32)
-        self.mark = np.zeros(0, np.int64)  # Which view touched a cell last; see kernels.py.
+        self.mark = np.zeros(0, np.int64)  # Which view touched a cell last; see integration.py.
         self.votes = np.zeros((0, CLASS_COUNT), np.float32)
         self.colour_sum = np.zeros((0, 3), np.float32)
         self.offset_sum = np.zeros((0, 3), np.float32)
         self.hits = np.zeros(0, np.int64)
         self.faces = np.zeros((0, FACES, FACE_SUMS), np.float32)
+
+    @property
+    def by_cell(self) -> BlockTable:
+        """Where cells lie, for kernels; stale once the map has grown."""
+        return BlockTable(self.low, self.table, self.used)
+
+    @property
+    def cells(self) -> CellArrays:
+        """The arrays of cells, for kernels; stale once the map has grown."""
+        return CellArrays(self.log_odds, self.record, self.mark)
+
+    @property
+    def records(self) -> RecordArrays:
+        """The arrays of records, for kernels; stale once the map has grown."""
+        return RecordArrays(self.votes, self.colour_sum, self.offset_sum, self.hits, self.faces)
 
     def reserve_box(self, low: np.ndarray, high: np.ndarray, voxel_m: float) -> None:
         """Make room for all blocks of the cells from ``low`` to ``high`` (past the end).

@@ -16,7 +16,7 @@ from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
 from world2minecraft.capture.stereo import DepthModel, depth_model
-from world2minecraft.capture.validation import JudgedCapture
+from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
@@ -35,7 +35,7 @@ def is_one_photo(source: str) -> bool:
     return source == SOURCE
 
 
-def prepare_photo(judged: JudgedCapture, folder: Path, chosen: Parameters, unit: str) -> None:
+def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, unit: str) -> None:
     """Write one photo as a capture that can be opened.
 
     Raises:
@@ -101,7 +101,7 @@ def _told_depth(model: DepthModel) -> str:
     return f"depth and size of the room are what {model.name} guesses from one photo"
 
 
-def _straight(judged: JudgedCapture) -> tuple[str, np.ndarray, Camera]:
+def _straight(judged: ValidatedCapture) -> tuple[str, np.ndarray, Camera]:
     """Return the photo's name, its picture without distortion, and the camera of that."""
     photo = next(iter(photos_of_capture(judged)), None)
     if photo is None or photo.camera is None:
@@ -113,7 +113,7 @@ def _straight(judged: JudgedCapture) -> tuple[str, np.ndarray, Camera]:
     return photo.name, undistort_image(photo.colour, camera, flat), flat
 
 
-def _with_depth(judged: JudgedCapture, model: DepthModel) -> Iterator[View]:
+def _with_depth(judged: ValidatedCapture, model: DepthModel) -> Iterator[View]:
     name, colour, camera = _straight(judged)
     small = pinhole_camera(camera, min(camera.width_px, DEPTH_WIDE_PX))
     depth_m = model.predict(undistort_image(colour, camera, small), small)
@@ -122,6 +122,6 @@ def _with_depth(judged: JudgedCapture, model: DepthModel) -> Iterator[View]:
     yield View(name, np.eye(4), colour, camera, depth_m, small, trust=trust)
 
 
-def _bare(judged: JudgedCapture, pose: np.ndarray) -> Iterator[View]:
+def _bare(judged: ValidatedCapture, pose: np.ndarray) -> Iterator[View]:
     name, colour, camera = _straight(judged)
     yield View(name, pose, colour, camera)

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header
 from world2minecraft.capture.photo_stream import CapturePhotos
-from world2minecraft.capture.validation import JudgedCapture
+from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
@@ -32,7 +32,9 @@ def stereo_views(
         )
 
 
-def depth_views(judged: JudgedCapture, photos: CapturePhotos, scene: SparseScene) -> Iterator[View]:
+def depth_views(
+    judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
+) -> Iterator[View]:
     """Yield a view for each placed photo that has a sensor's depth."""
     frames = {frame.name: frame for frame in judged.frames}
     for photo, index in _photos_of(photos, scene):

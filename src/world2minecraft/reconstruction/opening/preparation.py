@@ -15,7 +15,7 @@ from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.stereo import depth_maps, depth_model, network_maps
-from world2minecraft.capture.validation import JudgedCapture, judge
+from world2minecraft.capture.validation import ValidatedCapture, validate
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,
@@ -126,7 +126,7 @@ def _made_before(folder: Path, stamp: dict[str, Any]) -> bool:
 
 
 def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progress) -> None:
-    judged = judge(
+    judged = validate(
         found,
         parse_options(chosen.capture),
         None,
@@ -166,7 +166,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     scaled_capture(folder, chosen, lambda name: _size_of(judged, name))
 
 
-def _size_of(judged: JudgedCapture, name: str) -> tuple[int, int]:
+def _size_of(judged: ValidatedCapture, name: str) -> tuple[int, int]:
     """Return the size in pixels of a photo as the user has it."""
     places = {frame.name: frame.colour_path for frame in judged.frames}
     place = places.get(name)
@@ -176,7 +176,7 @@ def _size_of(judged: JudgedCapture, name: str) -> tuple[int, int]:
 
 
 def _with_own_depth(
-    judged: JudgedCapture, photos: CapturePhotos, scene: SparseScene
+    judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
 ) -> tuple[Iterator[View], Told]:
     """The views of a capture whose depth is a sensor's; only its poses were found."""
     scaled, sigma = scaled_by_depth(judged, scene)

@@ -8,8 +8,13 @@ import numpy as np
 
 from world2minecraft.capture.alignment.room_frame import ImplausibleRoomError
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.scale import KnownPoints, collect_unscaled, estimate_scale, parse_known
-from world2minecraft.capture.validation import JudgedCapture, judge_capture, spread_over
+from world2minecraft.capture.scale import (
+    KnownDistance,
+    collect_unscaled,
+    estimate_scale,
+    parse_known_length,
+)
+from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced, validate_capture
 from world2minecraft.capture.view_stream import CaptureViews, read_view, without_colour
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, InputError, UnknownNameError, UsageError
@@ -25,7 +30,7 @@ HANDY_DEPTH = 2.5
 FRAME_SIGMA = 0.02  # What a sensor's depth is off as a whole.
 
 
-def scaled_by_depth(judged: JudgedCapture, scene: SparseScene) -> tuple[SparseScene, float]:
+def scaled_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[SparseScene, float]:
     """Return the scene in the metres of a sensor's depth, and how sure that is, as a share.
 
     Raises:
@@ -34,7 +39,7 @@ def scaled_by_depth(judged: JudgedCapture, scene: SparseScene) -> tuple[SparseSc
     frames = {frame.name: frame for frame in judged.frames}
     indices = [i for i, name in enumerate(scene.names) if frames[name].depth_path is not None]
     ratios, middles = [], []
-    for index in spread_over(indices, LOOKED_AT):
+    for index in evenly_spaced(indices, LOOKED_AT):
         frame = posed_frame(frames[scene.names[index]], scene, index)
         try:
             view = read_view(frame, judged.encoding, judged.capture.full_trust)
@@ -93,14 +98,14 @@ def scaled_capture(
     Raises:
         UsageError: a known length cannot be measured in this capture.
     """
-    judged = judge_capture(folder, ScanOptions())
-    knowns = [] if chosen.known is None else [parse_known(*chosen.known)]
+    judged = validate_capture(folder, ScanOptions())
+    knowns = [] if chosen.known is None else [parse_known_length(*chosen.known)]
     if judged.capture.scale == "metric" and not knowns and chosen.known_points is None:
         return
     stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
     if chosen.known_points is not None:
         knowns.append(clicked(*chosen.known_points, judged, size_of).known(stream.depth_views()))
-    views = list(stream.read(spread_over(without_colour(judged.frames), LOOKED_AT)))
+    views = list(stream.read(evenly_spaced(without_colour(judged.frames), LOOKED_AT)))
     try:
         found = estimate_scale(collect_unscaled(views), knowns)
     except ImplausibleRoomError as error:
@@ -128,9 +133,9 @@ def clicked(
     first: str,
     second: str,
     length_m: float,
-    judged: JudgedCapture,
+    judged: ValidatedCapture,
     size_of: Callable[[str], tuple[int, int]],
-) -> KnownPoints:
+) -> KnownDistance:
     """Return two clicked points, each ``PHOTO:x,y``, and what lies between them.
 
     Raises:
@@ -148,7 +153,7 @@ def clicked(
         return name, (x * camera.width_px / wide, y * camera.height_px / high)
 
     (image_a, point_a), (image_b, point_b) = found(first), found(second)
-    return KnownPoints(image_a, point_a, image_b, point_b, length_m)
+    return KnownDistance(image_a, point_a, image_b, point_b, length_m)
 
 
 def _clicked(text: str) -> tuple[str, tuple[float, float]]:

@@ -20,13 +20,13 @@ from world2minecraft.rendering.batch.arrays import (
 )
 from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import TILE, band_memory, draw_rows
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.thread_pool import bands, run_parallel
 
 LARGE_PX = 200_000  # From here on threads share each picture and not the poses: less scratch.
@@ -67,7 +67,7 @@ def render_batch(
     one. Whatever the number of threads, each picture has the same bytes.
 
     Args:
-        scene: ``prepare_scene`` of a volume, or ``LiveScene.scene``.
+        scene: ``prepare_scene`` of a volume, or ``EditableScene.scene``.
         cameras: one for all poses, or one for each; all of one size.
         poses: ``camera_to_room``, float64 [N, 4, 4].
         outputs: which of ``BATCH_OUTPUTS`` to make; no others are made.

@@ -47,10 +47,10 @@ from world2minecraft.rendering.batch.workers import (
     stop_workers,
 )
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
 # The slots that pictures of a pool come back through, and how poses are cut into tasks.
 
@@ -143,7 +143,7 @@ class RenderPool:
         """Share the scene, compile what is not compiled yet, and start the workers.
 
         Args:
-            scene: ``prepare_scene`` of a volume, or ``LiveScene.scene``.
+            scene: ``prepare_scene`` of a volume, or ``EditableScene.scene``.
             workers: how many processes; as many as there are cores where None.
 
         Raises:

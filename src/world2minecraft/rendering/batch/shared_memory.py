@@ -54,7 +54,7 @@ class SharedArrays:
         self.plan, self._memory, self._owned = plan, memory, owned
 
     @classmethod
-    def create(cls, places: dict[str, ArrayPlace], size: int) -> "Block":
+    def create(cls, places: dict[str, ArrayPlace], size: int) -> "SharedArrays":
         """Make a block.
 
         Raises:
@@ -70,7 +70,7 @@ class SharedArrays:
         return cls(memory, SharedLayout(memory.name, places), owned=True)
 
     @classmethod
-    def join(cls, plan: SharedLayout) -> "Block":
+    def join(cls, plan: SharedLayout) -> "SharedArrays":
         """Open a block that another process has made."""
         return cls(SharedMemory(name=plan.name), plan, owned=False)
 

@@ -16,9 +16,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.rendering.batch.pool import MAX_WORKERS, RenderPool
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.views.cameras import Shot
 
 # Work that overlaps: things are made while those before them are used or written.

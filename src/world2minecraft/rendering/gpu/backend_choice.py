@@ -16,7 +16,6 @@ from world2minecraft.core.types import Camera
 from world2minecraft.rendering.gpu.device import GpuError, find_adapter, info_of
 from world2minecraft.rendering.gpu.renderer import GpuRenderer
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop
 from world2minecraft.rendering.picture import (
     DEFAULT_OUTPUTS,
     Picture,
@@ -24,6 +23,7 @@ from world2minecraft.rendering.picture import (
     render_volume,
 )
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop
 
 DEVICES = ("auto", "cpu", "gpu")
 # On Linux a card shows itself as one of these files; the last is Windows' card within WSL.

@@ -40,7 +40,7 @@ def plan_submissions(
 ) -> SubmissionPlan:
     """Cut pictures so that a submission fits into ``most_bytes``, and one row at least.
 
-    ``pictures`` is how many there are, None where that is not known.
+    ``load_pictures`` is how many there are, None where that is not known.
     """
     height, width = ask.size
     row_words = width * ask.layout.planes
@@ -115,7 +115,7 @@ class BufferSet:
         self._promise = self._back.map_async("READ", 0, self._bytes)
 
     def words(self) -> np.ndarray:
-        """Wait for what was submitted; a view, uint32, that is good until ``release``."""
+        """Wait for what was submitted; a view, uint32, that is good until ``stop_workers``."""
         self._promise.sync_wait()
         return np.frombuffer(self._back.read_mapped(0, self._bytes, copy=False), np.uint32)
 

@@ -34,12 +34,12 @@ from world2minecraft.rendering.gpu.uniforms import (
     view_of,
 )
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, shading_parameters
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import INSTANCE, SEMANTIC
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
 # What the shader wrote becomes the arrays of a picture.
 

@@ -5,7 +5,7 @@ kernel reads, and ``edit_light`` keeps it true where cells change. A ``LightSett
 picture is lit, ``scene_exposure(field, look, eyes)`` how far that is opened up; the look gives the
 kernel
 
-- ``parameters(exposure) -> LitParameters``, floats alone,
+- ``parameters(exposure) -> LightCoefficients``, floats alone,
 - ``background(exposure) -> Background``, the sky,
 - ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
 
@@ -14,7 +14,7 @@ table, ``shade.corner_lights``, in place of the first and third):
 
 - ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
 - ``shade = direction_shade(nx, ny, nz, cosine, params)``
-- ``r, g, b = lit_colour(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
+- ``r, g, b = light_multipliers(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
   texel; ``emission_light(emission, params)`` is the least of them for what shines by itself
 - ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
 - ``tone_map_pixel(r, g, b, tone)``, three uint8
@@ -36,17 +36,17 @@ from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
 
 __all__ = [
     "Background",
-    "LightField",
     "LightCoefficients",
+    "LightField",
     "LightSettings",
     "Tone",
     "background_light",
     "direction_shade",
     "edit_light",
-    "tone_map_pixel",
     "emission_light",
     "lattice_light",
     "light_field",
     "light_multipliers",
     "scene_exposure",
+    "tone_map_pixel",
 ]

@@ -23,7 +23,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def scene_exposure(field: LightField, look: LightSettings, eyes: np.ndarray | None = None) -> float:
-    """Return the exposure of a scene for ``LookLight.parameters`` and ``background``.
+    """Return the exposure of a scene for ``LightSettings.parameters`` and ``background``.
 
     Args:
         field: the light of the volume.

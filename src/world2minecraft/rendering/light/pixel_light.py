@@ -11,7 +11,7 @@ MAX_SCREEN = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_li
 
 
 class LightCoefficients(NamedTuple):
-    """What a ``LookLight`` comes to for the kernel: floats alone, which numba keeps at hand."""
+    """What a ``LightSettings`` comes to for the kernel: floats alone, which numba keeps at hand."""
 
     sky_r: float  # full sky light
     sky_g: float

@@ -18,17 +18,17 @@ from world2minecraft.rendering.output.layers import (
 )
 
 __all__ = [
-    "LAYERS",
     "ANIMATION_SUFFIXES",
+    "LAYERS",
     "FileFormats",
+    "animation_writer",
     "colour_bytes",
     "depth_bytes",
     "exr_bytes",
     "file_name",
-    "index_bytes",
-    "parse_layers",
-    "animation_writer",
-    "required_outputs",
-    "number_bytes",
     "id_names",
+    "index_bytes",
+    "number_bytes",
+    "parse_layers",
+    "required_outputs",
 ]

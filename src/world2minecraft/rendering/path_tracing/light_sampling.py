@@ -40,7 +40,7 @@ def emitter_weight(lamps, row, at, out):
 def choose_emitter(lamps, at, out, number):
     """Return ``(row, odds, number, total)``: a lamp near a point, -1 for none.
 
-    ``number`` of [0, 1) decides; what is left of it comes back, even again. ``total`` is the sum of
+    ``as_number`` of [0, 1) decides; what is left of it comes back, even again. ``total`` is the sum of
     the weights, from which ``odds`` of any lamp follow.
     """
     brick = brick_of(lamps, at)

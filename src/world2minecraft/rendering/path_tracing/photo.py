@@ -12,20 +12,20 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light.exposure import LUMINANCE
-from world2minecraft.rendering.light_parameters import DAY
-from world2minecraft.rendering.path_tracing.develop import (
+from world2minecraft.rendering.path_tracing.emitters import Emitters, emitters_of
+from world2minecraft.rendering.path_tracing.film import Film, new_film
+from world2minecraft.rendering.path_tracing.film_development import (
     SEEN_POWER,
     picture_exposure,
     screen_colours,
     surface_light,
 )
-from world2minecraft.rendering.path_tracing.emitters import Emitters, emitters_of
-from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
 from world2minecraft.rendering.path_tracing.scattering import new_path
 from world2minecraft.rendering.path_tracing.sky_light import sky_light
 from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY
 
 OUTPUTS = ("depth", "semantic", "instance", "opaque", "normal")
 MAX_SAMPLES = 4096
@@ -76,7 +76,7 @@ def render_photo(
         denoise: whether to filter the light.
         budget_s: wall time after which no further pass over the picture begins; one is made.
         progress: told of the stage ``photo`` after each pass: samples done, and the time left.
-        lamps: of ``lamps_of(scene)``, where many photos are taken of one scene.
+        lamps: of ``emitters_of(scene)``, where many photos are taken of one scene.
 
     Raises:
         ValueError: a number is out of range, or the light knows no hour.

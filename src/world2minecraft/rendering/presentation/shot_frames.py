@@ -19,9 +19,9 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.pool import RenderPool
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.light_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.picture import Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.shading_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.views.cameras import Shot
 
 GPU = "world2minecraft.rendering.gpu"  # Loaded late: most machines have no use for it.

@@ -10,7 +10,6 @@ from scipy.ndimage import gaussian_filter
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.block_elements import ModelSource
-from world2minecraft.rendering.light_parameters import NEUTRAL
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
 from world2minecraft.rendering.presentation.shot_frames import (
     DrawOptions,
@@ -18,6 +17,7 @@ from world2minecraft.rendering.presentation.shot_frames import (
     with_common_exposure,
 )
 from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.shading_parameters import NEUTRAL
 from world2minecraft.rendering.views.cameras import Shot
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
 

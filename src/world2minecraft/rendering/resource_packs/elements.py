@@ -17,7 +17,7 @@ from world2minecraft.rendering.block_elements import (
     ElementFace,
     face_uv,
 )
-from world2minecraft.rendering.resource_packs.json_checks import (
+from world2minecraft.rendering.resource_packs.json_validation import (
     as_number,
     as_numbers,
     as_object,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from world2minecraft.rendering.resource_packs.json_checks import (
+from world2minecraft.rendering.resource_packs.json_validation import (
     as_list,
     as_number,
     as_object,

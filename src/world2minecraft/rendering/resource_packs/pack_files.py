@@ -16,7 +16,7 @@ from typing import Any
 from world2minecraft.core.archives import UNREADABLE
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
-from world2minecraft.rendering.resource_packs.json_checks import as_number, parse_resource_name
+from world2minecraft.rendering.resource_packs.json_validation import as_number, parse_resource_name
 
 # One pack, opened: a folder, a zip or a jar. In: a path. Out: its files by their names.
 #

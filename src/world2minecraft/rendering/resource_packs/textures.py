@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.rendering.resource_packs.elements import OVER, TIMES
-from world2minecraft.rendering.resource_packs.json_checks import (
+from world2minecraft.rendering.resource_packs.json_validation import (
     as_list,
     as_number,
     as_object,

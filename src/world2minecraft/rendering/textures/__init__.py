@@ -8,13 +8,13 @@ draws the whole set.
 from world2minecraft.rendering.textures.catalogue import GENERATORS, GROUPS
 from world2minecraft.rendering.textures.generator import Accent, Generator
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.sheet import texture_sheet
 from world2minecraft.rendering.textures.synthesis import (
     SIZES_PX,
     parse_recipe,
     recipe_of,
     texture_of,
 )
+from world2minecraft.rendering.textures.texture_sheet import texture_sheet
 
 __all__ = [
     "GENERATORS",

@@ -4,7 +4,7 @@ import sys
 
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.files import write_bytes
-from world2minecraft.rendering.textures.sheet import page_png, texture_sheet
+from world2minecraft.rendering.textures.texture_sheet import page_png, texture_sheet
 
 USAGE = "write: python -m world2minecraft.rendering.textures OUT.png [SIZE_PX [REPEAT]]"
 

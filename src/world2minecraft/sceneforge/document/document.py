@@ -197,7 +197,7 @@ class Document(Unkept):
                 effort.step(rev, "do", operation, operation.actor, operation.time_s)
             else:
                 word = "undo" if step.verb == UNDO else "redo"
-                effort.step(rev, word, operation, *self._journal.turned_by(step))
+                effort.step(rev, word, operation, *self._journal.author_of(step))
 
     def _stepped(self, step: str, operation: Operation, actor: str, time_s: float) -> Operation:
         self.rev += 1

@@ -10,7 +10,7 @@ from typing import Any
 from world2minecraft.capture import describe_capture
 from world2minecraft.capture.poster import poster_png
 from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
-from world2minecraft.capture.summary import as_data, plan_lines, summary_lines
+from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.core.progress import Progress
@@ -39,7 +39,7 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
     progress("look", 0, 3)
     plan = find_lone_roomplan(source)
     if plan is not None:
-        told = _plan_told(source, plan_lines(source, read_roomplan(plan)))
+        told = _plan_told(source, roomplan_lines(source, read_roomplan(plan)))
     else:
         summary = describe_capture(source)
         progress("look", 1, 3)
@@ -60,7 +60,7 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
             "frames": summary.usable,
             "has_scale": summary.survey.judged.capture.scale == "metric"
             and not summary.route.from_pictures,
-            "data": as_data(summary),
+            "data": summary_to_json(summary),
         }
     write_json(target / SURVEY, told)
     progress("look", 3, 3)

@@ -14,7 +14,7 @@ from PIL import Image
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.exr import ExrImage
 from world2minecraft.capture.readers.apps.record3d import LzfseImage
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import InputError, MissingExtraError
 
 NAN = float("nan")
@@ -41,7 +41,7 @@ def room(written, tmp_path):
 
 def refused(path, *words):
     with pytest.raises(InputError) as caught:
-        judge_capture(path, ScanOptions())
+        validate_capture(path, ScanOptions())
     line = str(caught.value)
     assert "\n" not in line
     for word in words:
@@ -51,7 +51,7 @@ def refused(path, *words):
 
 def left_out(path, *words, frames=7):
     """All but one of the frames are used, and the other's reason is told."""
-    judged = judge_capture(path, ScanOptions())
+    judged = validate_capture(path, ScanOptions())
     assert len(judged.frames) == frames
     ((_, reason),) = judged.skipped
     assert "\n" not in reason
@@ -116,7 +116,7 @@ def test_what_is_not_installed_is_told(room, monkeypatch, app, module):
     folder = room(app)
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(MissingExtraError, match=r"pip install 'world2minecraft\[capture\]'"):
-        judge_capture(folder, ScanOptions())
+        validate_capture(folder, ScanOptions())
 
 
 # Record3D
@@ -418,7 +418,7 @@ def test_whatever_a_file_states_is_read_or_refused_in_one_line(room, written, tm
         for value in NASTY:
             path.write_text(json.dumps(whole | {key: value}))
             try:
-                judge_capture(folder, ScanOptions())
+                validate_capture(folder, ScanOptions())
             except InputError as error:
                 assert "\n" not in str(error)
                 assert len(str(error)) < 1000

@@ -25,7 +25,7 @@ from world2minecraft.capture.images import read_colour, read_header
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.video_frames import VideoDecoder
 from world2minecraft.capture.sources import SOURCES, find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 
 ROOM_TO_Z_UP = np.eye(4)
@@ -41,7 +41,7 @@ def shots(box_room):
 
 
 def views_of(path):
-    judged = judge_capture(path, ScanOptions())
+    judged = validate_capture(path, ScanOptions())
     full = judged.capture.full_trust
     return judged.capture, [read_view(frame, judged.encoding, full) for frame in judged.frames]
 
@@ -49,7 +49,7 @@ def views_of(path):
 @pytest.mark.parametrize("app", WRITERS)
 def test_an_apps_capture_is_read_as_it_was_written(tmp_path, shots, app):
     WRITERS[app](tmp_path / "room", shots[app])
-    judged = judge_capture(tmp_path / "room", ScanOptions())
+    judged = validate_capture(tmp_path / "room", ScanOptions())
     assert judged.capture.source == app
     assert judged.complete
     assert not judged.skipped
@@ -131,7 +131,7 @@ def test_record3d_as_its_packer_writes_it(tmp_path, shots):
 def test_record3d_with_a_lens_for_each_frame(tmp_path, shots):
     lenses = [[130.0 + index, 131.0 + index, 81.0, 59.0] for index in range(12)]
     write_record3d(tmp_path, shots["record3d"], perFrameIntrinsicCoeffs=lenses)
-    frames = judge_capture(tmp_path, ScanOptions()).frames
+    frames = validate_capture(tmp_path, ScanOptions()).frames
     camera = frames[3].colour_camera
     assert [camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px] == lenses[3]
     assert frames[3].depth_camera.fx_px == lenses[3][0] / 2

@@ -14,7 +14,7 @@ from PIL import Image
 
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError
 
@@ -47,7 +47,7 @@ def _write(folder, shots, per_frame, depth_key="depth_file_path", depths=True, *
 
 def test_nerfcaptures_depth_has_its_own_key_and_unit(tmp_path, shots):
     _write(tmp_path, shots, {}, "depth_path", integer_depth_scale=0.001)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.complete
     assert not judged.encoding.guessed
     for frame, shot in zip(judged.frames, shots, strict=True):
@@ -60,7 +60,7 @@ def test_nerfcaptures_depth_has_its_own_key_and_unit(tmp_path, shots):
 def test_depth_that_is_named_but_not_there_is_told(tmp_path, shots):
     """NeRFCapture's own export names depth images and does not write them."""
     _write(tmp_path, shots, {}, "depth_path", depths=False, depth_integer_scale=1.0)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.posed
     assert not judged.has_depth
     assert judged.notes == ("4 depth images that the file names are not there",)
@@ -72,7 +72,7 @@ def test_a_mask_says_which_pixels_are_meant(tmp_path, shots):
     mask = np.zeros((120, 160), np.uint8)
     mask[:, 80:] = 255
     Image.fromarray(mask).save(tmp_path / "mask.png")
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     view = read_view(judged.frames[0], judged.encoding, judged.capture.full_trust)
     assert not view.depth_m[:, :40].any()
     assert (view.trust[:, 40:] == 255).all()
@@ -96,7 +96,7 @@ def test_it_may_lie_in_a_zip_with_other_things(tmp_path, shots):
     with zipfile.ZipFile(tmp_path / "room.zip", "w") as archive:
         for path in sorted((tmp_path / "room").rglob("*.*")):
             archive.write(path, path.relative_to(tmp_path).as_posix())
-    assert judge_capture(tmp_path / "room.zip", ScanOptions()).complete
+    assert validate_capture(tmp_path / "room.zip", ScanOptions()).complete
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,7 @@ def test_it_may_lie_in_a_zip_with_other_things(tmp_path, shots):
 def test_nonsense_is_refused(tmp_path, shots, stated, words):
     _write(tmp_path, shots, {}, "depth_path", **stated)
     with pytest.raises(CaptureError, match=words) as caught:
-        judge_capture(tmp_path, ScanOptions())
+        validate_capture(tmp_path, ScanOptions())
     assert "\n" not in str(caught.value)
 
 

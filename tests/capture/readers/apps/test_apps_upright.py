@@ -9,7 +9,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 
 APPS = [app for app in WRITERS if app != "arkitscenes"]  # The same code turns its images.
@@ -24,7 +24,7 @@ def shots(box_room):
 def test_a_phone_held_upright_gives_upright_views(tmp_path, box_room, shots, app):
     WRITERS[app](tmp_path / "room", shots)
     assert read_header(find_capture(tmp_path / "room").frames[0].colour_path).size == (160, 120)
-    judged = judge_capture(tmp_path / "room", ScanOptions())
+    judged = validate_capture(tmp_path / "room", ScanOptions())
     assert judged.notes[-1].startswith("the images lie on their side")
     for frame, pose, shot in zip(judged.frames, box_room.poses(12), shots, strict=True):
         view = read_view(frame, judged.encoding, judged.capture.full_trust)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.capture import (describe_capture)
-from world2minecraft.capture import open_scan
+from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.core.errors import InputError
 
 

@@ -8,7 +8,7 @@ from writing import save, save_text, zipped
 
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError
 
 pycolmap = pytest.importorskip("pycolmap")
@@ -49,7 +49,7 @@ def write_colmap(folder, views, text=False, model="sparse/0", lens=("PINHOLE", N
 @pytest.mark.parametrize("model", ["sparse/0", "sparse", "colmap/sparse/0"])
 def test_a_model_gives_the_poses_and_lenses_that_were_written(tmp_path, views, text, model):
     write_colmap(tmp_path, views, text, model)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert (judged.capture.source, judged.capture.scale) == ("colmap", "unknown")
     assert judged.posed
     assert not judged.has_depth
@@ -61,7 +61,7 @@ def test_a_model_gives_the_poses_and_lenses_that_were_written(tmp_path, views, t
 
 def test_a_zip_of_it_is_the_same(tmp_path, views):
     write_colmap(tmp_path / "x", views)
-    frames = judge_capture(zipped(tmp_path / "x", tmp_path / "a.zip"), ScanOptions()).frames
+    frames = validate_capture(zipped(tmp_path / "x", tmp_path / "a.zip"), ScanOptions()).frames
     np.testing.assert_allclose(frames[5].camera_to_world, views[5].camera_to_scan, atol=1e-9)
 
 
@@ -111,7 +111,7 @@ def test_the_folder_of_the_model_itself_and_photos_beside_it(tmp_path, views):
 def test_missing_photos_are_listed(tmp_path, views):
     write_colmap(tmp_path, views)
     (tmp_path / "images" / "walk one" / "000004.jpg").unlink()
-    skipped = judge_capture(tmp_path, ScanOptions()).skipped
+    skipped = validate_capture(tmp_path, ScanOptions()).skipped
     assert skipped == (("walk one.000004", "000004.jpg is not there"),)
 
 
@@ -122,7 +122,7 @@ def test_photos_of_another_size_than_most_are_left_out(tmp_path, views):
         cameras.write("9 PINHOLE 120 160 130 130 60 80\n")
     lines = (model / "images.txt").read_text()
     (model / "images.txt").write_text(lines.replace(" 7 walk one/000002", " 9 walk one/000002"))
-    skipped = judge_capture(tmp_path, ScanOptions()).skipped
+    skipped = validate_capture(tmp_path, ScanOptions()).skipped
     assert skipped == (("walk one.000002", "is 120x160; most are 160x120"),)
 
 

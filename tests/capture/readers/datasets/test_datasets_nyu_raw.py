@@ -9,7 +9,7 @@ from world2minecraft.capture.depth_images import DepthEncoding, read_depth
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.nyu_raw import _depth_to_colour
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError
 
 
@@ -36,7 +36,7 @@ def write_nyu(folder, views, late_s=0.012):
 
 def test_a_scene_is_depth_and_colour_without_poses(tmp_path, views):
     write_nyu(tmp_path, views)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert (judged.capture.source, judged.posed, judged.has_depth) == ("nyu_raw", False, True)
     assert len(judged.frames) == 12
     frame = judged.frames[4]
@@ -130,6 +130,6 @@ def test_the_shared_frame_is_a_room_deep(tmp_path, shared_data):
     found = shared_data / "open3d_rgbd_samples" / "RGBD" / "other_formats"
     (tmp_path / "r-1.0-1.ppm").symlink_to(found / "NYU_color.ppm")
     (tmp_path / "d-1.01-2.pgm").symlink_to(found / "NYU_depth.pgm")
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert 2 < judged.typical_depth_m < 5
     assert judged.frames[0].depth_camera.fx_px == pytest.approx(582.62448)

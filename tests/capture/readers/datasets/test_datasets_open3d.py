@@ -9,7 +9,7 @@ from writing import millimetres, save, save_text, zipped
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 
 
 def camera_json(camera):
@@ -138,7 +138,7 @@ def test_the_shared_sample(shared_data):
     assert "trajectory.log; odometry.log is left alone" in capture.notes[0]
     camera = capture.frames[0].depth_camera
     assert (camera.fx_px, camera.cx_px, camera.cy_px) == (525.0, 320.0, 240.0)
-    judged = judge_capture(folder, ScanOptions())
+    judged = validate_capture(folder, ScanOptions())
     assert judged.complete
     assert judged.encoding.said == "millimetres"
     assert judged.typical_depth_m == pytest.approx(1.86, abs=0.05)

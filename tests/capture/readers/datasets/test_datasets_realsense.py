@@ -11,7 +11,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.realsense import open_bag
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError
 
@@ -99,7 +99,7 @@ def write_bag(path, views, *, compression=None, unit=0.001, encoding="rgb8", lat
 
 
 def check(path, views):
-    judged = judge_capture(path, ScanOptions())
+    judged = validate_capture(path, ScanOptions())
     assert (judged.capture.source, judged.posed, judged.has_depth) == ("realsense", False, True)
     assert len(judged.frames) == len(views)
     for frame, view in zip(judged.frames, views, strict=True):

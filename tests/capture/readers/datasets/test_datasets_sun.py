@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from writing import millimetres, save, save_text, zipped
 
-from world2minecraft.capture import (describe_capture)
-from world2minecraft.capture import open_scan
+from world2minecraft.capture import describe_capture, open_scan
 from world2minecraft.capture.images import read_raw
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 
 
 def rotated(view):
@@ -72,7 +71,7 @@ def test_pictures_and_depth_of_other_counts_pair_by_their_times(tmp_path, views)
     frames = find_capture(tmp_path).frames
     assert len(frames) == 11
     assert frames[4].colour_path.stem == frames[4].depth_path.stem
-    assert not judge_capture(tmp_path, ScanOptions()).posed
+    assert not validate_capture(tmp_path, ScanOptions()).posed
 
 
 @pytest.mark.parametrize(
@@ -99,7 +98,7 @@ def test_the_shared_frame(tmp_path, shared_data):
         (tmp_path / kind).mkdir()
         (tmp_path / kind / name).symlink_to(found / name)
     save_text(tmp_path / "intrinsics.txt", "520.5 0 319.5 0 520.5 239.5 0 0 1")
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.encoding.said == "millimetres, bits rotated by three"
     assert 1 < judged.typical_depth_m < 4
     assert read_raw(judged.frames[0].depth_path).shape == (480, 640)

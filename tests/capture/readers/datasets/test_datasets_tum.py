@@ -9,7 +9,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.time_sync import interpolate_pose, pair_times
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.validation import judge_capture
+from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import rotation_from_quaternion
 
@@ -77,7 +77,7 @@ def test_cameras_by_name(tmp_path, views, name, focal, k3):
 
 def test_without_poses_it_is_a_capture_of_depth_and_colour_alone(tmp_path, views):
     write_tum(tmp_path, views, poses=False)
-    judged = judge_capture(tmp_path, ScanOptions())
+    judged = validate_capture(tmp_path, ScanOptions())
     assert judged.has_depth
     assert not judged.posed
     assert len(judged.frames) == 12

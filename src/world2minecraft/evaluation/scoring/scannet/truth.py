@@ -11,7 +11,7 @@ from world2minecraft.capture.depth_images import DepthEncoding, read_depth
 from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.sources import SOURCES
-from world2minecraft.capture.validation import judge_capture, spread_over
+from world2minecraft.capture.validation import evenly_spaced, validate_capture
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, LimitError
@@ -169,11 +169,11 @@ def seen_free(truth: Truth, progress: Progress = silent) -> np.ndarray:
     Raises:
         CaptureError: the capture has no frame with a pose and depth.
     """
-    judged = judge_capture(truth.capture, ScanOptions())
+    judged = validate_capture(truth.capture, ScanOptions())
     usable = [f for f in judged.frames if f.depth_path and f.camera_to_world is not None]
     if not usable:
         raise CaptureError(truth.capture, "has no depth images with poses: give the scene's .sens")
-    frames = {frame.name: frame for frame in spread_over(usable, MOST_FRAMES)}
+    frames = {frame.name: frame for frame in evenly_spaced(usable, MOST_FRAMES)}
     scan_to_truth = invert_rigid(truth.truth_to_scan)
     used = [_used(frame, scan_to_truth) for frame in frames.values()]
     agreed = _agreed(frames, judged.encoding, progress)

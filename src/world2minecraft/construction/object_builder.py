@@ -6,55 +6,55 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.construction.block_designs import (
-    Hue,
-    Thing,
-    Window,
+    CanvasWindow,
+    ObjectColours,
+    ObjectLabel,
     body_box,
-    filled_by,
-    idiom_box,
-    put_idiom,
-    window_on,
+    canvas_window,
+    design_box,
+    filled_blocks,
+    place_design,
 )
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.cell_colours import default_colour, spread
+from world2minecraft.construction.cell_colours import block_colour, fill_colours
 from world2minecraft.construction.cell_objects import (
     BULKY,
     CLOSED,
-    HUNG,
+    WALL_MOUNTED,
     CellsDesign,
     Solid,
-    design_of_cells,
-    inner_cells,
-    kinds_of_sheet,
-    shape_of_cells,
-    solid_of,
-    solids_of,
-    well_fitted,
+    enclosed_cells,
+    fit_cells,
+    good_fits,
+    kinds_for_sheet,
+    make_solid,
+    make_solids,
+    resample_cells,
 )
-from world2minecraft.construction.colour_sources import Coats, Hues
+from world2minecraft.construction.colour_sources import ColourSamples, ColourSource
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     Design,
+    design_of_halves,
     design_of_parts,
-    of_halves,
-    one_block,
+    single_block_design,
 )
-from world2minecraft.construction.fitting import without_loose
+from world2minecraft.construction.fitting import remove_loose_blocks
 from world2minecraft.construction.fitting.shapes import SUB
 from world2minecraft.construction.lattice import volume_shares
-from world2minecraft.construction.lattice_fitting import best_place, best_step
+from world2minecraft.construction.overlap_avoidance import best_place, best_step
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.substitutes import known_by_shape
+from world2minecraft.construction.substitutes import substitute_templates
 from world2minecraft.construction.surface_painting import block_colours, chair_paints
 from world2minecraft.construction.template_blocks import (
-    LAST,
-    Dresser,
+    LATE_RANKS,
+    ShapePainter,
     half_block_design,
-    in_order,
+    placement_order,
     within_storeys,
 )
-from world2minecraft.construction.worktops import Plates
+from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, idiom, template
@@ -65,7 +65,7 @@ OPEN = 0.6  # A block of which more than this was seen free holds nothing but a 
 PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
 SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
 FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
-LEAST_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
+MIN_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
@@ -83,7 +83,7 @@ class ObjectBuilder:
         footprints: Sequence[np.ndarray],
     ):
         free = (grid.labels == 0) & (grid.source != UNSEEN)
-        self.coats = Coats(grid, colours, coloured, parameters.close_tops)
+        self.coats = ColourSource(grid, colours, coloured, parameters.close_tops)
         self.open_share = volume_shares(free, grid, canvas.lattice)
         self.within = within_storeys(canvas, footprints)
         self.canvas, self.grid, self.palette = canvas, grid, palette
@@ -91,9 +91,9 @@ class ObjectBuilder:
         self.parameters = parameters
         self.lattice = canvas.lattice
         self.cell_blocks = grid.voxel_m * self.lattice.blocks_per_metre
-        self.dresser = Dresser(palette, parameters)
+        self.dresser = ShapePainter(palette, parameters)
         self.fitted = np.zeros(grid.shape, bool)  # Cells that some fit has shown or left out.
-        self.plates = Plates(canvas, palette)
+        self.plates = PlateBuilder(canvas, palette)
         self.paints = chair_paints(
             grid, colours, coloured & self.coats.exposed, parameters.lightness_weight
         )
@@ -104,15 +104,15 @@ class ObjectBuilder:
             self.plates.put_worktops(self.grid, self.colours, self.coloured)
         voxels = self.parameters.style == "voxels"
         if not voxels and self.lattice.blocks_per_metre < FINE_SCALE:
-            placements = known_by_shape(placements, self._cells_of, self.coats)
+            placements = substitute_templates(placements, self._cells_of, self.coats)
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
-        solids = solids_of(own, held, self.coats)
+        solids = make_solids(own, held, self.coats)
         well = {}
         if voxels:
             kinds = self._kinds_of_placement
-            well = well_fitted(placements, held, solids, self.coats, self.lattice, kinds)
-        for placement in sorted(placements, key=in_order):
+            well = good_fits(placements, held, solids, self.coats, self.lattice, kinds)
+        for placement in sorted(placements, key=placement_order):
             cells = held[id(placement)]
             known = placement.template != CELLS
             if id(placement) in well:
@@ -139,7 +139,7 @@ class ObjectBuilder:
         if self.lattice.blocks_per_metre >= FINE_SCALE or not len(cells):
             return True
         size = (np.ptp(cells, axis=0) + 1) * self.cell_blocks
-        return float(np.prod(size)) >= LEAST_ALONE
+        return float(np.prod(size)) >= MIN_ALONE
 
     def _put_one(self, class_id: int, number: int) -> None:
         """Set the one free block that stands best for an object all of whose places are taken."""
@@ -150,8 +150,8 @@ class ObjectBuilder:
         free = (self.canvas.states == 0) & self.within
         place = best_place(blocks, counts, free)
         if place is not None:
-            hues = Hues(cells, np.broadcast_to(place, cells.shape))
-            self._put_shapes(one_block(place), hues, Thing(class_id, number))
+            hues = ColourSamples(cells, np.broadcast_to(place, cells.shape))
+            self._put_shapes(single_block_design(place), hues, ObjectLabel(class_id, number))
 
     def _told(self, placements: Sequence[Placement]) -> np.ndarray:
         """Return the cells, bool [X, Y, Z], of which a design of few blocks says enough.
@@ -184,14 +184,14 @@ class ObjectBuilder:
         return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
 
     def _kinds_of_placement(self, cells: np.ndarray, placement: Placement) -> frozenset[str]:
-        return self._kinds(cells, Thing(placement.class_id, placement.object_id))
+        return self._kinds(cells, ObjectLabel(placement.class_id, placement.object_id))
 
     def _put_made(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
         """Set a fit of an object's own cells."""
         cells, hues = self.coats.with_tops(cells)
         self.fitted[tuple(cells.T)] = True
-        thing = Thing(placement.class_id, placement.object_id)
-        self._put_design(made.design, Hues(hues, made.blocks), thing)
+        thing = ObjectLabel(placement.class_id, placement.object_id)
+        self._put_design(made.design, ColourSamples(hues, made.blocks), thing)
 
     def put_cells(
         self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
@@ -200,28 +200,28 @@ class ObjectBuilder:
         if not len(cells):
             return
         cells, hues = self.coats.with_tops(cells)
-        thing = Thing(class_id, number)
-        solid = solid or solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
-        kinds = kinds_of_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
+        thing = ObjectLabel(class_id, number)
+        solid = solid or make_solid(cells, enclosed_cells(cells, self.grid, class_id), 0)
+        kinds = kinds_for_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
         if kinds & BULKY:
             of_cells = (cells, solid, self.grid, self.lattice, kinds, number > 0)
-            made = design_of_cells(*of_cells, class_id in LAID_ON, self._hangs(cells, class_id))
+            made = fit_cells(*of_cells, class_id in LAID_ON, self._hangs(cells, class_id))
             design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share
-            shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
-            design, blocks = of_halves(shape.low, shape.halves), shape.blocks
+            shape = resample_cells(cells, self.grid, self.lattice, share, shift=number > 0)
+            design, blocks = design_of_halves(shape.low, shape.halves), shape.blocks
         self.fitted[tuple(cells.T)] = True
-        self._put_design(design, Hues(hues, blocks), thing)
+        self._put_design(design, ColourSamples(hues, blocks), thing)
 
     def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
         """Whether nothing that is built lies under an object that may hang on a wall."""
         blocks = np.unique(self._blocks_of(cells), axis=0)
         lowest = blocks[blocks[:, 2] == blocks[:, 2].min()]
         under = self.canvas.states[tuple((lowest - [0, 0, 1]).T)] > 0
-        return class_id in HUNG and not under.any()
+        return class_id in WALL_MOUNTED and not under.any()
 
-    def _put_design(self, design: Design, hues: Hues, thing: Thing) -> None:
+    def _put_design(self, design: Design, hues: ColourSamples, thing: ObjectLabel) -> None:
         """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
         window = self._window(design)
         filled = design.filled[window.box]
@@ -229,12 +229,12 @@ class ObjectBuilder:
             numbers = np.where(filled & window.wall, 1, design.numbers[window.box] * window.free)
         else:
             # Crumbs of furniture stay where they are.
-            if thing.instance and thing.class_id in LAST:
+            if thing.instance and thing.class_id in LATE_RANKS:
                 step = self._step(design.filled, design.low)
                 design, hues = design.moved(step), hues._replace(blocks=hues.blocks + step)
                 window = self._window(design)
             numbers = design.numbers[window.box] * window.free
-            numbers = without_loose(numbers, design.shapes, window.held)
+            numbers = remove_loose_blocks(numbers, design.shapes, window.held)
         self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
@@ -244,7 +244,7 @@ class ObjectBuilder:
             False where its parts would stand in space that was seen free: nothing is set then,
             unless it is ``forced``.
         """
-        thing = Thing(placement.class_id, placement.object_id)
+        thing = ObjectLabel(placement.class_id, placement.object_id)
         found = idiom(placement, self.lattice.blocks_per_metre)
         if found is not None:
             return self._put_idiom(found, placement, cells, thing, forced)
@@ -254,7 +254,7 @@ class ObjectBuilder:
             design = design_of_parts(placement, parts, self.lattice, kinds)
         else:
             coarse = half_block_design(placement, parts, self.lattice)
-            design = of_halves(coarse.low, coarse.halves, coarse.part)
+            design = design_of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design)
         guessed = not forced and placement.iou < SURE_IOU
         if guessed and self._contradicted(design, window) > self._limit(placement):
@@ -268,12 +268,17 @@ class ObjectBuilder:
         return True
 
     def _put_idiom(
-        self, found: Idiom, placement: Placement, cells: np.ndarray, thing: Thing, forced: bool
+        self,
+        found: Idiom,
+        placement: Placement,
+        cells: np.ndarray,
+        thing: ObjectLabel,
+        forced: bool,
     ) -> bool:
         """Set a vanilla design; at fine scales a guessed one not where it was seen free."""
-        low, size = idiom_box(found, placement, self.lattice)
+        low, size = design_box(found, placement, self.lattice)
         if self.lattice.blocks_per_metre >= FINE_SCALE:
-            filled = filled_by(found)
+            filled = filled_blocks(found)
             guessed = not forced and placement.iou < SURE_IOU
             if guessed and self._open_in(filled, low) > self._limit(placement):
                 return False
@@ -281,8 +286,10 @@ class ObjectBuilder:
         start, solid = body_box(found, placement, self.lattice, low, size)
         hues = self.coats.stretched(cells, placement, start, solid.tolist())
         seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self.coats.colours_of(hues))
-        hue = Hue(*seen, self.paints.get(thing.instance))
-        put_idiom(self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters)
+        hue = ObjectColours(*seen, self.paints.get(thing.instance))
+        place_design(
+            self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters
+        )
         self.fitted[tuple(cells.T)] = True
         return True
 
@@ -298,15 +305,15 @@ class ObjectBuilder:
         inside = ((at >= 0) & (at < self.open_share.shape)).all(axis=1)
         return float((self.open_share[tuple(at[inside].T)] > OPEN).mean()) if inside.any() else 0.0
 
-    def _window(self, design: Design) -> Window:
-        return window_on(self.canvas, self.within, design.low, design.numbers.shape)
+    def _window(self, design: Design) -> CanvasWindow:
+        return canvas_window(self.canvas, self.within, design.low, design.numbers.shape)
 
-    def _kinds(self, cells: np.ndarray, thing: Thing) -> frozenset[str]:
+    def _kinds(self, cells: np.ndarray, thing: ObjectLabel) -> frozenset[str]:
         """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
         paint = self.paints.get(thing.instance)
         if paint is not None:
             return self.dresser.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
-        colours, usable = self.coats.colours_of(Hues(cells, cells))
+        colours, usable = self.coats.colours_of(ColourSamples(cells, cells))
         kinds = self.dresser.kinds(colours[usable], thing.class_id)
         coarse = self.lattice.blocks_per_metre < FINE_SCALE
         return kinds & PLAIN if coarse and thing.class_id in CLOSED else kinds
@@ -322,7 +329,7 @@ class ObjectBuilder:
         opened = np.zeros_like(free) if held else self.open_share > OPEN
         return best_step(filled, low, free, opened, stands)
 
-    def _contradicted(self, design: Design, window: Window) -> float:
+    def _contradicted(self, design: Design, window: CanvasWindow) -> float:
         """Return the share of a design's blocks that were seen free, but for what they show.
 
         A thin panel leaves most of its block free.
@@ -341,7 +348,7 @@ class ObjectBuilder:
         blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
         return blocks
 
-    def _put_shapes(self, design: Design, hues: Hues, thing: "Thing") -> None:
+    def _put_shapes(self, design: Design, hues: ColourSamples, thing: "ObjectLabel") -> None:
         """Paint a design and set it.
 
         A block without a colour of its own takes that of its part: a seat's that of the seat.
@@ -350,12 +357,12 @@ class ObjectBuilder:
         if not filled.any():
             return
         tinted, known = block_colours(filled.shape, hues.blocks - low, *self.coats.colours_of(hues))
-        default = default_colour(self.palette.defaults[thing.class_id])
+        default = block_colour(self.palette.defaults[thing.class_id])
         colours = tinted.copy()
         for group in np.unique(design.part[filled]):
             mask = filled & (design.part == group)
             usable = known & (mask if (known & mask).any() else filled)
-            colours[mask] = spread(tinted, usable, mask, default)
+            colours[mask] = fill_colours(tinted, usable, mask, default)
         paint = self.paints.get(thing.instance)
         if paint is not None:
             colours[filled], known = paint, filled

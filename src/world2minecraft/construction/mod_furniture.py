@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from world2minecraft.construction.block_designs import idiom_box
+from world2minecraft.construction.block_designs import design_box
 from world2minecraft.construction.canvas import Canvas
-from world2minecraft.construction.palettes import FACINGS, Piece
+from world2minecraft.construction.palettes import FACINGS, FurniturePiece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, template
@@ -26,8 +26,8 @@ SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed s
 HIGHEST = 1.7  # Blocks: furniture of one layer stands for nothing higher.
 
 
-def furniture_of(
-    pieces: Sequence[Piece],
+def mod_furniture(
+    pieces: Sequence[FurniturePiece],
     placement: Placement,
     blocks_per_metre: float,
     colour: np.ndarray | None,
@@ -58,9 +58,9 @@ def furniture_of(
     return laid(whole, size, None, placement.quarter_turns)
 
 
-def put_own_furniture(
+def place_mod_furniture(
     canvas: Canvas,
-    pieces: Sequence[Piece],
+    pieces: Sequence[FurniturePiece],
     placements: Sequence[Placement],
     colours: np.ndarray,
     grid: OccupancyGrid,
@@ -83,7 +83,7 @@ def put_own_furniture(
         known = known[known.any(axis=1)]
         colour = np.median(known, axis=0) if len(known) else None
         scale = canvas.lattice.blocks_per_metre
-        found = furniture_of(pieces, placement, scale, colour)
+        found = mod_furniture(pieces, placement, scale, colour)
         if found is None or not _put(canvas, found, placement, within):
             left.append(placement)
     return left if pieces else list(placements)
@@ -91,7 +91,7 @@ def put_own_furniture(
 
 def _put(canvas: Canvas, found: Idiom, placement: Placement, within: np.ndarray) -> bool:
     """Set a piece where all of its place is free; return whether it was."""
-    low, _ = idiom_box(found, placement, canvas.lattice)
+    low, _ = design_box(found, placement, canvas.lattice)
     offsets = np.array([block.offset for block in found.blocks])
     at = cells_to_block_axes(offsets[:, [0, 2, 1]], found.size[2])[:, [0, 2, 1]] + low
     inside = ((at >= 0) & (at < canvas.states.shape)).all(axis=1)
@@ -103,7 +103,7 @@ def _put(canvas: Canvas, found: Idiom, placement: Placement, within: np.ndarray)
     return True
 
 
-def _fits(piece: Piece, size: BlockSize) -> bool:
+def _fits(piece: FurniturePiece, size: BlockSize) -> bool:
     depth, width, height = size.exact
     if piece.fill == "box":
         return True
@@ -114,7 +114,9 @@ def _fits(piece: Piece, size: BlockSize) -> bool:
     return limits[0] and (piece.fill == "row" or limits[1]) and limits[2]
 
 
-def _laid_out(piece: Piece, size: BlockSize, colour: np.ndarray | None) -> list[LocalBlock]:
+def _laid_out(
+    piece: FurniturePiece, size: BlockSize, colour: np.ndarray | None
+) -> list[LocalBlock]:
     """Return the blocks of a piece that looks east, each in the colour of the object."""
     deep, wide, high = {
         "one": (1, 1, 1),
@@ -151,7 +153,7 @@ def _coloured(name: str, colour: np.ndarray | None) -> str:
     return name
 
 
-def _joined(piece: Piece, blocks: list[LocalBlock]) -> list[LocalBlock]:
+def _joined(piece: FurniturePiece, blocks: list[LocalBlock]) -> list[LocalBlock]:
     """Return blocks that look east with the properties by which they join those beside them.
 
     Commands would compute these at the next update; a written world gets none.
@@ -174,7 +176,7 @@ def _joined(piece: Piece, blocks: list[LocalBlock]) -> list[LocalBlock]:
     return result
 
 
-def _joins(piece: Piece, beside: Mapping[str, bool]) -> dict[str, str]:
+def _joins(piece: FurniturePiece, beside: Mapping[str, bool]) -> dict[str, str]:
     if piece.joins == "sides":
         return {side: str(there).lower() for side, there in beside.items()}
     # Seen along its facing, which is to its back: the clockwise side of west is north.
