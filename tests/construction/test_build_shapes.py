@@ -6,7 +6,12 @@ from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.cell_objects import resample_cells
-from world2minecraft.construction.lattice import face_shares, lattice_over, memberships, overlaps
+from world2minecraft.construction.lattice import (
+    center_weights,
+    face_shares,
+    lattice_over,
+    overlap_weights,
+)
 from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.furniture import TEMPLATES, template
@@ -17,11 +22,11 @@ ANY = BuildParameters(lights=False, edge="none", most_contradicted=1.0)
 @given(st.floats(-5, 5), st.floats(0.05, 3), st.integers(1, 20))
 def test_blocks_and_cells_share_what_overlaps(start, step, count):
     edges = start + step * np.arange(count + 1)
-    shares = overlaps(edges, 8)
+    shares = overlap_weights(edges, 8)
     inside = max(0.0, min(edges[-1], 8) - max(edges[0], 0))
     assert shares.sum() == pytest.approx(inside, abs=1e-4)
     assert (shares >= 0).all() and (shares <= 1 + 1e-6).all()
-    assert (memberships(edges, 8).sum(0) <= max(1, int(step) + 1)).all()
+    assert (center_weights(edges, 8).sum(0) <= max(1, int(step) + 1)).all()
 
 
 def slow_face_shares(mask, edges, shape):

@@ -80,7 +80,7 @@ def is_exact(grid: OccupancyGrid, blocks_per_metre: float) -> bool:
     return abs(grid.voxel_m * blocks_per_metre - 1) < 1e-9
 
 
-def snapped_corner_m(grid: OccupancyGrid, corner_m: np.ndarray) -> np.ndarray:
+def snap_corner_m(grid: OccupancyGrid, corner_m: np.ndarray) -> np.ndarray:
     """Return the corner as the nearest whole multiple of the voxel, float64 [2]."""
     return np.round(np.asarray(corner_m, np.float64) / grid.voxel_m) * grid.voxel_m
 
@@ -108,7 +108,7 @@ def lattice_over(
     return Lattice(tuple(low.tolist()), (east, south, up), corner_m, blocks_per_metre)
 
 
-def overlaps(edges: np.ndarray, count: int) -> np.ndarray:
+def overlap_weights(edges: np.ndarray, count: int) -> np.ndarray:
     """Return how much of each block [0, count) each cell covers along one axis.
 
     Args:
@@ -124,7 +124,7 @@ def overlaps(edges: np.ndarray, count: int) -> np.ndarray:
     return np.maximum(high - low, 0).astype(np.float32)
 
 
-def memberships(edges: np.ndarray, count: int) -> np.ndarray:
+def center_weights(edges: np.ndarray, count: int) -> np.ndarray:
     """Return which cells belong to which block along one axis, float32 [count, N] of 0 and 1.
 
     A cell belongs to the block that holds its centre, and a block smaller than a cell to the
@@ -137,15 +137,15 @@ def memberships(edges: np.ndarray, count: int) -> np.ndarray:
     return (inside | around).astype(np.float32)
 
 
-def carry(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+def resample(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
     """Return ``values`` [X, Y, Z] summed along each axis by weights [blocks, cells]."""
     result = values.astype(np.float32)
     for axis in range(3):
-        result = summed(weights[axis], result, axis)
+        result = weighted_sum(weights[axis], result, axis)
     return result
 
 
-def summed(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
+def weighted_sum(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
     """Return ``values`` summed along one axis by ``weights`` float32 [blocks, cells]."""
     # A kernel that computed with infinity leaves the processor's flag up, and numpy's product of
     # matrices, which does not lower it first, would warn of a value that is not there.
@@ -156,8 +156,10 @@ def summed(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
 
 def volume_shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
     """Return the share of each block's volume, float32, that cells of a mask [X, Y, Z] fill."""
-    weights = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in range(3)]
-    return carry(mask, (weights[0], weights[1], weights[2]))
+    weights = [
+        overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in range(3)
+    ]
+    return resample(mask, (weights[0], weights[1], weights[2]))
 
 
 def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
@@ -174,13 +176,13 @@ def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...
     Returns:
         float32 [shape], 0 to 1.
     """
-    cover = [overlaps(edges[axis], shape[axis]) for axis in range(3)]
-    member = [memberships(edges[axis], shape[axis]) for axis in range(3)]
+    cover = [overlap_weights(edges[axis], shape[axis]) for axis in range(3)]
+    member = [center_weights(edges[axis], shape[axis]) for axis in range(3)]
     best = np.zeros(shape, np.float32)
     for axis in range(3):
-        seen = summed(member[axis], mask.astype(np.float32), axis) > 0
+        seen = weighted_sum(member[axis], mask.astype(np.float32), axis) > 0
         share = seen.astype(np.float32)
         for other in {0, 1, 2} - {axis}:
-            share = summed(cover[other], share, other)
+            share = weighted_sum(cover[other], share, other)
         np.maximum(best, share, out=best)
     return best

@@ -18,7 +18,7 @@ from world2minecraft.minecraft.blocks import block_table
 
 ENOUGH = 0.5  # The share of an object's colours that a kind must have for the object to use it.
 # Oklab distances that a colour may lose to a shape of the kind; of a post little is seen.
-GIVEN_UP = {"slab": 0.03, "stairs": 0.03, "trapdoor": 0.04, "post": 0.1, "carpet": 0.03}
+MAX_COLOUR_LOSS = {"slab": 0.03, "stairs": 0.03, "trapdoor": 0.04, "post": 0.1, "carpet": 0.03}
 MARGIN = 0.06  # How far a shape may look off the full block that it stands for.
 WEIGHTS = np.array([1.0, 1.6, 1.6])  # Red made brown is worse than red made dark.
 FAINT, FADED = 0.015, 2.2  # Chroma that is noise, and what fading weighs above twice that.
@@ -34,7 +34,7 @@ HANDICAPS = {
 
 
 # A screen is no wood, and a panel of the right black there is none.
-LEFT_OUT = {int(SemanticClass.TVS): frozenset(("trapdoor", "stairs"))}
+EXCLUDED_KINDS = {int(SemanticClass.TVS): frozenset(("trapdoor", "stairs"))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class Materials:
             class_id: of the object.
             lightness_weight: how much lightness counts against hue and chroma.
         """
-        offered = [kind for kind in self.blocks if kind not in LEFT_OUT.get(class_id, ())]
+        offered = [kind for kind in self.blocks if kind not in EXCLUDED_KINDS.get(class_id, ())]
         if not len(colours):
             return frozenset(("full", *offered))
         light = lightness_weight
@@ -72,7 +72,7 @@ class Materials:
         kinds = {"full"}
         for kind in offered:
             apart = _distances(colours, self.colours[kind], light, self.handicaps[kind]).min(1)
-            near = apart - best <= GIVEN_UP[kind]
+            near = apart - best <= MAX_COLOUR_LOSS[kind]
             near |= np.isin(nearest, list(self.own[kind]))
             if near.mean() >= ENOUGH:
                 kinds.add(kind)

@@ -10,7 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.construction.doorways import open_doorways
-from world2minecraft.construction.lattice import Lattice, face_shares, overlaps, volume_shares
+from world2minecraft.construction.lattice import (
+    Lattice,
+    face_shares,
+    overlap_weights,
+    volume_shares,
+)
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure_faces import (
     blocks_behind,
@@ -197,7 +202,7 @@ def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
     if not len(near):
         return np.zeros(shape, bool)
     layer = near[(grid.labels[:, :, near] == FLOOR).sum(axis=(0, 1)).argmax()]
-    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    cover = [overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     share = cover[0] @ free[:, :, layer].astype(np.float32) @ cover[1].T
     return np.asarray(share >= OPEN_FLOOR)
 
@@ -314,7 +319,7 @@ def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarr
     top = min(ground + max(1, round(STANDING_M * lattice.blocks_per_metre)), end)
     labels = grid.labels
     things = (labels == FLOOR) | ((labels > WINDOW) & (labels != 255))
-    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    cover = [overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     edges = lattice.edges_of(grid, 2)
     first, last = np.searchsorted((edges[:-1] + edges[1:]) / 2, [ground - 1.0, float(top)])
     first = 0 if ground == lattice.ground else first
@@ -343,7 +348,7 @@ def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarra
     middles = (edges[:-1] + edges[1:]) / 2
     near = (middles > ground - 1.5) & (middles < ground + 0.5)
     floor = (grid.labels[:, :, near] == FLOOR).any(2).astype(np.float32)
-    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    cover = [overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     seen = (cover[0] @ floor @ cover[1].T >= FOOTPRINT_SHARE) & plan
     parts, sizes = label_face_components(plan)
     share = np.bincount(parts[seen], minlength=len(sizes)) / np.maximum(sizes, 1)

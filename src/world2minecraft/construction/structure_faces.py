@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.construction.lattice import Lattice, overlaps, summed
+from world2minecraft.construction.lattice import Lattice, overlap_weights, weighted_sum
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.types import OccupancyGrid
 
@@ -135,8 +135,8 @@ def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
     flat = np.zeros([count, *(grid.shape[axis] for axis in across)], np.float32)
     flat[(target, *(faces.cells[:, axis] for axis in across))] = 1
     for position, axis in enumerate(across, 1):
-        weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
-        flat = summed(weights, flat, position)
+        weights = overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis])
+        flat = weighted_sum(weights, flat, position)
     return Votes(np.moveaxis(flat, 0, faces.axis), target, faces.cells, faces.axis)
 
 
@@ -156,8 +156,8 @@ def see_through(
         layer = int(np.searchsorted(edges, plane - 1e-6 * faces.side, "right")) - 1
         share = np.take(free, np.clip(layer, 0, len(edges) - 2), faces.axis).astype(np.float32)
         for position, axis in enumerate(across):
-            weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
-            share = summed(weights, share, position)
+            weights = overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis])
+            share = weighted_sum(weights, share, position)
         sheet = np.moveaxis(result, faces.axis, 0)[target]
         np.maximum(sheet, share, out=sheet)
     return result

@@ -9,7 +9,7 @@ from world2minecraft.construction.cell_colours import cell_colours, coloured_cel
 from world2minecraft.construction.display.builder import DisplayBuilder
 from world2minecraft.construction.finishing import apply_block_updates, restrict_to_palette
 from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
-from world2minecraft.construction.lattice import is_exact, lattice_over, snapped_corner_m
+from world2minecraft.construction.lattice import is_exact, lattice_over, snap_corner_m
 from world2minecraft.construction.lighting import hang_lamps, put_lights
 from world2minecraft.construction.mod_furniture import place_mod_furniture
 from world2minecraft.construction.object_builder import ObjectBuilder
@@ -55,7 +55,7 @@ def build_volume(
     chosen = parameters or BuildParameters()
     if not 0 < blocks_per_metre < 1e4:
         raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
-    corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
+    corner = grid_corner_m(grid) if corner_m is None else snap_corner_m(grid, corner_m)
     canvas = Canvas(add_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)
     colours = cell_colours(grid, chosen.expose, chosen.saturation)

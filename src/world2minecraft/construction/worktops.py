@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.fitted_objects import FULL, LOWER, Design
-from world2minecraft.construction.lattice import Lattice, overlaps
+from world2minecraft.construction.lattice import Lattice, overlap_weights
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
@@ -155,7 +155,7 @@ def find_worktop(
     at = float(lattice.coordinates_of(np.array([0.0, 0.0, top]))[2])
     layer = int(np.floor(at - 1e-6))
     plan = _plan(grid, cells, steps, level)
-    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    cover = [overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     columns = cover[0] @ plan.astype(np.float32) @ cover[1].T >= COVERED
     half = LOWER if at - layer <= 0.75 else FULL
     return Worktop(columns, layer, half, colour, float(top), plan)
