@@ -24,12 +24,12 @@ from world2minecraft.construction.fitting import (
     Rules,
     ShapeSet,
     Target,
-    covered,
-    covered_blocks,
-    finished,
+    cover_blocks,
+    cover_cells,
     fit_solid,
     problem_of,
     shape_set,
+    stabilize,
     thin_cells,
 )
 from world2minecraft.construction.fitting.shapes import PROBES, SUB, probe_state
@@ -129,7 +129,7 @@ def fit_room(wanted: Solid, blocks_per_metre: float) -> tuple[np.ndarray, float]
     begun = time.process_time()
     cells, layers, counts = _blocks(wanted, blocks_per_metre)
     problem = problem_of(cells, layers[0], layers[1], counts, ALL)
-    grid, _ = finished(problem, ALL, Rules(), _walled(counts))
+    grid, _ = stabilize(problem, ALL, Rules(), _walled(counts))
     return grid, time.process_time() - begun
 
 
@@ -145,7 +145,7 @@ def _blocks(wanted: Solid, blocks_per_metre: float):
     shape = wanted.filled.shape
     counts = tuple(int(np.ceil(n * side - 1e-9)) for n in shape)
     edges = [np.arange(n + 1) * side for n in shape]
-    cells, layers = covered_blocks([wanted.filled, wanted.thin], edges, counts)
+    cells, layers = cover_blocks([wanted.filled, wanted.thin], edges, counts)
     return cells, layers, counts
 
 
@@ -287,7 +287,7 @@ def target_of(wanted: Solid, side: float, bottom: int) -> Target:
     edges.append(np.arange(shape[2] + 1) * side)
     counts = [-(-n // SUB) for n in (2 * half[0], 2 * half[1], tall)]
     inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
-    layers = [covered(values, edges, counts)[inside] for values in (wanted.filled, wanted.thin)]
+    layers = [cover_cells(values, edges, counts)[inside] for values in (wanted.filled, wanted.thin)]
     return Target(layers[0], layers[1], bottom)
 
 

@@ -12,9 +12,8 @@ from benchmarks.refinement import (
 )
 
 from world2minecraft.core.types import OBSERVED, LayoutObject, OccupancyGrid
-from world2minecraft.editing.scene import SceneDraft, parse_command
-from world2minecraft.editing.scene import objects_of
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.editing.scene import SceneDraft, objects_of, parse_command
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.sceneforge.tools import tools_of
 
@@ -32,7 +31,7 @@ def room():
     instance = np.zeros(labels.shape, np.int64)
     for name, (at, turns) in FURNITURE.items():
         one = template(name)
-        cells = cells_of(one, one.typical_m, None, turns, at)
+        cells = template_cells(one, one.typical_m, None, turns, at)
         labels[tuple(cells.T)] = one.class_id
         instance[tuple(cells.T)] = len(things) + 1
         low, high = cells.min(axis=0), cells.max(axis=0) + 1

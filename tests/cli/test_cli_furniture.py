@@ -6,7 +6,7 @@ from PIL import Image
 
 from world2minecraft import cli
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
+from world2minecraft.furniture.library import TEMPLATES, template, templates_of_class, variants_of
 from world2minecraft.minecraft.formats import write_blocks
 
 
@@ -14,10 +14,10 @@ from world2minecraft.minecraft.formats import write_blocks
 def own(tmp_path, monkeypatch):
     """The folder of the user's own furniture, and a library that forgets what it read."""
     monkeypatch.setenv("W2M_FURNITURE", str(tmp_path / "own"))
-    for function in (template, templates_of, variants_of):
+    for function in (template, templates_of_class, variants_of):
         function.cache_clear()
     yield tmp_path / "own"
-    for function in (template, templates_of, variants_of):
+    for function in (template, templates_of_class, variants_of):
         function.cache_clear()
 
 

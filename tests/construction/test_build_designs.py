@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.block_designs import body_box, design_box
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_design, template
 from world2minecraft.minecraft.rules.stability import unstable
 
 BARE = BuildParameters(ceiling=False, lights=False, expose=False)
@@ -60,7 +60,7 @@ def test_beside_a_chair_of_few_blocks_there_is_no_lump_of_its_cells(scale):
     chair = _chair(1, 10, 10, sketch)
     sketch.put((17, 24), (10, 14), (0, 9), CHAIR, RED, 1)  # Cells that the chair does not explain.
     volume = _built(sketch, [chair], scale)
-    blocks = idiom(chair, scale).blocks
+    blocks = block_design(chair, scale).blocks
     assert (volume.instance == 1).sum() == len(blocks)
 
 
@@ -69,7 +69,7 @@ def test_at_four_blocks_a_metre_they_are_built():
     chair = _chair(1, 10, 10, sketch)
     sketch.put((17, 24), (10, 14), (0, 9), CHAIR, RED, 1)
     volume = _built(sketch, [chair], 4.0)
-    assert (volume.instance == 1).sum() > len(idiom(chair, 4.0).blocks)
+    assert (volume.instance == 1).sum() > len(block_design(chair, 4.0).blocks)
 
 
 @pytest.mark.parametrize("scale", [2.0, 4.0])
@@ -79,9 +79,9 @@ def test_a_box_on_a_table_lies_over_its_top_and_both_are_whole(scale):
     table = placement("dining_table", TABLE, (1.6, 0.96, 0.4), (0.96, 1.6, 0.8), 1, 1)
     box = placement("box", OBJS, (1.52, 0.96, 1.0), (0.48, 0.48, 0.4), number=2)
     volume = _built(sketch, [table, box], scale)
-    assert (volume.instance == 1).sum() == len(idiom(table, scale).blocks)
+    assert (volume.instance == 1).sum() == len(block_design(table, scale).blocks)
     own, under = np.argwhere(volume.instance == 2), np.argwhere(volume.instance == 1)
-    assert len(own) == len(idiom(box, scale).blocks)
+    assert len(own) == len(block_design(box, scale).blocks)
     assert own[:, 1].min() > under[:, 1].max()
     assert unstable(volume) == []
 
@@ -90,7 +90,7 @@ def test_a_box_on_a_table_lies_over_its_top_and_both_are_whole(scale):
 def test_handles_stand_out_to_the_front_and_the_body_stays_at_the_wall(turns):
     one = placement("cabinet", FURN, (2.0, 2.0, 0.45), (0.5, 1.0, 0.9), turns)
     lattice = Lattice((-3, 61, -3), (30, 30, 20), np.array([0.0, 4.0]), 4.0)
-    design = idiom(one, 4.0)
+    design = block_design(one, 4.0)
     low, size = design_box(design, one, lattice)
     start, solid = body_box(design, one, lattice, low, size)
     axis = turns % 2
@@ -112,5 +112,5 @@ def test_handles_stand_out_to_the_front_and_the_body_stays_at_the_wall(turns):
     ],
 )
 def test_a_small_thing_at_two_blocks_a_metre_is_no_larger_than_it_must_be(size_m, word):
-    blocks = idiom(placement("box", OBJS, (0, 0, 0), size_m), 2.0).blocks
+    blocks = block_design(placement("box", OBJS, (0, 0, 0), size_m), 2.0).blocks
     assert all(word in block.state for block in blocks)

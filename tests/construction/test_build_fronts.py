@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction.block_designs import design_box, filled_blocks
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_design, template
 
 ROOM_M = 6.0
 
@@ -29,7 +29,7 @@ def test_no_design_is_pushed_into_the_wall_behind(name, share, turns, scale):
     middle = np.array([ROOM_M / 2, ROOM_M / 2, height.typical / 2])
     axis, sign = (0, away[0]) if away[0] else (1, away[1])
     middle[axis] = deep / 2 if sign > 0 else ROOM_M - deep / 2
-    found = idiom(Placement(1, one.class_id, name, middle, size, turns, 1.0), scale)
+    found = block_design(Placement(1, one.class_id, name, middle, size, turns, 1.0), scale)
     low, _ = design_box(found, Placement(1, one.class_id, name, middle, size, turns, 1.0), lattice)
     cells = np.argwhere(filled_blocks(found)) + low
     walls = lattice.coordinates_of(np.array([[0.0, 0.0, 0.0], [ROOM_M, ROOM_M, 0.0]]))[:, axis]

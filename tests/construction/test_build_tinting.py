@@ -10,7 +10,7 @@ from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_design, template
 from world2minecraft.geometry.colour import srgb_to_oklab
 
 RED, BLUE, WHITE, OAK, DARK = (
@@ -29,7 +29,9 @@ def _lab(rgb):
 def _design(name, scale=4.0, size_m=None, quarter_turns=0):
     one = template(name)
     size = np.array(size_m or one.typical_m)
-    return idiom(Placement(1, one.class_id, name, np.zeros(3), size, quarter_turns, 1.0), scale)
+    return block_design(
+        Placement(1, one.class_id, name, np.zeros(3), size, quarter_turns, 1.0), scale
+    )
 
 
 def _states(name, rgb, *, scale=4.0, paint=None, known=True):

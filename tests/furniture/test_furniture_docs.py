@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.furniture.library import markdown
+from world2minecraft.furniture.library import templates_to_markdown
 
 PAGES = Path(__file__).resolve().parents[2] / "docs"
 PAGE = PAGES / "furniture.md"
@@ -12,7 +12,7 @@ PAGE = PAGES / "furniture.md"
 def test_each_template_has_its_row():
     """A design that was changed or added: see the command in the page."""
     told = (PAGES / "furniture-library.md").read_text("utf-8").partition("\n### ")[2]
-    assert f"### {told}" == markdown(template(name) for name in TEMPLATES.names())
+    assert f"### {told}" == templates_to_markdown(template(name) for name in TEMPLATES.names())
 
 
 def test_the_example_of_the_page_is_a_sound_template():

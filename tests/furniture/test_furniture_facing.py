@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture import cells_of, facing, surroundings, template
+from world2minecraft.furniture import estimate_facing, read_surroundings, template, template_cells
 
 
 def _labels(name, quarter_turns, wall_cells=0):
     """Return a room with a template that looks to +x before a wall, all turned together."""
     one = template(name)
-    cells = cells_of(one, one.typical_m, shift=(8, 12, 12 if one.mount == "wall" else 1))
+    cells = template_cells(one, one.typical_m, shift=(8, 12, 12 if one.mount == "wall" else 1))
     labels = np.zeros((50, 50, 32), np.uint8)
     labels[:, :, 0] = SemanticClass.FLOOR
     if wall_cells:
@@ -27,7 +27,7 @@ def _labels(name, quarter_turns, wall_cells=0):
 def test_seats_and_beds_look_away_from_their_backs(name, turns):
     labels, class_id = _labels(name, turns)
     cells = np.argwhere(labels == class_id).astype(np.int32)
-    assert facing(cells, class_id, surroundings(labels)).quarter_turns == turns
+    assert estimate_facing(cells, class_id, read_surroundings(labels)).quarter_turns == turns
 
 
 @pytest.mark.parametrize("turns", range(4))
@@ -36,7 +36,7 @@ def test_seats_and_beds_look_away_from_their_backs(name, turns):
 def test_what_stands_at_a_wall_looks_away_from_it(name, wall_cells, turns):
     labels, class_id = _labels(name, turns, wall_cells)
     cells = np.argwhere(labels == class_id).astype(np.int32)
-    found = facing(cells, class_id, surroundings(labels))
+    found = estimate_facing(cells, class_id, read_surroundings(labels))
     assert found.quarter_turns == turns
     assert found.confidence > 0.5
 
@@ -45,14 +45,14 @@ def test_what_stands_at_a_wall_looks_away_from_it(name, wall_cells, turns):
 def test_the_long_side_of_a_table_is_its_side(turns):
     labels, class_id = _labels("dining_table", turns)
     cells = np.argwhere(labels == class_id).astype(np.int32)
-    assert facing(cells, class_id, surroundings(labels)).quarter_turns % 2 == turns
+    assert estimate_facing(cells, class_id, read_surroundings(labels)).quarter_turns % 2 == turns
 
 
 def test_a_cube_far_from_walls_is_not_sure():
     labels = np.zeros((41, 41, 20), np.uint8)
     labels[18:23, 18:23, 0:5] = SemanticClass.FURN
     cells = np.argwhere(labels).astype(np.int32)
-    assert facing(cells, SemanticClass.FURN, surroundings(labels)).confidence < 0.1
+    assert estimate_facing(cells, SemanticClass.FURN, read_surroundings(labels)).confidence < 0.1
 
 
 TABLE = np.s_[20:34, 16:36, 8:10]  # Its long edge, x = 20, before chairs that look to +x.
@@ -70,7 +70,7 @@ def _at_table(*boxes, turns=0):
 
 def _front(labels):
     cells = np.argwhere(labels == SemanticClass.CHAIR).astype(np.int32)
-    return facing(cells, SemanticClass.CHAIR, surroundings(labels))
+    return estimate_facing(cells, SemanticClass.CHAIR, read_surroundings(labels))
 
 
 SEAT = np.s_[17:23, 22:28, 5:6]

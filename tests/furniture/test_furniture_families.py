@@ -11,7 +11,7 @@ from world2minecraft.furniture import TEMPLATES, check_template, template
 from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.furniture.families.fronts import MOST_REST, body_of, door_columns
 from world2minecraft.furniture.family import FAMILIES
-from world2minecraft.furniture.preview_scene import volume_of
+from world2minecraft.furniture.preview_scene import preview_volume
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.stability import unstable
@@ -33,7 +33,7 @@ each_design = pytest.mark.parametrize("name", NAMES)
 def built(name, scale, column=1):
     """A design on a floor, against a wall or under a ceiling, at one end of its sizes."""
     one = template(name)
-    return volume_of(one, scale, tuple(span[column] for span in one.size_m))
+    return preview_volume(one, scale, tuple(span[column] for span in one.size_m))
 
 
 def states_of(name, scale):
@@ -68,7 +68,7 @@ def test_the_game_knows_every_state(name):
 @each_design
 def test_a_turned_design_stays_too(name):
     for turns in (1, 2, 3):
-        assert unstable(volume_of(template(name), 4.0, quarter_turns=turns)) == []
+        assert unstable(preview_volume(template(name), 4.0, quarter_turns=turns)) == []
 
 
 @each_design

@@ -9,7 +9,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UnknownNameError, World2MinecraftError
 from world2minecraft.furniture import TEMPLATES, Span, Template, check_template, template
 from world2minecraft.furniture.box_primitives import part, slab
-from world2minecraft.furniture.library import templates_of
+from world2minecraft.furniture.library import templates_of_class
 from world2minecraft.furniture.template import BlockSize, LocalBlock
 
 NAMES = TEMPLATES.names()
@@ -17,9 +17,9 @@ NAMES = TEMPLATES.names()
 
 def test_the_library_covers_every_object_class():
     assert len(set(NAMES)) == len(NAMES) >= 24
-    held = [one.name for class_id in OBJECT_CLASSES for one in templates_of(class_id)]
+    held = [one.name for class_id in OBJECT_CLASSES for one in templates_of_class(class_id)]
     assert sorted(held) == sorted(name for name in NAMES if template(name).matched)
-    assert all(templates_of(class_id) for class_id in OBJECT_CLASSES)
+    assert all(templates_of_class(class_id) for class_id in OBJECT_CLASSES)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 
 from world2minecraft.furniture import TEMPLATES, Look, Material, template
 from world2minecraft.furniture.materials import (
+    block_uses,
     kinds,
-    places_of,
-    restated,
+    list_swatches,
     shape_of,
-    swatches,
+    with_swatch,
 )
 from world2minecraft.minecraft.block_states import known_blocks
 
@@ -28,22 +28,22 @@ def test_every_block_of_the_table_is_the_games():
 
 @given(st.sampled_from(BLOCKS))
 def test_a_block_is_found_where_it_stands(block):
-    for place in places_of(block):
+    for place in block_uses(block):
         assert kinds()[place.kind].blocks[place.value][place.shape] == block
 
 
 @given(st.sampled_from(sorted(kinds())), st.sampled_from(["full", "slab", "stairs", "fence"]))
 def test_a_swatch_has_all_the_shapes_that_were_asked_for(kind, shape):
-    for swatch in swatches(kind, frozenset(("full", shape))):
+    for swatch in list_swatches(kind, frozenset(("full", shape))):
         assert {"full", shape} <= set(kinds()[swatch.kind].blocks[swatch.value])
 
 
 def test_a_state_keeps_its_shape_and_properties_in_another_material():
     state = "minecraft:oak_stairs[facing=west,half=bottom]"
-    (birch,) = [one for one in swatches("wood", frozenset({"stairs"})) if one.value == "birch"]
+    (birch,) = [one for one in list_swatches("wood", frozenset({"stairs"})) if one.value == "birch"]
     shape = shape_of(state, "wood")
     assert shape == "stairs"
-    assert restated(state, shape, birch) == "minecraft:birch_stairs[facing=west,half=bottom]"
+    assert with_swatch(state, shape, birch) == "minecraft:birch_stairs[facing=west,half=bottom]"
     assert shape_of("minecraft:lantern[hanging=false]", "wood") is None
 
 

@@ -11,16 +11,21 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import DamagedFileError, LimitError, UnknownNameError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.furniture import raster
-from world2minecraft.furniture.block_designs import block_size, laid
-from world2minecraft.furniture.library import template, templates_of, variants_of
-from world2minecraft.furniture.user_import import Wish, adopt, front_of
-from world2minecraft.furniture.user_library import own_files, own_folder, own_template, read_own
+from world2minecraft.furniture import rasterize
+from world2minecraft.furniture.block_designs import block_size, lay_template
+from world2minecraft.furniture.library import template, templates_of_class, variants_of
+from world2minecraft.furniture.user_import import ImportRequest, front_of, import_blocks
+from world2minecraft.furniture.user_library import (
+    read_user_design,
+    template_from_json,
+    user_design_files,
+    user_design_folder,
+)
 from world2minecraft.minecraft.transforms import turn_volume
 
 AIR = "minecraft:air"
 STAIR = "minecraft:oak_stairs[facing=north,half=bottom]"
-WISH = Wish("my_chair", "chair", 2.0)
+WISH = ImportRequest("my_chair", "chair", 2.0)
 
 
 def volume_of(blocks, side=5):
@@ -40,12 +45,12 @@ def chair():
 
 
 def blocks_of(content, scale=2.0):
-    one = own_template(content)
+    one = template_from_json(content)
     return one.blocks(block_size(np.array(one.typical_m), scale))
 
 
 def test_a_chair_comes_out_as_it_was_built():
-    adopted = adopt(chair(), WISH)
+    adopted = import_blocks(chair(), WISH)
     assert adopted.front == "south"
     found = {block.cell: block.state.partition(",")[0] for block in blocks_of(adopted.content)}
     # The front is east now, so what was west is on the right, which is j = 0.
@@ -58,7 +63,10 @@ def test_a_chair_comes_out_as_it_was_built():
 
 @given(st.integers(0, 3))
 def test_which_way_it_stood_does_not_matter(turns):
-    assert adopt(turn_volume(chair(), turns), WISH).content == adopt(chair(), WISH).content
+    assert (
+        import_blocks(turn_volume(chair(), turns), WISH).content
+        == import_blocks(chair(), WISH).content
+    )
 
 
 @given(st.integers(0, 3))
@@ -67,14 +75,17 @@ def test_a_front_that_is_said_is_the_front(turns):
     sides = ("east", "north", "west", "south")
     wish = WISH._replace(front=sides[turns])
     turned = turn_volume(cube, turns)
-    assert adopt(turned, wish).content == adopt(cube, WISH._replace(front="east")).content
+    assert (
+        import_blocks(turned, wish).content
+        == import_blocks(cube, WISH._replace(front="east")).content
+    )
 
 
 def test_its_size_is_that_of_what_is_seen():
-    content = adopt(chair(), WISH).content
-    one = own_template(content)
+    content = import_blocks(chair(), WISH).content
+    one = template_from_json(content)
     assert one.typical_m == pytest.approx((0.5, 1.0, 1.0))
-    solid = raster(one, (8, 16, 16), (), 1 / 16)
+    solid = rasterize(one, (8, 16, 16), (), 1 / 16)
     expected = np.zeros((8, 16, 16), bool)
     expected[:, :8, :8] = True  # The planks.
     expected[:, 8:, :4] = True  # The low half of the stair,
@@ -84,20 +95,22 @@ def test_its_size_is_that_of_what_is_seen():
 
 
 def test_at_its_own_scale_it_is_built_of_its_blocks_and_elsewhere_of_its_shape():
-    one = own_template(adopt(chair(), WISH).content)
+    one = template_from_json(import_blocks(chair(), WISH).content)
     size = np.array(one.typical_m)
     for scale, kept in ((1.0, False), (1.7, True), (2.0, True), (2.4, True), (4.0, False)):
-        assert (laid(one, block_size(size, scale), None, 0) is not None) == kept
+        assert (lay_template(one, block_size(size, scale), None, 0) is not None) == kept
 
 
 def test_materials_are_those_of_its_blocks_or_take_the_objects_colour():
-    kept = own_template(adopt(chair(), WISH).content).materials
+    kept = template_from_json(import_blocks(chair(), WISH).content).materials
     assert {role: one.value for role, one in kept.items()} == {
         "birch_planks": "birch_planks",
         "oak_stairs": "oak_planks",
         "oak_trapdoor": "oak_planks",
     }
-    taken = own_template(adopt(chair(), WISH._replace(recolour=True)).content).materials
+    taken = template_from_json(
+        import_blocks(chair(), WISH._replace(recolour=True)).content
+    ).materials
     assert all(one.takes_colour and one.kind == "wood" for one in taken.values())
 
 
@@ -110,7 +123,7 @@ def test_materials_are_those_of_its_blocks_or_take_the_objects_colour():
     ],
 )
 def test_the_turns_that_differ_are_found(blocks, turns):
-    assert adopt(volume_of(blocks), WISH._replace(front="east")).content["turns"] == turns
+    assert import_blocks(volume_of(blocks), WISH._replace(front="east")).content["turns"] == turns
 
 
 @pytest.mark.parametrize(
@@ -131,16 +144,18 @@ def test_a_front_is_seen_by_what_has_one(state, kind, front):
 
 def test_fences_are_joined_as_the_game_joins_them():
     fences = volume_of({(1, 1, 1): "minecraft:oak_fence", (2, 1, 1): "minecraft:oak_fence"})
-    content = adopt(fences, WISH._replace(front="east")).content
+    content = import_blocks(fences, WISH._replace(front="east")).content
     assert sorted("east=true" in state for state in content["blocks"]["palette"]) == [False, True]
 
 
 def test_what_would_not_stay_and_what_is_a_mods_is_told():
     torch = volume_of({(1, 2, 1): "minecraft:torch", (1, 1, 1): "somemod:chair"})
-    notes = adopt(torch, WISH._replace(front="east")).notes
+    notes = import_blocks(torch, WISH._replace(front="east")).notes
     assert "not in the plain game, taken as full blocks: chair" in notes
     hanging = volume_of({(1, 2, 1): "minecraft:torch", (2, 1, 1): "minecraft:stone"})
-    assert any("would not stay" in n for n in adopt(hanging, WISH._replace(front="east")).notes)
+    assert any(
+        "would not stay" in n for n in import_blocks(hanging, WISH._replace(front="east")).notes
+    )
 
 
 @pytest.mark.parametrize(
@@ -158,22 +173,22 @@ def test_what_would_not_stay_and_what_is_a_mods_is_told():
 )
 def test_a_wish_that_cannot_be_is_refused(wish, message):
     with pytest.raises((UsageError, UnknownNameError)) as caught:
-        adopt(chair(), WISH._replace(**wish))
+        import_blocks(chair(), WISH._replace(**wish))
     assert message in str(caught.value)
 
 
 def test_blocks_that_cannot_be_are_refused():
     with pytest.raises(UsageError, match="there is no block in it"):
-        adopt(volume_of({}), WISH)
+        import_blocks(volume_of({}), WISH)
     with pytest.raises(UsageError, match="no block shows which side is the front; add --front"):
-        adopt(volume_of({(1, 1, 1): "minecraft:stone"}), WISH)
+        import_blocks(volume_of({(1, 1, 1): "minecraft:stone"}), WISH)
     far = volume_of({(0, 0, 0): "minecraft:stone", (39, 0, 0): "minecraft:stone"}, side=40)
     with pytest.raises(UsageError, match="a piece is 32 blocks at most each way"):
-        adopt(far, WISH._replace(front="east"))
+        import_blocks(far, WISH._replace(front="east"))
 
 
 def _changed(**changes):
-    content = json.loads(json.dumps(adopt(chair(), WISH).content))
+    content = json.loads(json.dumps(import_blocks(chair(), WISH).content))
     blocks = content["blocks"] | changes.pop("blocks", {})
     return content | {"blocks": blocks} | changes
 
@@ -204,19 +219,19 @@ def test_a_file_that_says_what_none_may_is_refused(changes, message, tmp_path):
     path = tmp_path / "my_chair.json"
     write_json(path, _changed(**changes))
     with pytest.raises(DamagedFileError) as caught:
-        read_own(path)
+        read_user_design(path)
     assert message in str(caught.value)
     assert str(caught.value).endswith("add it anew with w2m furniture add, or take the file away")
 
 
 def test_a_file_of_another_name_or_too_large_is_refused(tmp_path):
     path = tmp_path / "other.json"
-    write_json(path, adopt(chair(), WISH).content)
+    write_json(path, import_blocks(chair(), WISH).content)
     with pytest.raises(DamagedFileError, match="its name must be that of its file, not 'my_chair'"):
-        read_own(path)
+        read_user_design(path)
     path.write_text(" " * (5 << 20))
     with pytest.raises(LimitError):
-        read_own(path)
+        read_user_design(path)
 
 
 @given(st.binary(max_size=200))
@@ -224,31 +239,31 @@ def test_any_bytes_are_a_template_or_a_typed_error(tmp_path_factory, data):
     path = tmp_path_factory.getbasetemp() / "noise.json"
     path.write_bytes(data)
     with pytest.raises(DamagedFileError):
-        read_own(path)
+        read_user_design(path)
 
 
 @pytest.fixture
 def library(tmp_path, monkeypatch):
     """An empty folder of the user's own furniture, and a library that forgets what it read."""
     monkeypatch.setenv("W2M_FURNITURE", str(tmp_path / "own"))
-    for function in (template, templates_of, variants_of):
+    for function in (template, templates_of_class, variants_of):
         function.cache_clear()
     yield tmp_path / "own"
-    for function in (template, templates_of, variants_of):
+    for function in (template, templates_of_class, variants_of):
         function.cache_clear()
 
 
 def test_an_own_piece_is_in_the_library_and_is_matched(library):
-    assert own_files() == {}
-    write_json(library / "my_chair.json", adopt(chair(), WISH).content)
+    assert user_design_files() == {}
+    write_json(library / "my_chair.json", import_blocks(chair(), WISH).content)
     write_json(library / "Not A Name.json", {})
-    assert list(own_files()) == ["my_chair"]
+    assert list(user_design_files()) == ["my_chair"]
     assert template("my_chair").title == "My chair"
-    assert "my_chair" in [one.name for one in templates_of(5)]
+    assert "my_chair" in [one.name for one in templates_of_class(5)]
 
 
 def test_a_library_name_is_never_taken_over(library):
-    write_json(library / "chair.json", adopt(chair(), WISH).content | {"name": "chair"})
+    write_json(library / "chair.json", import_blocks(chair(), WISH).content | {"name": "chair"})
     assert template("chair").title == "Chair"
 
 
@@ -271,13 +286,13 @@ def test_a_design_file_of_a_family_is_furniture_too(library):
 
 
 def test_the_folder_is_where_settings_lie():
-    assert str(own_folder({"W2M_FURNITURE": "/a/b"})) == "/a/b"
-    linux = own_folder({"XDG_CONFIG_HOME": "/settings"}, "linux")
+    assert str(user_design_folder({"W2M_FURNITURE": "/a/b"})) == "/a/b"
+    linux = user_design_folder({"XDG_CONFIG_HOME": "/settings"}, "linux")
     assert linux.as_posix() == "/settings/world2minecraft/furniture"
-    windows = own_folder({"APPDATA": "C:/Users/me/Roaming"}, "win32")
+    windows = user_design_folder({"APPDATA": "C:/Users/me/Roaming"}, "win32")
     assert windows.as_posix() == "C:/Users/me/Roaming/world2minecraft/furniture"
 
 
 def test_entities_and_labels_do_not_matter():
     labelled = replace(chair(), semantic=np.full((5, 5, 5), 5, np.uint8))
-    assert adopt(labelled, WISH).content == adopt(chair(), WISH).content
+    assert import_blocks(labelled, WISH).content == import_blocks(chair(), WISH).content

@@ -6,8 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture import TEMPLATES, cells_of, size_in_cells, surface, template
-from world2minecraft.furniture import raster
+from world2minecraft.furniture import (
+    TEMPLATES,
+    rasterize,
+    size_in_cells,
+    surface_cells,
+    template,
+    template_cells,
+)
 
 NAMES = TEMPLATES.names()
 
@@ -37,15 +43,15 @@ def test_the_fast_raster_is_the_slow_one(name, shares, voxel_m):
     one = template(name)
     size = [a + (b - a) * share for (a, _, b), share in zip(one.size_m, shares, strict=True)]
     counts = size_in_cells(size, voxel_m)
-    fast = raster(one, counts, tuple(one.complete().items()), voxel_m)
+    fast = rasterize(one, counts, tuple(one.complete().items()), voxel_m)
     np.testing.assert_array_equal(fast, _slow_raster(one, counts, voxel_m))
 
 
 @given(st.sampled_from(NAMES), st.integers(-4, 7))
 def test_a_quarter_turn_turns_the_cells(name, turns):
     one = template(name)
-    before = cells_of(one, one.typical_m, quarter_turns=turns)
-    after = cells_of(one, one.typical_m, quarter_turns=turns + 1)
+    before = template_cells(one, one.typical_m, quarter_turns=turns)
+    after = template_cells(one, one.typical_m, quarter_turns=turns + 1)
     solid = np.zeros(before.max(axis=0) + 1, bool)
     solid[tuple(before.T)] = True
     np.testing.assert_array_equal(np.argwhere(turn_grid(solid, 1)), after)
@@ -54,16 +60,16 @@ def test_a_quarter_turn_turns_the_cells(name, turns):
 @pytest.mark.parametrize("name", NAMES)
 def test_cells_fill_the_box_and_follow_the_shift(name):
     one = template(name)
-    cells = cells_of(one, one.typical_m, voxel_m=0.02)
+    cells = template_cells(one, one.typical_m, voxel_m=0.02)
     assert cells.dtype == np.int32
     assert cells.min(axis=0).tolist() == [0, 0, 0]
     assert np.abs((cells.max(axis=0) + 1) * 0.02 - one.typical_m).max() <= 0.02
-    shifted = cells_of(one, one.typical_m, shift=(3, -2, 7), voxel_m=0.02)
+    shifted = template_cells(one, one.typical_m, shift=(3, -2, 7), voxel_m=0.02)
     np.testing.assert_array_equal(shifted, cells + np.array([3, -2, 7]))
 
 
 def test_a_thin_top_and_thin_legs_are_never_lost():
-    solid = raster(template("dining_table"), (10, 10, 6), (("top_thickness", 0.03),), 0.2)
+    solid = rasterize(template("dining_table"), (10, 10, 6), (("top_thickness", 0.03),), 0.2)
     assert solid[:, :, -1].all()
     assert solid[:, :, 0].sum() == 4
 
@@ -78,9 +84,9 @@ def test_the_surface_is_the_cells_with_an_open_face(seed):
         faces = [(i - 1, j, k), (i + 1, j, k), (i, j - 1, k), (i, j + 1, k)]
         faces += [(i, j, k - 1), (i, j, k + 1)]
         slow[x, y, z] = not all(padded[face] for face in faces)
-    np.testing.assert_array_equal(surface(solid), slow)
+    np.testing.assert_array_equal(surface_cells(solid), slow)
 
 
 def test_a_box_beyond_reason_is_refused():
     with pytest.raises(ValueError, match="box of .* cells is too large; 8000000 at most"):
-        cells_of(template("box"), (100.0, 100.0, 100.0), voxel_m=0.02)
+        template_cells(template("box"), (100.0, 100.0, 100.0), voxel_m=0.02)

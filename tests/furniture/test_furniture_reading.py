@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, World2MinecraftError
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.furniture.design_files import design_of, read_design
-from world2minecraft.furniture.library import design_files
+from world2minecraft.furniture.design_files import design_from_json, read_design
+from world2minecraft.furniture.library import builtin_design_files
 
-CHAIR = json.loads(design_files()["chair"].read_text("utf-8"))
+CHAIR = json.loads(builtin_design_files()["chair"].read_text("utf-8"))
 
 
 def _changed(*path, value=None, drop=False):
@@ -39,7 +39,7 @@ def test_a_design_file_is_what_it_says():
 
 
 def test_every_file_of_the_library_is_read_under_its_own_name():
-    files = design_files()
+    files = builtin_design_files()
     assert set(files) <= set(TEMPLATES.names())
     for name, path in files.items():
         assert read_design(path).name == name
@@ -105,7 +105,7 @@ def test_every_file_of_the_library_is_read_under_its_own_name():
 )
 def test_what_no_design_may_say_is_refused(raw, message):
     with pytest.raises((ValueError, World2MinecraftError)) as caught:
-        design_of(raw)
+        design_from_json(raw)
     if message is not None:
         assert str(caught.value) == message
 
@@ -143,7 +143,7 @@ JUNK = st.one_of(
 @given(st.sampled_from(sorted(_leaves(CHAIR))), JUNK)
 def test_any_value_gives_a_design_or_a_typed_error(path, value):
     with suppress(ValueError, World2MinecraftError):
-        design_of(_changed(*path, value=value))
+        design_from_json(_changed(*path, value=value))
 
 
 def test_a_deep_file_and_a_large_one_are_refused(tmp_path):

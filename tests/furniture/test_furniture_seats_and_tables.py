@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.furniture.family import FAMILIES
-from world2minecraft.furniture.preview_scene import volume_of
+from world2minecraft.furniture.preview_scene import preview_volume
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.visual_shapes import visual_boxes_of
@@ -52,7 +52,7 @@ def test_every_block_stays_where_it_is(name):
     one = template(name)
     for scale in SCALES:
         for column in range(3):
-            volume = volume_of(one, scale, tuple(span[column] for span in one.size_m))
+            volume = preview_volume(one, scale, tuple(span[column] for span in one.size_m))
             assert unstable(volume) == []
 
 

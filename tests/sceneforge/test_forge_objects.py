@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.furniture.layout_checks import floaters
 from world2minecraft.sceneforge.editor import Editor
 
@@ -16,7 +16,7 @@ def editor(tmp_path):
     labels[:, :, 0], labels[7] = 2, 3
     for name, at, turns in (("chair", (40, 40, 1), 3), ("double_bed", (8, 14, 1), 0)):
         one = template(name)
-        labels[tuple(cells_of(one, one.typical_m, None, turns, at).T)] = one.class_id
+        labels[tuple(template_cells(one, one.typical_m, None, turns, at).T)] = one.class_id
     labels[50:54, 10:14, 20:24] = 11
     np.save(tmp_path / "room.npy", labels)
     editor = Editor.open(tmp_path / "room.npy")

@@ -18,13 +18,25 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import FADED, colour_costs, paint_surface
+from world2minecraft.construction.surface_painting import (
+    FADED,
+    BlockChoice,
+    colour_costs,
+    paint_surface,
+)
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import Idiom, IdiomBlock, Material
+from world2minecraft.furniture import BlockDesign, DesignBlock, Material
 from world2minecraft.furniture.block_designs import block_size
-from world2minecraft.furniture.materials import FIXED, PLAIN, Swatch, restated, shape_of, swatches
+from world2minecraft.furniture.materials import (
+    FIXED,
+    PLAIN,
+    Swatch,
+    list_swatches,
+    shape_of,
+    with_swatch,
+)
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate_faces
 from world2minecraft.minecraft.block_colours import (
@@ -96,7 +108,7 @@ class ObjectColours(NamedTuple):
 
 
 def recolour_design(
-    blocks: Sequence[IdiomBlock],
+    blocks: Sequence[DesignBlock],
     cells: np.ndarray,
     materials: Mapping[str, Material],
     hue: ObjectColours,
@@ -185,10 +197,11 @@ def _painted(
     mask = np.zeros(hue.known.shape, bool)
     mask[tuple(cells.T)] = True
     known = hue.known & mask if (hue.known & mask).any() else hue.known
-    most = min(PLAIN_PAINTS, parameters.object_colours)
+    limit = min(PLAIN_PAINTS, parameters.object_colours)
+    choice = BlockChoice(class_id, palette, parameters, limit)
     renewed = np.empty(mask.shape, object)
     within = mask | known
-    renewed[within] = paint_surface(within, hue.colours, known, class_id, palette, parameters, most)
+    renewed[within] = paint_surface(within, hue.colours, known, choice)
     return renewed[tuple(cells.T)].tolist()
 
 
@@ -206,9 +219,9 @@ def _restated(
     for state in states:
         shape, strange = found[state], plain.get(state)
         if shape and swatch:
-            renewed.append(restated(state, shape, swatch))
+            renewed.append(with_swatch(state, shape, swatch))
         elif strange and other:
-            renewed.append(restated(state, strange, other))
+            renewed.append(with_swatch(state, strange, other))
         else:
             renewed.append(state)
     return renewed
@@ -218,8 +231,8 @@ def _nearest(
     kind: str, shapes: frozenset[str], colour: np.ndarray, parameters: BuildParameters
 ) -> Swatch | None:
     """Return the material nearest to a colour that has all the shapes; its own kind rather."""
-    own = swatches(kind, shapes)
-    others = swatches(PLAIN, shapes) if kind in ("wood", "stone") else ()
+    own = list_swatches(kind, shapes)
+    others = list_swatches(PLAIN, shapes) if kind in ("wood", "stone") else ()
     offered = [*own, *(one for one in others if one not in own)]
     if not offered:
         return None
@@ -237,7 +250,7 @@ class ObjectLabel(NamedTuple):
 
 
 def design_box(
-    design: Idiom, placement: Placement, lattice: Lattice
+    design: BlockDesign, placement: Placement, lattice: Lattice
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the first block and the size, int [3] each in room axes, of a design in its place.
 
@@ -264,7 +277,7 @@ def design_box(
 
 
 def body_box(
-    design: Idiom, placement: Placement, lattice: Lattice, low: np.ndarray, size: np.ndarray
+    design: BlockDesign, placement: Placement, lattice: Lattice, low: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the first block and the size, int [3] each, of a design without what stands out.
 
@@ -276,7 +289,7 @@ def body_box(
     return start, size - np.where(along, out, 0)
 
 
-def _standing_out(design: Idiom, placement: Placement, lattice: Lattice) -> int:
+def _standing_out(design: BlockDesign, placement: Placement, lattice: Lattice) -> int:
     """Return by how many blocks a design stands out to its front alone."""
     own = block_size(placement.size_m, lattice.blocks_per_metre)
     along, _, across = design.size
@@ -284,7 +297,7 @@ def _standing_out(design: Idiom, placement: Placement, lattice: Lattice) -> int:
     return max(depth - own.depth, 0) if width <= own.width else 0
 
 
-def filled_blocks(design: Idiom) -> np.ndarray:
+def filled_blocks(design: BlockDesign) -> np.ndarray:
     """Return the blocks that a design fills, bool [X, Y, Z] in room axes."""
     along, up, across = design.size
     filled = np.zeros((along, across, up), bool)
@@ -292,7 +305,7 @@ def filled_blocks(design: Idiom) -> np.ndarray:
     return filled
 
 
-def _cells_of(design: Idiom) -> np.ndarray:
+def _cells_of(design: BlockDesign) -> np.ndarray:
     """Return where the blocks of a design stand in its box, int [N, 3] in room axes."""
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
     # Offsets are in block axes already: their inverse map is the map itself.
@@ -301,7 +314,7 @@ def _cells_of(design: Idiom) -> np.ndarray:
 
 def place_design(
     canvas: Canvas,
-    design: Idiom,
+    design: BlockDesign,
     low: np.ndarray,
     thing: ObjectLabel,
     hue: ObjectColours,
@@ -333,7 +346,7 @@ def place_design(
 
 
 def _states(
-    design: Idiom,
+    design: BlockDesign,
     cells: np.ndarray,
     thing: ObjectLabel,
     hue: ObjectColours,
@@ -355,8 +368,8 @@ def _states(
 
 def _in_colour(state: str, colour: np.ndarray, thing: ObjectLabel, palette: Palette) -> str:
     own = recolour_state(state, colour)
-    apart = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
-    if apart <= OWN_COLOUR or not is_full_cube(own):
+    distances = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
+    if distances <= OWN_COLOUR or not is_full_cube(own):
         return own
     choices = palette.blocks[thing.class_id]
     return choices[int(nearest_oklab(colour[None], srgb_to_oklab(colours_of(choices)))[0])]

@@ -23,8 +23,8 @@ from world2minecraft.construction.fitting import (
     Fit,
     Rules,
     Target,
-    covered,
-    even_of,
+    cover_cells,
+    find_symmetry,
     fit_solid,
     shape_set,
     solve,
@@ -102,7 +102,7 @@ def resample_cells(
 
 
 def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: float):
-    """Return the half blocks whose faces are covered; upright sheets are judged whole."""
+    """Return the half blocks whose faces are cover_cells; upright sheets are judged whole."""
     shape = tuple(size.tolist())
     doubled = [edges[0], edges[1], edges[2] * 2]
     shares = face_shares(mask, edges, shape)
@@ -116,7 +116,7 @@ def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: 
 
 
 def _best_phase(mask: np.ndarray, edges: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the edges shifted along x and y so that few blocks are covered by halves."""
+    """Return the edges shifted along x and y so that few blocks are cover_cells by halves."""
     best = list(edges)
     for axis in (0, 1):
         profile = mask.sum(tuple({0, 1, 2} - {axis})).astype(np.float64)
@@ -213,12 +213,12 @@ def share_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dic
 def _is_copy(one: np.ndarray, other: np.ndarray) -> bool:
     if max(abs(a - b) for a, b in zip(one.shape, other.shape, strict=True)) > SIZE_CELLS:
         return False
-    first, second = _centred([one, other])
+    first, second = _center_masks([one, other])
     shared, whole = np.count_nonzero(first & second), np.count_nonzero(first | second)
     return bool(shared >= COPY_IOU * whole)
 
 
-def _centred(masks: Sequence[np.ndarray]) -> np.ndarray:
+def _center_masks(masks: Sequence[np.ndarray]) -> np.ndarray:
     """Return masks in one frame, bool [N, X, Y, Z]: middles above each other, bottoms level."""
     shape = np.max([mask.shape for mask in masks], axis=0)
     result = np.zeros((len(masks), *shape), bool)
@@ -231,7 +231,7 @@ def _centred(masks: Sequence[np.ndarray]) -> np.ndarray:
 
 def _majority(masks: Sequence[np.ndarray]) -> np.ndarray:
     """Return the cells that most of some masks have, bool, cut to their box."""
-    mean = _centred(masks).mean(0) >= MAJORITY
+    mean = _center_masks(masks).mean(0) >= MAJORITY
     at = np.argwhere(mean)
     return mean[tuple(map(slice, at.min(0), at.max(0) + 1))]
 
@@ -267,7 +267,7 @@ def fit_cells(
     body = _body_of(solid.mask, side, bottom, shift, flush)
     target = _target(solid.mask, body, grid.voxel_m, bottom)
     shapes, turns = shape_set(kinds), solid.turns
-    centre = ends[:, :2].mean(0) + _turned_way(body.middle, turns) * side
+    centre = ends[:, :2].mean(0) + _rotate_offset(body.middle, turns) * side
     rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase, stands=stands)
     if shift:
         fit = fit_solid(target, shapes, replace(rules, even=_even(target, body)))
@@ -345,7 +345,7 @@ def _whole(size: float) -> tuple[float, float]:
     return 0.0, 1.0
 
 
-def _turned_way(way: np.ndarray, turns: int) -> np.ndarray:
+def _rotate_offset(way: np.ndarray, turns: int) -> np.ndarray:
     """Return a way in plan, float64 [2], after quarter turns counter-clockwise."""
     x, y = way.tolist()
     for _ in range(turns % 4):
@@ -356,7 +356,7 @@ def _turned_way(way: np.ndarray, turns: int) -> np.ndarray:
 def _even(target: Target, body: Body) -> tuple[bool, bool]:
     """Return along which axes a fit may be its own mirror image: the phase must allow it."""
     along = [fixed is None or fixed % (SUB // 2) == 0 for fixed in body.phase]
-    even = even_of(target)
+    even = find_symmetry(target)
     return even[0] and along[0], even[1] and along[1]
 
 
@@ -378,7 +378,7 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
     counts = [-(-int(n) // SUB) for n in (2 * half[0], 2 * half[1], tall)]
     inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
     thin = thin_cells(mask, voxel_m)
-    wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
+    wanted, slight = (cover_cells(values, edges, counts)[inside] for values in (mask, thin))
     return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)
 
 
@@ -415,18 +415,19 @@ def good_fits(
     for one in (one for one in placements if one.template != OWN_CELLS and id(one) in solids):
         cells, hues = coats.with_tops(held[id(one)])
         kinds = kinds_for_sheet(kinds_of(hues, one), solids[id(one)], side)
-        flush = one.class_id in LAID_ON
-        of_cells = (
-            cells,
-            solids[id(one)],
-            coats.grid,
-            lattice,
-            kinds,
-            True,
-            flush,
-            one.class_id in WALL_MOUNTED,
-        )
-        fit = fit_cells(*of_cells) if kinds & BULKY else None
+        if not kinds & BULKY:
+            fit = None
+        else:
+            fit = fit_cells(
+                cells,
+                solids[id(one)],
+                coats.grid,
+                lattice,
+                kinds,
+                shift=True,
+                flush=one.class_id in LAID_ON,
+                hangs=one.class_id in WALL_MOUNTED,
+            )
         if fit and fit.fit.iou >= MIN_IOU and fit.fit.thin_recall >= MIN_THIN:
             made[id(one)] = fit
         elif one.class_id == SemanticClass.CHAIR:

@@ -1,14 +1,26 @@
-"""The cells that colour things: with their tops closed, stretched over designs, and seen."""
+"""The grid, its colours and the palette that a room is built from, and the cells that colour objects."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.geometry.morphology import dilate_faces
+
+
+class BuildSource(NamedTuple):
+    """What a room is built from."""
+
+    grid: OccupancyGrid
+    colours: np.ndarray  # float32 [X, Y, Z, 3], Oklab, of the grid's cells; 0 where there is none
+    coloured: np.ndarray  # bool [X, Y, Z], which cells have a colour
+    palette: Palette
+    parameters: BuildParameters
 
 
 class ColourSamples(NamedTuple):

@@ -71,8 +71,8 @@ class Materials:
         nearest, best = np.array(full, object)[every.argmin(1)], every.min(1)
         kinds = {"full"}
         for kind in offered:
-            apart = _distances(colours, self.colours[kind], light, self.handicaps[kind]).min(1)
-            near = apart - best <= MAX_COLOUR_LOSS[kind]
+            distances = _distances(colours, self.colours[kind], light, self.handicaps[kind]).min(1)
+            near = distances - best <= MAX_COLOUR_LOSS[kind]
             near |= np.isin(nearest, list(self.own[kind]))
             if near.mean() >= ENOUGH:
                 kinds.add(kind)
@@ -80,13 +80,13 @@ class Materials:
 
     def _apart(self, kind: str, wanted: np.ndarray) -> np.ndarray:
         """Return how far the blocks of a kind are from Oklab colours [N, 3], float64 [N, M]."""
-        apart = np.linalg.norm((wanted[:, None] - self.colours[kind]) * WEIGHTS, axis=2)
+        distances = np.linalg.norm((wanted[:, None] - self.colours[kind]) * WEIGHTS, axis=2)
         return np.round(apart + self.handicaps[kind], 6)
 
     def existing(self, kind: str, full: tuple[str, ...]) -> tuple[str, ...]:
         """Return which of some full blocks exist as a kind of shape, or nearly in their colour."""
-        apart = self._apart(kind, srgb_to_oklab(colours_of(full))).min(1)
-        near = {block for block, off in zip(full, apart.tolist(), strict=True) if off <= SAME}
+        distances = self._apart(kind, srgb_to_oklab(colours_of(full))).min(1)
+        near = {block for block, off in zip(full, distances.tolist(), strict=True) if off <= SAME}
         return tuple(block for block in full if block in near or block in self.own[kind])
 
     def in_all(self, kinds: Sequence[str], full: tuple[str, ...]) -> tuple[str, ...]:
@@ -104,9 +104,9 @@ class Materials:
             return block
         if block in self.own[shape.kind]:
             return shape.of(self.own[shape.kind][block])
-        apart = self._apart(shape.kind, srgb_to_oklab(colours_of([block])))[0]
-        best = int(apart.argmin())
-        if shape.kind != "post" and apart[best] > MARGIN:
+        distances = self._apart(shape.kind, srgb_to_oklab(colours_of([block])))[0]
+        best = int(distances.argmin())
+        if shape.kind != "post" and distances[best] > MARGIN:
             return None
         return shape.of(self.blocks[shape.kind][best])
 
@@ -120,8 +120,10 @@ def _distances(colours, offered, light, handicaps) -> np.ndarray:
     clear = np.clip((own - FAINT) / FAINT, 0, 1)[:, None]
     faded = (1 + (FADED - 1) * clear) * (other < own[:, None]) + (other >= own[:, None])
     square = (colours[:, None] - offered) ** 2
-    apart = light * square[..., 0] + (WEIGHTS[1] * faded) ** 2 * (square[..., 1] + square[..., 2])
-    return np.sqrt(apart) + handicaps
+    distances = light * square[..., 0] + (WEIGHTS[1] * faded) ** 2 * (
+        square[..., 1] + square[..., 2]
+    )
+    return np.sqrt(distances) + handicaps
 
 
 def materials_of(palette: Palette) -> Materials:
@@ -165,7 +167,9 @@ def _alike(names: Mapping[str, str]) -> dict[str, str]:
     if not names:
         return {}
     colours = [srgb_to_oklab(colours_of(list(side))) for side in (names, names.values())]
-    apart = np.linalg.norm(colours[0] - colours[1], axis=1)
+    distances = np.linalg.norm(colours[0] - colours[1], axis=1)
     return {
-        block: name for (block, name), off in zip(names.items(), apart, strict=True) if off <= OWN
+        block: name
+        for (block, name), off in zip(names.items(), distances, strict=True)
+        if off <= OWN
     }

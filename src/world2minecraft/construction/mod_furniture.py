@@ -14,8 +14,8 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.palettes import FACINGS, FurniturePiece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
-from world2minecraft.furniture import Idiom, template
-from world2minecraft.furniture.block_designs import block_size, laid
+from world2minecraft.furniture import BlockDesign, template
+from world2minecraft.furniture.block_designs import block_size, lay_template
 from world2minecraft.furniture.solids import own_cells
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
 from world2minecraft.geometry.colour import srgb_to_oklab
@@ -31,7 +31,7 @@ def mod_furniture(
     placement: Placement,
     blocks_per_metre: float,
     colour: np.ndarray | None,
-) -> Idiom | None:
+) -> BlockDesign | None:
     """Return a palette's own blocks for a placement, turned; None where none is of its size.
 
     Args:
@@ -55,7 +55,7 @@ def mod_furniture(
     blocks = _joined(piece, _laid_out(piece, size, colour))
     spans = (Span(1, 1, 1), Span(1, 1, 1), Span(1, 1, 1))
     whole = Template(found.name, found.class_id, spans, lambda *_: [], lambda *_: blocks)
-    return laid(whole, size, None, placement.quarter_turns)
+    return lay_template(whole, size, None, placement.quarter_turns)
 
 
 def place_mod_furniture(
@@ -89,7 +89,7 @@ def place_mod_furniture(
     return left if pieces else list(placements)
 
 
-def _put(canvas: Canvas, found: Idiom, placement: Placement, within: np.ndarray) -> bool:
+def _put(canvas: Canvas, found: BlockDesign, placement: Placement, within: np.ndarray) -> bool:
     """Set a piece where all of its place is free; return whether it was."""
     low, _ = design_box(found, placement, canvas.lattice)
     offsets = np.array([block.offset for block in found.blocks])

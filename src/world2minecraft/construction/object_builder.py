@@ -31,7 +31,7 @@ from world2minecraft.construction.cell_objects import (
     make_solids,
     resample_cells,
 )
-from world2minecraft.construction.colour_sources import ColourSamples, ColourSource
+from world2minecraft.construction.colour_sources import BuildSource, ColourSamples, ColourSource
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     Design,
@@ -43,8 +43,6 @@ from world2minecraft.construction.fitting import remove_loose_blocks
 from world2minecraft.construction.fitting.shapes import SUB
 from world2minecraft.construction.lattice import volume_shares
 from world2minecraft.construction.overlap_avoidance import best_place, best_step
-from world2minecraft.construction.palettes import Palette
-from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.substitutes import substitute_templates
 from world2minecraft.construction.surface_painting import block_colours, chair_paints
 from world2minecraft.construction.template_blocks import (
@@ -56,8 +54,8 @@ from world2minecraft.construction.template_blocks import (
 )
 from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
-from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.furniture import Idiom, idiom, template
+from world2minecraft.core.types import UNSEEN, Placement
+from world2minecraft.furniture import BlockDesign, block_design, template
 from world2minecraft.furniture.solids import own_cells
 
 CELLS = "cells"
@@ -75,13 +73,10 @@ class ObjectBuilder:
     def __init__(
         self,
         canvas: Canvas,
-        grid: OccupancyGrid,
-        colours: np.ndarray,
-        coloured: np.ndarray,
-        palette: Palette,
-        parameters: BuildParameters,
+        source: BuildSource,
         footprints: Sequence[np.ndarray],
     ):
+        grid, colours, coloured, palette, parameters = source
         free = (grid.labels == 0) & (grid.source != UNSEEN)
         self.coats = ColourSource(grid, colours, coloured, parameters.close_tops)
         self.open_share = volume_shares(free, grid, canvas.lattice)
@@ -116,12 +111,12 @@ class ObjectBuilder:
             cells = held[id(placement)]
             known = placement.template != CELLS
             if id(placement) in well:
-                self._put_made(placement, cells, well[id(placement)])
+                self._put_fit(placement, cells, well[id(placement)])
             elif not known or not self.put_template(placement, cells, forced=not len(cells)):
                 solid = solids.get(id(placement))
                 self.put_cells(cells, placement.class_id, placement.object_id, solid)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
-        rest &= ~self._shown() & ~self._told(placements) & ~self.fitted
+        rest &= ~self._shown() & ~self._represented(placements) & ~self.fitted
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             cells, number = np.argwhere(rest & (keys == key)), key & 0xFFFF
@@ -153,16 +148,16 @@ class ObjectBuilder:
             hues = ColourSamples(cells, np.broadcast_to(place, cells.shape))
             self._put_shapes(single_block_design(place), hues, ObjectLabel(class_id, number))
 
-    def _told(self, placements: Sequence[Placement]) -> np.ndarray:
-        """Return the cells, bool [X, Y, Z], of which a design of few blocks says enough.
+    def _represented(self, placements: Sequence[Placement]) -> np.ndarray:
+        """Return the cells, bool [X, Y, Z], that a design of few blocks represents well enough.
 
         Beside a chair of one or two blocks what is left of its cells would be a lump.
         """
         if self.lattice.blocks_per_metre >= FINE_SCALE or self.parameters.style == "voxels":
             return np.zeros(self.grid.shape, bool)
         own = {one.object_id for one in placements if one.template == CELLS}
-        told = {one.object_id for one in placements} - own
-        return np.isin(self.grid.instance, sorted(told & set(np.unique(self.canvas.instance))))
+        designed = {one.object_id for one in placements} - own
+        return np.isin(self.grid.instance, sorted(designed & set(np.unique(self.canvas.instance))))
 
     def _shown(self) -> np.ndarray:
         """Return the cells, bool [X, Y, Z], that lie in or beside a block of their own object."""
@@ -186,7 +181,7 @@ class ObjectBuilder:
     def _kinds_of_placement(self, cells: np.ndarray, placement: Placement) -> frozenset[str]:
         return self._kinds(cells, ObjectLabel(placement.class_id, placement.object_id))
 
-    def _put_made(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
+    def _put_fit(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
         """Set a fit of an object's own cells."""
         cells, hues = self.coats.with_tops(cells)
         self.fitted[tuple(cells.T)] = True
@@ -204,8 +199,16 @@ class ObjectBuilder:
         solid = solid or make_solid(cells, enclosed_cells(cells, self.grid, class_id), 0)
         kinds = kinds_for_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
         if kinds & BULKY:
-            of_cells = (cells, solid, self.grid, self.lattice, kinds, number > 0)
-            made = fit_cells(*of_cells, class_id in LAID_ON, self._hangs(cells, class_id))
+            made = fit_cells(
+                cells,
+                solid,
+                self.grid,
+                self.lattice,
+                kinds,
+                shift=number > 0,
+                flush=class_id in LAID_ON,
+                hangs=self._hangs(cells, class_id),
+            )
             design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share
@@ -245,7 +248,7 @@ class ObjectBuilder:
             unless it is ``forced``.
         """
         thing = ObjectLabel(placement.class_id, placement.object_id)
-        found = idiom(placement, self.lattice.blocks_per_metre)
+        found = block_design(placement, self.lattice.blocks_per_metre)
         if found is not None:
             return self._put_idiom(found, placement, cells, thing, forced)
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
@@ -269,7 +272,7 @@ class ObjectBuilder:
 
     def _put_idiom(
         self,
-        found: Idiom,
+        found: BlockDesign,
         placement: Placement,
         cells: np.ndarray,
         thing: ObjectLabel,

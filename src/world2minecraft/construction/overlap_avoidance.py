@@ -29,8 +29,8 @@ def best_place(blocks: np.ndarray, counts: np.ndarray, free: np.ndarray) -> np.n
     places = places[free[tuple(places.T)]]
     if not len(places):
         return None
-    apart = np.abs(places[:, None] - blocks).sum(axis=2)
-    served = (counts * np.maximum(2 - apart, 0)).sum(axis=1)
+    distances = np.abs(places[:, None] - blocks).sum(axis=2)
+    served = (counts * np.maximum(2 - distances, 0)).sum(axis=1)
     return places[int(np.argmax(served))]
 
 

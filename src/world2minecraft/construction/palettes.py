@@ -140,7 +140,7 @@ class Palette:
     glass: str
     pane: str
     only: frozenset[str] | None = None
-    furniture: tuple["Piece", ...] = field(default=())
+    furniture: tuple[FurniturePiece, ...] = field(default=())
     meanings: "Meanings | None" = None
 
     def allows(self, state: str) -> bool:

@@ -13,8 +13,8 @@ from scipy import ndimage
 
 from world2minecraft.construction.canvas import BARRIER, Canvas
 from world2minecraft.construction.cell_colours import fill_colours
+from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.palettes import Palette
-from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.construction.surface_painting import (
     block_colours,
@@ -112,32 +112,29 @@ STAND_OUT = {WALL: PICTURE, FLOOR: RUG}
 def put_shell(
     canvas: Canvas,
     shell: Shell,
-    colours: np.ndarray,
-    coloured: np.ndarray,
-    palette: Palette,
-    parameters: BuildParameters,
+    source: BuildSource,
 ) -> None:
     """Paint the surfaces of a shell and set them.
 
     Args:
         canvas: an empty canvas.
         shell: which blocks are what.
-        colours: float32 [X, Y, Z, 3], the Oklab colours of the grid's cells.
-        coloured: bool [X, Y, Z], which cells have one.
-        palette: what may be used.
-        parameters: how many colours, how calm.
+        source: the colours of the grid's cells, and what may be used.
     """
-    at = tuple(shell.cells.T)
-    tinted, known = block_colours(canvas.states.shape, shell.blocks, colours[at], coloured[at])
+    at, palette = tuple(shell.cells.T), source.palette
+    tinted, known = block_colours(
+        canvas.states.shape, shell.blocks, source.colours[at], source.coloured[at]
+    )
     surfaces = [(shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)]
-    if parameters.ceiling == "glass":
+    if source.parameters.ceiling == "glass":
         canvas.put(shell.ceiling, canvas.id_of(palette.glass), CEILING)
         surfaces = surfaces[1:]
     for mask, class_id in surfaces:
-        source = (tinted, known & mask, class_id, palette, parameters)
+        limit = source.parameters.structure_colours
+        choice = BlockChoice(class_id, palette, source.parameters, limit)
         used: frozenset[str] = frozenset()
         for patch in sorted(_patches(mask, shell.patches), key=lambda patch: -int(patch.sum())):
-            used |= _put_surface(canvas, patch, used, *source)
+            used |= _put_surface(canvas, patch, tinted, known & mask, choice, used)
     _put_windows(canvas, shell.windows, palette)
     _name_foundations(canvas)
 
@@ -145,34 +142,29 @@ def put_shell(
 def _put_surface(
     canvas: Canvas,
     patch: np.ndarray,
-    used: frozenset[str],
-    tinted: np.ndarray,
+    colours: np.ndarray,
     known: np.ndarray,
-    class_id: int,
-    palette: Palette,
-    parameters: BuildParameters,
+    choice: BlockChoice,
+    used: frozenset[str],
 ) -> frozenset[str]:
     """Set a surface, and on it, in blocks of their own, what stands out from it.
 
     Returns:
         The blocks of the surface itself.
     """
-    parts = np.zeros(patch.shape, np.int32)
+    parts, class_id = np.zeros(patch.shape, np.int32), choice.class_id
     if class_id in STAND_OUT and (known & patch).any():
         step_m = 1 / canvas.lattice.blocks_per_metre
-        colours = fill_colours(tinted, known & patch, patch, np.zeros(3, np.float32))
-        parts[patch] = find_contrasting_parts(patch, colours, step_m, STAND_OUT[class_id])
+        filled = fill_colours(colours, known & patch, patch, np.zeros(3, np.float32))
+        parts[patch] = find_contrasting_parts(patch, filled, step_m, STAND_OUT[class_id])
     around: frozenset[str] = frozenset()
     for part in np.unique(parts[patch]).tolist():
         mask = patch & (parts == part)
         states = paint_surface(
             mask,
-            tinted,
+            colours,
             known & (mask if (known & mask).any() else patch),
-            class_id,
-            palette,
-            parameters,
-            parameters.structure_colours,
+            choice,
             beside=around,
             used=used,
         )

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.construction.colour_sources import ColourSamples, ColourSource
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import Span, Template, template, templates_of
+from world2minecraft.furniture import Span, Template, template, templates_of_class
 from world2minecraft.furniture.solids import OWN_CELLS
 
 # What people know by its shape; a cupboard is known by its place and colour.
@@ -65,7 +65,7 @@ def substitute_template(placement: Placement, alone: bool, colour: np.ndarray | 
 
 def _offered(class_id: int, colour: np.ndarray | None) -> Sequence[Template]:
     if class_id in KNOWN_BY_SHAPE:
-        return templates_of(class_id)
+        return templates_of_class(class_id)
     return (template(PLANT),) if class_id == SemanticClass.OBJS and is_green(colour) else ()
 
 

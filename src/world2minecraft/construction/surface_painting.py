@@ -11,6 +11,7 @@ similar colours are a set and share one paint.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,10 +69,10 @@ def colour_costs(
     clear = np.clip((own - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
     weight = FAINT_WEIGHT + (CHROMA_WEIGHT - FAINT_WEIGHT) * clear
     weight = np.where(chroma < 0, weight, CHROMA_WEIGHT)  # Greyer than it is, is no such fault.
-    apart = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
+    distances = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
     faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
     faded = faded * (np.hypot(offered[:, 1], offered[:, 2]) < own / 2)
-    return (np.sqrt(apart) + handicaps.astype(np.float32) + faded) ** 2
+    return (np.sqrt(distances) + handicaps.astype(np.float32) + faded) ** 2
 
 
 def choose_blocks(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
@@ -276,14 +277,20 @@ def block_colours(
     return result.reshape((*shape, 3)), known.reshape(shape)
 
 
+class BlockChoice(NamedTuple):
+    """Which blocks a surface may become."""
+
+    class_id: int  # Whose blocks of the palette may be used.
+    palette: Palette
+    parameters: BuildParameters  # How colours are weighed.
+    max_blocks: int  # At most so many different blocks.
+
+
 def paint_surface(
     mask: np.ndarray,
     colours: np.ndarray,
     known: np.ndarray,
-    class_id: int,
-    palette: Palette,
-    parameters: BuildParameters,
-    most: int,
+    choice: BlockChoice,
     *,
     beside: frozenset[str] = frozenset(),
     used: frozenset[str] = frozenset(),
@@ -295,14 +302,12 @@ def paint_surface(
         mask: bool [X, Y, Z].
         colours: float32 [X, Y, Z, 3], Oklab.
         known: bool [X, Y, Z], where ``colours`` holds one.
-        class_id: whose blocks of the palette may be used.
-        palette: what may be used.
-        parameters: how colours are weighed.
-        most: at most so many different blocks.
+        choice: which blocks may be used.
         beside: blocks that the surface is to stand out from: none that looks like them is used.
         used: blocks that the room already has; they win where they are about as near.
         only: the blocks of the class that may be used; none stands for all.
     """
+    class_id, palette, parameters, max_blocks = choice
     default = palette.defaults[class_id]
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
@@ -316,7 +321,7 @@ def paint_surface(
         fill_colours(colours, known & mask, mask, block_colour(default)),
         np.argwhere(mask),
         choices,
-        most=most,
+        most=max_blocks,
         lightness_weight=parameters.structure_lightness_weight if shell else weight,
         noticed=parameters.structure_noticed if shell else parameters.object_noticed,
         match_weight=weight,
@@ -333,7 +338,7 @@ def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]
         return choices
     offered = srgb_to_oklab(colours_of(choices))
     others = srgb_to_oklab(colours_of(sorted(beside)))
-    apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= DISTINGUISHABLE
+    distances = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= DISTINGUISHABLE
     return tuple(np.array(choices)[apart].tolist()) or choices
 
 

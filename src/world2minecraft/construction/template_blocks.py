@@ -16,7 +16,7 @@ from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.materials import WEIGHTS, materials_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import paint_surface
+from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import Placement
@@ -78,8 +78,8 @@ class ShapePainter:
         Each kind of shape is painted with what exists in it. Where that would miss the colour, it
         is a full block of the right one.
         """
-        most = PAINTS.get(class_id, self.parameters.object_colours)
-        choice = (class_id, self.palette, self.parameters, most)
+        limit = PAINTS.get(class_id, self.parameters.object_colours)
+        choice = BlockChoice(class_id, self.palette, self.parameters, limit)
         full = self.palette.blocks[class_id]
         kinds = design.shapes.kinds[design.numbers]
         used = sorted(set(kinds[design.filled].tolist()) - {"full"})
@@ -87,9 +87,9 @@ class ShapePainter:
         plain = np.empty(design.numbers.shape, object)
         own, able = plain.copy(), self.materials.in_all(used, full)
         if able and shaped.any():
-            own[shaped] = paint_surface(shaped, colours, known & shaped, *choice, only=able)
+            own[shaped] = paint_surface(shaped, colours, known & shaped, choice, only=able)
         alike = frozenset(own[shaped].tolist()) if able else frozenset()
-        plain[design.filled] = paint_surface(design.filled, colours, known, *choice, used=alike)
+        plain[design.filled] = paint_surface(design.filled, colours, known, choice, used=alike)
         if not able:
             own = plain
         result = plain.copy()
@@ -105,8 +105,8 @@ class ShapePainter:
         """Whether a block shows a colour nearly as well as another does."""
         offered = srgb_to_oklab(colours_of([block, other]))
         light = np.sqrt(self.parameters.lightness_weight)
-        apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
-        return bool(apart[0] - apart[1] <= MAX_COLOUR_LOSS)
+        distances = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
+        return bool(distances[0] - distances[1] <= MAX_COLOUR_LOSS)
 
 
 class HalfBlockDesign(NamedTuple):

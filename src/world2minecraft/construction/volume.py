@@ -6,6 +6,7 @@ import numpy as np
 
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import cell_colours, coloured_cells, unify_paints
+from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.builder import DisplayBuilder
 from world2minecraft.construction.finishing import apply_block_updates, restrict_to_palette
 from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
@@ -13,7 +14,7 @@ from world2minecraft.construction.lattice import is_exact, lattice_over, snap_co
 from world2minecraft.construction.lighting import hang_lamps, put_lights
 from world2minecraft.construction.mod_furniture import place_mod_furniture
 from world2minecraft.construction.object_builder import ObjectBuilder
-from world2minecraft.construction.palettes import Palette, load_palette
+from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.plaque import SIGN, WALL_SIGN, add_plaque
 from world2minecraft.construction.shell import put_edge, put_shell
@@ -59,12 +60,11 @@ def build_volume(
     canvas = Canvas(add_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)
     colours = cell_colours(grid, chosen.expose, chosen.saturation)
-    coloured = coloured_cells(grid)
-    source = (grid, colours, coloured, palette, chosen)
+    source = BuildSource(grid, colours, coloured_cells(grid), palette, chosen)
     if is_exact(grid, blocks_per_metre):
-        footprints = place_voxels(canvas, *source)
+        footprints = place_voxels(canvas, source)
     else:
-        footprints = _put_room(canvas, placements, instances, *source)
+        footprints = _put_room(canvas, placements, instances, source)
     restrict_to_palette(canvas, palette)
     apply_block_updates(canvas)
     if chosen.edge == "barrier":
@@ -84,25 +84,24 @@ def _put_room(
     canvas: Canvas,
     placements: Sequence[Placement],
     instances: Sequence[ObjectInstance],
-    grid: OccupancyGrid,
-    colours: np.ndarray,
-    coloured: np.ndarray,
-    palette: Palette,
-    parameters: BuildParameters,
+    source: BuildSource,
 ) -> tuple[np.ndarray, ...]:
     """Set shell and objects; return each storey's footprint, bool [X, Y]."""
+    grid, colours, coloured, palette, parameters = source
     shell = build_shell(grid, canvas.lattice, parameters)
-    put_shell(canvas, shell, colours, coloured, palette, parameters)
+    put_shell(canvas, shell, source)
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = unify_paints(colours[things])
+    object_source = source._replace(colours=painted)
     if parameters.style == "display":
-        source = (grid, painted, coloured, palette, parameters)
-        DisplayBuilder(canvas, *source, instances).put_all(placements)
+        DisplayBuilder(canvas, object_source, instances).put_all(placements)
         return shell.footprints
-    builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
-    source = (placements, painted, grid, builder.within)
-    builder.put_all(place_mod_furniture(canvas, palette.furniture, *source))
+    builder = ObjectBuilder(canvas, object_source, shell.footprints)
+    remaining = place_mod_furniture(
+        canvas, palette.furniture, placements, painted, grid, builder.within
+    )
+    builder.put_all(remaining)
     support_floaters(canvas)
     close_gaps(canvas)
     return shell.footprints

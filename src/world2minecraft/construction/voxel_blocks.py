@@ -3,28 +3,24 @@
 import numpy as np
 
 from world2minecraft.construction.canvas import BARRIER, Canvas
+from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.lattice import Lattice
-from world2minecraft.construction.palettes import Palette
-from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
-from world2minecraft.construction.surface_painting import paint_surface
+from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.geometry.morphology import dilate, fill_holes
 
 
 def place_voxels(
     canvas: Canvas,
-    grid: OccupancyGrid,
-    colours: np.ndarray,
-    coloured: np.ndarray,
-    palette: Palette,
-    parameters: BuildParameters,
+    source: BuildSource,
 ) -> tuple[np.ndarray, ...]:
     """Set every occupied cell as one block; return each storey's footprint, bool [X, Y].
 
     The floor's unseen holes are closed with invisible barriers, which carry class 0: one can walk
     on them, and the occupied blocks are the occupied cells and no others.
     """
+    grid, colours, coloured, palette, parameters = source
     start = _start(grid, canvas.lattice)
     inside = tuple(slice(low, low + size) for low, size in zip(start, grid.shape, strict=True))
     states = np.zeros(grid.shape, np.uint16)
@@ -38,7 +34,8 @@ def place_voxels(
         if class_id == WINDOW:
             states[mask] = canvas.id_of(palette.glass)
             continue
-        chosen = paint_surface(mask, colours, coloured, class_id, palette, parameters, limit)
+        choice = BlockChoice(class_id, palette, parameters, limit)
+        chosen = paint_surface(mask, colours, coloured, choice)
         names, index = np.unique(chosen.astype(str), return_inverse=True)
         states[mask] = canvas.ids_of(names.tolist())[index]
     canvas.states[inside] = states

@@ -241,8 +241,8 @@ class PlateBuilder:
         mask &= self.canvas.states == 0
         slabs = self.palette.slabs if top.half != FULL else {}  # A palette of few blocks has none.
         choices = list(slabs or self.palette.blocks[SemanticClass.FURN])
-        apart = np.linalg.norm(srgb_to_oklab(colours_of(choices)) - top.colour, axis=1)
-        block = choices[int(apart.argmin())]
+        distances = np.linalg.norm(srgb_to_oklab(colours_of(choices)) - top.colour, axis=1)
+        block = choices[int(distances.argmin())]
         state = f"{slabs[block]}[type=bottom]" if slabs else block
         self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
@@ -263,10 +263,10 @@ class PlateBuilder:
             under = own[:, :, top.layer] & top.columns
             free = self.canvas.states[:, :, top.layer + 1] == 0
             if (under & free).any():
-                apart = np.linalg.norm(srgb_to_oklab(colours_of(carpets)) - top.colour, axis=1)
+                distances = np.linalg.norm(srgb_to_oklab(colours_of(carpets)) - top.colour, axis=1)
                 mask = np.zeros(self.lattice.shape, bool)
                 mask[:, :, top.layer + 1] = under & free
-                state = carpets[int(apart.argmin())]
+                state = carpets[int(distances.argmin())]
                 self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
     def plate_over(self, design: Design, number: int) -> None:

@@ -5,35 +5,40 @@ A design of your own is one data file in ``designs/``, or an entry point of the 
 """
 
 from world2minecraft.furniture.appearance import Look
-from world2minecraft.furniture.block_designs import Idiom, IdiomBlock, idiom
-from world2minecraft.furniture.facing import Facing, facing, surroundings
-from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
+from world2minecraft.furniture.block_designs import BlockDesign, DesignBlock, block_design
+from world2minecraft.furniture.facing import Facing, estimate_facing, read_surroundings
+from world2minecraft.furniture.library import TEMPLATES, template, templates_of_class, variants_of
 from world2minecraft.furniture.materials import Material
-from world2minecraft.furniture.rasterization import cells_of, raster, size_in_cells, surface
+from world2minecraft.furniture.rasterization import (
+    rasterize,
+    size_in_cells,
+    surface_cells,
+    template_cells,
+)
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 from world2minecraft.furniture.template_validation import check_template
 
 __all__ = [
     "TEMPLATES",
+    "BlockDesign",
     "BlockSize",
+    "DesignBlock",
     "Facing",
-    "Idiom",
-    "IdiomBlock",
     "LocalBlock",
     "Look",
     "Material",
     "Part",
     "Span",
     "Template",
-    "cells_of",
+    "block_design",
     "check_template",
-    "facing",
-    "idiom",
-    "raster",
+    "estimate_facing",
+    "rasterize",
+    "read_surroundings",
     "size_in_cells",
-    "surface",
-    "surroundings",
+    "surface_cells",
     "template",
-    "templates_of",
+    "template_cells",
+    "templates_of_class",
     "variants_of",
 ]

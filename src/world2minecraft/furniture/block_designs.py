@@ -18,7 +18,7 @@ from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters
 PARTS_FROM = 6.0  # Blocks per metre from which parts of 8 cm are half a block thick and fit well.
 
 
-class IdiomBlock(NamedTuple):
+class DesignBlock(NamedTuple):
     """One block: its offset in block axes (x east, y up, z south), state and part role."""
 
     offset: tuple[int, int, int]
@@ -27,15 +27,15 @@ class IdiomBlock(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Idiom:
+class BlockDesign:
     """A design in vanilla blocks. Offsets are from the minimum corner of its box of ``size``."""
 
-    blocks: tuple[IdiomBlock, ...]
+    blocks: tuple[DesignBlock, ...]
     size: tuple[int, int, int]  # blocks along x, y, z in block axes
     materials: Mapping[str, Material] = field(default_factory=dict)  # of the roles
 
 
-def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
+def block_design(placement: Placement, blocks_per_metre: float) -> BlockDesign | None:
     """Return the vanilla design of a placement, turned as it stands.
 
     Returns:
@@ -50,12 +50,12 @@ def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
         return None
     found = template(placement.template)
     size = block_size(placement.size_m, blocks_per_metre)
-    return laid(found, size, placement.parameters, placement.quarter_turns)
+    return lay_template(found, size, placement.parameters, placement.quarter_turns)
 
 
-def laid(
+def lay_template(
     template: Template, size: BlockSize, parameters: Parameters | None, quarter_turns: int
-) -> Idiom | None:
+) -> BlockDesign | None:
     """Return a template's vanilla design at a size in blocks; None where it has none for it.
 
     Raises:
@@ -64,7 +64,7 @@ def laid(
     local = template.blocks(size, parameters)
     if not local:
         return None
-    return replace(_turned(local, quarter_turns), materials=template.materials)
+    return replace(_turn_design(local, quarter_turns), materials=template.materials)
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
@@ -74,7 +74,7 @@ def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
     return BlockSize(*whole, exact=(depth, width, height), per_metre=float(blocks_per_metre))
 
 
-def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
+def _turn_design(local: list[LocalBlock], quarter_turns: int) -> BlockDesign:
     # Imported late: the block tables cost time that scales above three never need.
     from world2minecraft.minecraft.block_states import complete, parse_state  # noqa: PLC0415
     from world2minecraft.minecraft.transforms import turn_state  # noqa: PLC0415
@@ -87,12 +87,12 @@ def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
             along, across, deep, wide = wide - 1 - across, along, wide, deep
         whole = str(complete(parse_state(state)))
         offset = (along, k, wide - 1 - across)
-        blocks.append(IdiomBlock(offset, turn_state(whole, quarter_turns), role))
+        blocks.append(DesignBlock(offset, turn_state(whole, quarter_turns), role))
     turned = (width, height, depth) if quarter_turns % 2 else (depth, height, width)
-    return Idiom(tuple(sorted(_connected(blocks, turned))), turned)
+    return BlockDesign(tuple(sorted(_connect_blocks(blocks, turned))), turned)
 
 
-def _connected(blocks: list[IdiomBlock], size: tuple[int, int, int]) -> list[IdiomBlock]:
+def _connect_blocks(blocks: list[DesignBlock], size: tuple[int, int, int]) -> list[DesignBlock]:
     """Give fences, panes and stairs the connections and shapes that the game would compute."""
     from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415
 

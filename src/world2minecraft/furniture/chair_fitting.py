@@ -12,12 +12,12 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture.rasterization import overlaps, raster
+from world2minecraft.furniture.rasterization import count_overlaps, rasterize
 from world2minecraft.furniture.template import Template
 
-AGAINST, OWN = 1, 2  # As in the codes that ``overlaps`` reads.
-BESIDE = np.zeros((3, 3, 3), np.bool_)
-BESIDE[:, :, 1] = True
+AGAINST, OWN = 1, 2  # As in the codes that ``count_overlaps`` reads.
+FACE_NEIGHBOURS = np.zeros((3, 3, 3), np.bool_)
+FACE_NEIGHBOURS[:, :, 1] = True
 SIDES = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])  # Where a front looks, by quarter turns.
 LOOK_WEIGHT = 0.15  # What looking at its table is worth, as a share of the chair's cells.
 OPEN_TOP = 0.4  # A top layer of which more than this was seen free is hardly there.
@@ -51,9 +51,9 @@ class SeatFit(NamedTuple):
         return np.argwhere(self.solid) + self.corner
 
 
-def eased(code: np.ndarray) -> np.ndarray:
+def ignore_adjacent_free_cells(code: np.ndarray) -> np.ndarray:
     """Return the code, uint8 [X, Y, Z], in which nothing beside the object speaks against it."""
-    beside = ndimage.binary_dilation(code == OWN, BESIDE)
+    beside = ndimage.binary_dilation(code == OWN, FACE_NEIGHBOURS)
     return np.where(beside & (code == AGAINST), 0, code).astype(np.uint8)
 
 
@@ -68,7 +68,7 @@ def fit_seat(
 
     Args:
         template: the chair.
-        code: uint8 [X, Y, Z], as ``overlaps`` reads it.
+        code: uint8 [X, Y, Z], as ``count_overlaps`` reads it.
         floor: the layer on which it stands.
         voxel_m: the side of a cell.
         look: float64 [2], the way in plan to what it stands at, of length 1; zeros for nothing.
@@ -76,16 +76,16 @@ def fit_seat(
     cells = np.argwhere(code == OWN)
     if not len(cells) or floor < 0:
         return None
-    heap = _Heap(cells, eased(code), look)
+    heap = _ObjectCells(cells, ignore_adjacent_free_cells(code), look)
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     best: SeatFit | None = None
-    usual, *others = _forms(template, int(high[2]) - floor, voxel_m)
+    usual, *others = _candidate_shapes(template, int(high[2]) - floor, voxel_m)
     for turns in range(template.turns):
-        solid = _turned(template, *usual, turns, voxel_m)
-        home = heap.laid(*usual, turns, solid, _corners(solid.shape, low, high, floor))
+        solid = _turn_template(template, *usual, turns, voxel_m)
+        home = heap.laid(*usual, turns, solid, _candidate_corners(solid.shape, low, high, floor))
         around = np.array(home.corner) + AROUND
         moved = (
-            heap.laid(*form, turns, _turned(template, *form, turns, voxel_m), around)
+            heap.laid(*form, turns, _turn_template(template, *form, turns, voxel_m), around)
             for form in others
         )
         for fit in (home, *moved):
@@ -106,11 +106,11 @@ def without_open_top(fit: SeatFit, template: Template, code: np.ndarray, voxel_m
     if height <= least or opened <= OPEN_TOP * len(tops):
         return fit
     counts = (depth, width, height - 1)
-    solid = _turned(template, counts, fit.values, fit.quarter_turns, voxel_m)
+    solid = _turn_template(template, counts, fit.values, fit.quarter_turns, voxel_m)
     return fit._replace(counts=counts, solid=solid)
 
 
-class _Heap(NamedTuple):
+class _ObjectCells(NamedTuple):
     """Cells, int64 [N, 3], the code that a chair is compared with, and which way it may look."""
 
     cells: np.ndarray
@@ -121,9 +121,9 @@ class _Heap(NamedTuple):
         self, counts: Cells, values: Values, turns: int, solid: np.ndarray, corners: np.ndarray
     ) -> SeatFit:
         """Return the best of a chair's places, int64 [S, 3]; of equals the first."""
-        exact = overlaps(solid, self.code, corners)
-        wide = ndimage.binary_dilation(np.pad(solid, ((1, 1), (1, 1), (0, 0))), BESIDE)
-        near = overlaps(wide, self.code, corners - MARGIN)[:, 0]
+        exact = count_overlaps(solid, self.code, corners)
+        wide = ndimage.binary_dilation(np.pad(solid, ((1, 1), (1, 1), (0, 0))), FACE_NEIGHBOURS)
+        near = count_overlaps(wide, self.code, corners - MARGIN)[:, 0]
         gain = near + exact[:, 0] - 2 * exact[:, 1]
         gain = gain + LOOK_WEIGHT * len(self.cells) * (SIDES[turns] @ self.look)
         at = int(np.argmax(np.round(gain, 9)))
@@ -133,7 +133,7 @@ class _Heap(NamedTuple):
         return SeatFit(float(gain[at]), opposed, counts, values, turns, (x, y, z), solid, met)
 
 
-def _forms(template: Template, tall: int, voxel_m: float) -> list[tuple[Cells, Values]]:
+def _candidate_shapes(template: Template, tall: int, voxel_m: float) -> list[tuple[Cells, Values]]:
     """Return sizes and parameters: the usual first, then one cell less deep and other seats."""
     depth, width = (int(span.typical / voxel_m + 0.5) for span in template.size_m[:2])
     least, most = (int(limit / voxel_m + 0.5) for limit in template.size_m[2][::2])
@@ -146,13 +146,15 @@ def _forms(template: Template, tall: int, voxel_m: float) -> list[tuple[Cells, V
     return [(sizes[0], usual), *(form for form in rest if form != (sizes[0], usual))]
 
 
-def _turned(
+def _turn_template(
     template: Template, counts: Cells, values: Values, turns: int, voxel_m: float
 ) -> np.ndarray:
-    return np.ascontiguousarray(turn_grid(raster(template, counts, values, voxel_m), turns))
+    return np.ascontiguousarray(turn_grid(rasterize(template, counts, values, voxel_m), turns))
 
 
-def _corners(shape: tuple[int, ...], low: np.ndarray, high: np.ndarray, floor: int) -> np.ndarray:
+def _candidate_corners(
+    shape: tuple[int, ...], low: np.ndarray, high: np.ndarray, floor: int
+) -> np.ndarray:
     """Return every first cell, int64 [S, 3], at which a box of ``shape`` meets the object's."""
     along = [np.arange(low[axis] - shape[axis] + 1, high[axis]) for axis in (0, 1)]
     x, y = np.meshgrid(*along, indexing="ij")
@@ -167,7 +169,7 @@ def _within(cells: np.ndarray, solid: np.ndarray, corner: np.ndarray) -> np.ndar
     return result
 
 
-def look_at(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.ndarray:
+def direction_to_table(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.ndarray:
     """Return the way in plan, float64 [2], from cells to the nearest table; zeros without one.
 
     The way leads to the middle of what lies about as near as its nearest edge, so that neither

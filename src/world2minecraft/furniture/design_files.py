@@ -17,7 +17,7 @@ from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import Span, Template
 
 MAX_BYTES = 65_536  # A design has a thousand at most.
-LARGEST_M = 20.0
+MAX_SIDE_M = 20.0
 SIZES = ("depth", "width", "height")
 CLEARANCES = ("front", "back", "side")
 MOUNTS = ("floor", "wall", "ceiling", "any")
@@ -38,7 +38,7 @@ def read_design(path: Path) -> Template:
     except (OSError, ValueError, RecursionError) as error:
         raise InputError(path, f"this is no design: {error}") from error
     try:
-        found = design_of(raw)
+        found = design_from_json(raw)
     except (ValueError, UnknownNameError) as error:
         raise InputError(path, str(error)) from error
     if found.name != path.stem:
@@ -46,7 +46,7 @@ def read_design(path: Path) -> Template:
     return found
 
 
-def design_of(raw: Any) -> Template:
+def design_from_json(raw: Any) -> Template:
     """Return the template that the content of a design file describes.
 
     Raises:
@@ -65,7 +65,7 @@ def design_of(raw: Any) -> Template:
         name=_text("name", known["name"]),
         title=_text("title", known["title"]),
         class_id=CLASS_NAMES.index(kind),
-        family=_stood_for(known),
+        family=_matched_family(known),
         size_m=(_size("depth", sizes), _size("width", sizes), _size("height", sizes)),
         build=family.build,
         design=family.design,
@@ -80,7 +80,7 @@ def design_of(raw: Any) -> Template:
     )
 
 
-def _stood_for(known: Mapping[str, Any]) -> str:
+def _matched_family(known: Mapping[str, Any]) -> str:
     """Return the family whose matches a design may stand for: its own where it says no other."""
     stood = _text("stands_for", known.get("stands_for", known["family"]))
     FAMILIES.load(stood)
@@ -121,7 +121,7 @@ def _one_of(key: str, value: Any, choices: tuple) -> Any:
     return value
 
 
-def _number(key: str, value: Any, least: float = -math.inf, most: float = LARGEST_M) -> float:
+def _number(key: str, value: Any, least: float = -math.inf, most: float = MAX_SIDE_M) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{key} must be a number, not {_short(value)}")
     if not (math.isfinite(value) and least <= value <= most):

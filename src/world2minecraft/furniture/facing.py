@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.furniture.chair_fitting import look_at
+from world2minecraft.furniture.chair_fitting import direction_to_table
 
 SIDES = ((0, 1), (1, 1), (0, -1), (1, -1))  # (axis, sign) of the fronts at 0, 90, 180, 270 degrees.
 WALL_REACH = 3  # Cells beyond a side in which a wall counts: a 0.2 m gap at 0.08 m.
@@ -33,7 +33,7 @@ class Surroundings(NamedTuple):
     tables: np.ndarray  # int64 [X, Y], the layer on the highest table or screen, 0 without
 
 
-def surroundings(labels: np.ndarray) -> Surroundings:
+def read_surroundings(labels: np.ndarray) -> Surroundings:
     """Return the walls and tables of a grid, and the middle of the cells that were seen free."""
     walls = (labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)
     free = np.argwhere((labels == SemanticClass.EMPTY).any(axis=2))
@@ -43,7 +43,7 @@ def surroundings(labels: np.ndarray) -> Surroundings:
     return Surroundings(walls, free.mean(axis=0) + 0.5 if len(free) else shape / 2, tops)
 
 
-def facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
+def estimate_facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
     """Return the front of an object of ``cells``, int32 [N, 3].
 
     Chairs: away from their high side, and where no back was seen, or nothing else, to the table
@@ -94,7 +94,7 @@ def _seen_back(lean: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarra
 def _table(cells: np.ndarray, around: Surroundings) -> np.ndarray:
     """How far each front looks to the nearest edge of a table, 0 to 1; zeros without one."""
     high = around.tables > cells[:, 2].max() + 1 - TABLE_BELOW
-    way = look_at(cells, high, TABLE_REACH)
+    way = direction_to_table(cells, high, TABLE_REACH)
     return np.array([max(0.0, sign * way[axis]) for axis, sign in SIDES])
 
 

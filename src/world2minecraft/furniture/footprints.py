@@ -16,7 +16,7 @@ POINTS = 50  # A side of the raster over a footprint: a share is told to 0.04 %.
 
 def shared_area_m2(a: Any, b: Any) -> float:
     """Return the area that the footprints of two boxes share."""
-    return area_m2(_clipped(plan_corners_m(a), plan_corners_m(b)))
+    return area_m2(_clip(plan_corners_m(a), plan_corners_m(b)))
 
 
 def shared_height_m(a: Any, b: Any) -> float:
@@ -61,18 +61,18 @@ def outside_share(item: Any, floor_polygon_m: np.ndarray, margin_m: float) -> fl
     return float(1 - within.mean())
 
 
-def _clipped(polygon: np.ndarray, window: np.ndarray) -> np.ndarray:
+def _clip(polygon: np.ndarray, window: np.ndarray) -> np.ndarray:
     """Return the part of a polygon within a convex one, both counter-clockwise [N, 2]."""
     for start, end in zip(window, np.roll(window, -1, axis=0), strict=True):
         if not len(polygon):
             break
         side = end - start
         left = side[0] * (polygon[:, 1] - start[1]) - side[1] * (polygon[:, 0] - start[0])
-        polygon = _half(polygon, left)
+        polygon = _half_plane(polygon, left)
     return polygon
 
 
-def _half(polygon: np.ndarray, left: np.ndarray) -> np.ndarray:
+def _half_plane(polygon: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Return the part of a polygon whose corners have ``left`` of 0 or more."""
     kept = []
     following, left_next = np.roll(polygon, -1, axis=0), np.roll(left, -1)

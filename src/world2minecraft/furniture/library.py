@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.registry import Registry
 from world2minecraft.furniture.design_files import read_design
 from world2minecraft.furniture.template import Span, Template
-from world2minecraft.furniture.user_library import own_files, read_own
+from world2minecraft.furniture.user_library import read_user_design, user_design_files
 
 # The library as a table for people, by class: what docs/furniture-library.md shows.
 
@@ -31,7 +31,7 @@ HEADINGS = {
 COLUMNS = ("name", "title", "family", "depth", "width", "height", "turns", "mount", "parameters")
 
 
-def by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
+def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
     """Return templates under the heading of their class, classes in order, none empty."""
     every = list(templates)
     found = {
@@ -41,16 +41,16 @@ def by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
     return {heading: members for heading, members in found.items() if members}
 
 
-def markdown(templates: Iterable[Template]) -> str:
+def templates_to_markdown(templates: Iterable[Template]) -> str:
     """Return a table a class in Markdown: a row a template, with a star where it is matched."""
     tables = []
-    for heading, members in by_class(templates).items():
-        rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(row_of, members)]
+    for heading, members in group_by_class(templates).items():
+        rows = [_row(COLUMNS), _row(["---"] * len(COLUMNS)), *map(markdown_row, members)]
         tables.append("\n".join([f"### {heading}", "", *rows]))
     return "\n\n".join(tables) + "\n"
 
 
-def row_of(one: Template) -> str:
+def markdown_row(one: Template) -> str:
     """Return a template's row: smallest, usual and largest sizes in metres, and what else."""
     sizes = [_span(span) for span in one.size_m]
     known = ", ".join(f"{name} {_span(span)}" for name, span in one.parameters.items()) or "none"
@@ -69,7 +69,7 @@ def _span(span: Span) -> str:
 
 
 # Of templates that match equally well the first is taken: the plainer one.
-FIRST = (
+MATCH_ORDER = (
     "chair",
     "armchair",
     "office_chair",
@@ -105,9 +105,9 @@ class Library(Registry):
 
     def names(self) -> tuple[str, ...]:
         """All names: those that are matched first in their order, then the others, sorted."""
-        own = design_files()
-        rest = sorted({*own, *own_files(), *super().names()} - set(FIRST))
-        return (*(name for name in FIRST if name in own), *rest)
+        own = builtin_design_files()
+        rest = sorted({*own, *user_design_files(), *super().names()} - set(MATCH_ORDER))
+        return (*(name for name in MATCH_ORDER if name in own), *rest)
 
     def load(self, name: str) -> Template:
         """Return the template of this name.
@@ -115,15 +115,15 @@ class Library(Registry):
         Raises:
             UnknownNameError: there is none. InputError: its file is no design.
         """
-        if name in design_files():
-            return read_design(design_files()[name])
-        if name in own_files():
-            return read_own(own_files()[name])
+        if name in builtin_design_files():
+            return read_design(builtin_design_files()[name])
+        if name in user_design_files():
+            return read_user_design(user_design_files()[name])
         return super().load(name)
 
 
 @cache
-def design_files() -> dict[str, Path]:
+def builtin_design_files() -> dict[str, Path]:
     """Return the library's design files by name, sorted."""
     folder = Path(str(files("world2minecraft.furniture"))) / "designs"
     return {path.stem: path for path in sorted(folder.glob("*.json"))}
@@ -143,7 +143,7 @@ def template(name: str) -> Template:
 
 
 @cache
-def templates_of(class_id: int) -> tuple[Template, ...]:
+def templates_of_class(class_id: int) -> tuple[Template, ...]:
     """Return the templates of a class that objects are matched against, in the library's order."""
     every = (template(name) for name in TEMPLATES.names())
     return tuple(one for one in every if one.class_id == class_id and one.matched)

@@ -69,14 +69,14 @@ class Material:
         if self.kind != PLAIN:
             return kinds()[self.kind].blocks[self.value].get(shape)
         whole = f"minecraft:{self.value}"
-        found = [place for place in places_of(whole) if place.shape == "full"]
+        found = [place for place in block_uses(whole) if place.shape == "full"]
         if shape == "full":
             return whole
         held = (kinds()[place.kind].blocks[place.value].get(shape) for place in found)
         return next((block for block in held if block), None)
 
 
-class Place(NamedTuple):
+class BlockUse(NamedTuple):
     """Where a block stands in the table of materials."""
 
     kind: str
@@ -102,10 +102,10 @@ def _kind(raw: Mapping) -> Kind:
 
 
 @cache
-def places_of(block: str) -> tuple[Place, ...]:
+def block_uses(block: str) -> tuple[BlockUse, ...]:
     """Return every place of a block, such as ``minecraft:oak_slab``, in the table."""
     return tuple(
-        Place(name, value, shape)
+        BlockUse(name, value, shape)
         for name, kind in kinds().items()
         for value, shapes in kind.blocks.items()
         for shape, held in shapes.items()
@@ -114,7 +114,7 @@ def places_of(block: str) -> tuple[Place, ...]:
 
 
 @cache
-def swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
+def list_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     """Return the materials of a kind that have all the shapes; ``plain`` has those of three."""
     names = PLAIN_KINDS if kind == PLAIN else (kind,) if kind in kinds() else ()
     return tuple(
@@ -129,10 +129,10 @@ def shape_of(state: str, kind: str) -> str | None:
     """Return the shape of a state of a kind of material, None where the kind has no such block."""
     names = PLAIN_KINDS if kind == PLAIN else (kind,)
     block = state.partition("[")[0]
-    return next((place.shape for place in places_of(block) if place.kind in names), None)
+    return next((place.shape for place in block_uses(block) if place.kind in names), None)
 
 
-def restated(state: str, shape: str, swatch: Swatch) -> str:
+def with_swatch(state: str, shape: str, swatch: Swatch) -> str:
     """Return a state of a shape in another material; its properties stay."""
     _, bracket, properties = state.partition("[")
     return f"{kinds()[swatch.kind].blocks[swatch.value][shape]}{bracket}{properties}"

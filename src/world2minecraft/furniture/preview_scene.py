@@ -8,14 +8,14 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.furniture.block_designs import Idiom, block_size, laid
+from world2minecraft.furniture.block_designs import BlockDesign, block_size, lay_template
 from world2minecraft.furniture.template import Parameters, Template
 from world2minecraft.minecraft.rules.connections import connected
 
 ROOM = "minecraft:smooth_stone"
 
 
-def volume_of(
+def preview_volume(
     template: Template,
     blocks_per_metre: float,
     size_m: tuple[float, float, float] | None = None,
@@ -38,14 +38,14 @@ def volume_of(
         ParameterError: the template refuses a parameter.
     """
     size = block_size(np.array(size_m or template.typical_m), blocks_per_metre)
-    found = laid(template, size, parameters, quarter_turns)
+    found = lay_template(template, size, parameters, quarter_turns)
     if found is None:
         return None
-    return volume_of_idiom(found, template, blocks_per_metre, quarter_turns, room)
+    return preview_design(found, template, blocks_per_metre, quarter_turns, room)
 
 
-def volume_of_idiom(
-    idiom: Idiom, template: Template, blocks_per_metre: float, quarter_turns: int, room: bool
+def preview_design(
+    idiom: BlockDesign, template: Template, blocks_per_metre: float, quarter_turns: int, room: bool
 ) -> BlockVolume:
     """Return a design as a volume, with what holds it where ``room`` says so."""
     margin = 1 if room else 0

@@ -12,10 +12,10 @@ from world2minecraft.furniture.template import Parameters, Template
 # Templates as cells of a grid.
 
 MAX_CELLS = 8_000_000  # A box of 4 m at 0.02 m; more is a mistake in the size.
-CLOSE = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
+TOLERANCE_CELLS = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
 
 
-def cells_of(
+def template_cells(
     template: Template,
     size_m: Sequence[float] | np.ndarray,
     parameters: Parameters | None = None,
@@ -38,7 +38,7 @@ def cells_of(
     """
     counts = size_in_cells(size_m, voxel_m)
     values = tuple(sorted(template.complete(parameters).items()))
-    solid = turn_grid(raster(template, counts, values, voxel_m), quarter_turns)
+    solid = turn_grid(rasterize(template, counts, values, voxel_m), quarter_turns)
     return (np.argwhere(solid) + np.asarray(shift)).astype(np.int32)
 
 
@@ -49,7 +49,7 @@ def size_in_cells(size_m: Sequence[float] | np.ndarray, voxel_m: float) -> tuple
 
 
 @lru_cache(maxsize=1024)
-def raster(
+def rasterize(
     template: Template,
     counts: tuple[int, int, int],
     values: tuple[tuple[str, float], ...],
@@ -78,18 +78,18 @@ def _cell_ranges(boxes: np.ndarray, counts: np.ndarray) -> list[tuple[list[int],
     Bounds are closed at both ends, so that a symmetric shape gives symmetric cells: a thin post
     on the border of two cells takes both.
     """
-    low = np.ceil(boxes[:, :3] - 0.5 - CLOSE)
-    high = np.floor(boxes[:, 3:] + 0.5 + CLOSE)
+    low = np.ceil(boxes[:, :3] - 0.5 - TOLERANCE_CELLS)
+    high = np.floor(boxes[:, 3:] + 0.5 + TOLERANCE_CELLS)
     thin = high <= low
     middle = (boxes[:, :3] + boxes[:, 3:]) / 2
-    low = np.where(thin, np.ceil(middle - 1 - CLOSE), low)
-    high = np.where(thin, np.floor(middle + 1 + CLOSE), high)
+    low = np.where(thin, np.ceil(middle - 1 - TOLERANCE_CELLS), low)
+    high = np.where(thin, np.floor(middle + 1 + TOLERANCE_CELLS), high)
     low = np.clip(low, 0, counts - 1).astype(np.int64)
     high = np.clip(high, low + 1, counts).astype(np.int64)
     return list(zip(low.tolist(), high.tolist(), strict=True))
 
 
-def surface(solid: np.ndarray) -> np.ndarray:
+def surface_cells(solid: np.ndarray) -> np.ndarray:
     """Return the cells of a solid bool [X, Y, Z] that touch a cell outside it by a face."""
     padded = np.pad(solid, 1)
     inner = padded.copy()
@@ -100,7 +100,7 @@ def surface(solid: np.ndarray) -> np.ndarray:
 
 
 @njit
-def overlaps(template, code, corners):  # pragma: no cover - compiled
+def count_overlaps(template, code, corners):  # pragma: no cover - compiled
     """Return int64 [S, 3]: own cells covered, cells against, cells beyond, for each corner.
 
     Args:

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture.rasterization import raster, size_in_cells
+from world2minecraft.furniture.rasterization import rasterize, size_in_cells
 from world2minecraft.furniture.template import Part, Template
 
 GAP_M = 1e-6  # Parts nearer than this touch.
@@ -75,7 +75,7 @@ def _check_turns(template: Template) -> Iterator[str]:
     side = max(depth, width) if template.turns == 1 else depth
     values = tuple(template.complete().items())
     across = side if template.turns == 1 else width
-    solid = raster(template, (side, across, height), values, FINE_VOXEL_M)
+    solid = rasterize(template, (side, across, height), values, FINE_VOXEL_M)
     half = np.array_equal(solid, turn_grid(solid, 2))
     if template.turns in (1, 2) and not half:
         yield f"turns is {template.turns}, but half a turn changes its shape"

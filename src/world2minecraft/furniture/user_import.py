@@ -29,11 +29,11 @@ from world2minecraft.minecraft.transforms import SIDES, turn_volume
 SEATS = ("chair", "sofa", "bed")
 OPPOSITE = {"north": "south", "south": "north", "east": "west", "west": "east"}
 SIZE_SHARE = 0.25  # Objects up to a quarter smaller or larger may be this piece. A guess.
-LEAST_M, MOST_M = 0.02, 20.0
+MIN_SIDE_M, MAX_SIDE_M = 0.02, 20.0
 INVISIBLE = ("air", "cave_air", "void_air", "structure_void", "barrier", "light")
 
 
-class Wish(NamedTuple):
+class ImportRequest(NamedTuple):
     """What the one who adds a piece says of it; None leaves it to the blocks."""
 
     name: str
@@ -47,7 +47,7 @@ class Wish(NamedTuple):
     match: bool = True
 
 
-class Adopted(NamedTuple):
+class ImportedFurniture(NamedTuple):
     """The content of an own file, and what its adder should know."""
 
     content: dict[str, Any]
@@ -55,7 +55,7 @@ class Adopted(NamedTuple):
     notes: tuple[str, ...]
 
 
-def adopt(volume: BlockVolume, wish: Wish) -> Adopted:
+def import_blocks(volume: BlockVolume, wish: ImportRequest) -> ImportedFurniture:
     """Return the file of a piece that is built of a volume's blocks.
 
     Args:
@@ -67,13 +67,13 @@ def adopt(volume: BlockVolume, wish: Wish) -> Adopted:
             front to be seen.
     """
     _check(wish)
-    trimmed = _trimmed(volume)
+    trimmed = _trim(volume)
     front = wish.front or front_of(trimmed, wish.kind)
     if front is None:
         raise UsageError(
             "no block shows which side is the front; add --front north|east|south|west"
         )
-    turned = _joined(turn_volume(trimmed, -SIDES.index(front)))
+    turned = _join_connections(turn_volume(trimmed, -SIDES.index(front)))
     cells = block_axes_to_grid(turned.states)
     parts = _parts(turned)
     shown = np.array([corners for _, *corners in parts])
@@ -87,16 +87,16 @@ def adopt(volume: BlockVolume, wish: Wish) -> Adopted:
         "mount": wish.mount,
         "turns": _turns(turned),
         "match": wish.match,
-        "size_m": dict(zip(("depth", "width", "height"), map(_around, size), strict=True)),
+        "size_m": dict(zip(("depth", "width", "height"), map(_size_span, size), strict=True)),
         "blocks_per_metre": wish.blocks_per_metre,
         "colour": "object" if wish.recolour else "own",
-        "blocks": _packed(cells, turned.palette),
+        "blocks": _pack(cells, turned.palette),
         "parts": [[role, *map(int, corners)] for role, *corners in parts],
     }
-    return Adopted(content, front, tuple(_notes(turned)))
+    return ImportedFurniture(content, front, tuple(_notes(turned)))
 
 
-def _check(wish: Wish) -> None:
+def _check(wish: ImportRequest) -> None:
     check_name(wish.name)
     offered = [CLASS_NAMES[number] for number in OBJECT_CLASSES]
     if wish.kind not in offered:
@@ -112,15 +112,15 @@ def _check(wish: Wish) -> None:
 
 
 def _check_size(size: np.ndarray) -> None:
-    if not (np.isfinite(size).all() and (size >= LEAST_M).all() and (size <= MOST_M).all()):
+    if not (np.isfinite(size).all() and (size >= MIN_SIDE_M).all() and (size <= MAX_SIDE_M).all()):
         told = " x ".join(f"{side:.2f}" for side in size)
         raise UsageError(
-            f"a piece is {LEAST_M:g} to {MOST_M:g} m each way, not {told}; "
+            f"a piece is {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m each way, not {told}; "
             "say its scale with --blocks-per-metre"
         )
 
 
-def _trimmed(volume: BlockVolume) -> BlockVolume:
+def _trim(volume: BlockVolume) -> BlockVolume:
     """Return the part of a volume that holds blocks one sees, without entities."""
     seen = np.array([role_of(state) not in INVISIBLE for state in volume.palette])
     filled = seen[volume.states]
@@ -154,7 +154,7 @@ def _trimmed(volume: BlockVolume) -> BlockVolume:
     )
 
 
-def _joined(volume: BlockVolume) -> BlockVolume:
+def _join_connections(volume: BlockVolume) -> BlockVolume:
     """Return a volume with the connections and stair shapes that the game would compute."""
     from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415  # It needs numba.
 
@@ -195,9 +195,9 @@ def _parts(volume: BlockVolume) -> list[tuple]:
     from world2minecraft.geometry.box_decomposition import partition_boxes  # noqa: PLC0415  # It needs numba.
 
     roles = sorted({role_of(state) for state in volume.palette[1:]})
-    labels = block_axes_to_grid(_fine(volume, roles))
+    labels = block_axes_to_grid(_fine_grid(volume, roles))
     for coarse in (1, 2, 4, 8):
-        seen = labels if coarse == 1 else _pooled(labels, coarse)
+        seen = labels if coarse == 1 else _pool(labels, coarse)
         boxes = partition_boxes(seen)
         if len(boxes) <= MAX_PARTS:
             break
@@ -206,7 +206,7 @@ def _parts(volume: BlockVolume) -> list[tuple]:
     return [(roles[label - 1], *(np.array(corners) * coarse)) for label, *corners in boxes.tolist()]
 
 
-def _fine(volume: BlockVolume, roles: list[str]) -> np.ndarray:
+def _fine_grid(volume: BlockVolume, roles: list[str]) -> np.ndarray:
     """Return the role, from 1, that is seen in each eighth of a block, int16 in block axes."""
     from world2minecraft.minecraft.visual_shapes import visual_boxes_of  # noqa: PLC0415
 
@@ -229,7 +229,7 @@ def _fine(volume: BlockVolume, roles: list[str]) -> np.ndarray:
     return fine
 
 
-def _pooled(labels: np.ndarray, coarse: int) -> np.ndarray:
+def _pool(labels: np.ndarray, coarse: int) -> np.ndarray:
     """Return labels at a coarser step, each the largest of its cells."""
     x, y, z = (side // coarse for side in labels.shape)
     return labels.reshape(x, coarse, y, coarse, z, coarse).max(axis=(1, 3, 5))
@@ -250,12 +250,12 @@ def _turns(volume: BlockVolume) -> int:
     return 1 if same(1) else 2 if same(2) else 4
 
 
-def _around(side: float) -> list[float]:
+def _size_span(side: float) -> list[float]:
     """Return the span of a size: smallest, usual, largest."""
     return [round(float(side) * share, 4) for share in (1 - SIZE_SHARE, 1.0, 1 + SIZE_SHARE)]
 
 
-def _packed(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
+def _pack(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
     flat = cells.ravel().astype(int)
     starts = np.flatnonzero(np.diff(flat, prepend=-1))
     lengths = np.diff(starts, append=len(flat))

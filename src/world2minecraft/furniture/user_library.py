@@ -20,8 +20,8 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.furniture.appearance import Look
-from world2minecraft.furniture.design_files import design_of
-from world2minecraft.furniture.materials import FIXED, Material, kinds, places_of
+from world2minecraft.furniture.design_files import design_from_json
+from world2minecraft.furniture.materials import FIXED, Material, block_uses, kinds
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 
 NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
@@ -31,7 +31,9 @@ PARTS_PER_BLOCK = 8
 NEAR_SCALE = 1.26  # Up to this factor off its scale a piece keeps its blocks: a third of an octave.
 
 
-def own_folder(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> Path:
+def user_design_folder(
+    environment: Mapping[str, str] = os.environ, platform: str = sys.platform
+) -> Path:
     """Return where the user's own furniture lies; it need not be there.
 
     ``W2M_FURNITURE`` names it, else it is ``world2minecraft/furniture`` in the folder of settings.
@@ -44,9 +46,9 @@ def own_folder(environment: Mapping[str, str] = os.environ, platform: str = sys.
     return Path(environment.get(key) or usual) / "world2minecraft" / "furniture"
 
 
-def own_files() -> dict[str, Path]:
+def user_design_files() -> dict[str, Path]:
     """Return the user's furniture files by name, sorted; files of other names are no furniture."""
-    folder = own_folder()
+    folder = user_design_folder()
     if not folder.is_dir():
         return {}
     found = {path.stem: path for path in sorted(folder.glob("*.json"))}
@@ -67,7 +69,7 @@ def check_name(name: str) -> str:
     return name
 
 
-def read_own(path: Path) -> Template:
+def read_user_design(path: Path) -> Template:
     """Return the template that a file of the user's own holds.
 
     Raises:
@@ -76,7 +78,11 @@ def read_own(path: Path) -> Template:
     """
     raw = read_json(path, MAX_BYTES)
     try:
-        found = own_template(raw) if isinstance(raw, dict) and "blocks" in raw else design_of(raw)
+        found = (
+            template_from_json(raw)
+            if isinstance(raw, dict) and "blocks" in raw
+            else design_from_json(raw)
+        )
         if found.name != path.stem:
             raise ValueError(f"its name must be that of its file, not {found.name!r}")
     except (ValueError, UsageError) as error:
@@ -85,7 +91,7 @@ def read_own(path: Path) -> Template:
     return found
 
 
-def own_template(raw: Mapping[str, Any]) -> Template:
+def template_from_json(raw: Mapping[str, Any]) -> Template:
     """Return the template of a file's content.
 
     Raises:
@@ -131,7 +137,7 @@ def material_of(role: str, recoloured: bool) -> Material:
     A block of a known kind takes another value of its kind where ``recoloured`` says so; any
     other is that block for good, drawn as the full block that comes nearest to it in colour.
     """
-    places = [place for place in places_of(f"minecraft:{role}") if place.shape != "bed"]
+    places = [place for place in block_uses(f"minecraft:{role}") if place.shape != "bed"]
     if places and recoloured:
         return Material(places[0].kind, places[0].value, True)
     if places and "full" in kinds()[places[0].kind].blocks[places[0].value]:

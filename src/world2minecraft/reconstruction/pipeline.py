@@ -29,7 +29,7 @@ from world2minecraft.formats.scan import (
     write_poses,
     write_scan,
 )
-from world2minecraft.furniture.user_library import own_files, own_folder
+from world2minecraft.furniture.user_library import user_design_files, user_design_folder
 from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import notes_of, predictor
@@ -152,7 +152,7 @@ def manifest(
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
         "networks": [hash_capture(path) for path in network_files(chosen)],
         "palette": hash_capture(palette) if palette.is_file() else None,
-        "furniture": hash_capture(own_folder()) if own_files() else None,
+        "furniture": hash_capture(user_design_folder()) if user_design_files() else None,
         "parameters": chosen.as_json(),
         "versions": {name: version(name) for name in ("numpy", "scipy", "numba")},
     }

@@ -30,7 +30,7 @@ from world2minecraft.formats.occupancy_files import (
     read_occupancy,
 )
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.furniture.facing import Surroundings, facing, surroundings
+from world2minecraft.furniture.facing import Surroundings, estimate_facing, read_surroundings
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import furnish
 
@@ -54,7 +54,7 @@ def instances_at(
     if len(wanted) > MAX_CENTERS:
         raise LimitError("centers", f"are {len(wanted):,}; at most {MAX_CENTERS:,} are read")
     instance = np.zeros(grid.shape, np.uint16)
-    around = surroundings(grid.labels)
+    around = read_surroundings(grid.labels)
     objects: list[ObjectInstance] = []
     for class_id in OBJECT_CLASSES:
         places = np.array([one.position_m for one in wanted if one.class_id == class_id])
@@ -86,7 +86,7 @@ def _object(
     if not len(cells):
         side = np.full(3, grid.voxel_m)
         return ObjectInstance(number, class_id, place_m, side, 0.0, cells, 0.0)
-    front = facing(cells, class_id, around)
+    front = estimate_facing(cells, class_id, around)
     first, last = cells.min(axis=0), cells.max(axis=0) + 1
     size = (last - first) * grid.voxel_m
     center = grid.origin_m + (first + last) * grid.voxel_m / 2

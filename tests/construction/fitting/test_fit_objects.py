@@ -13,7 +13,7 @@ from world2minecraft.construction.fitting import (
     Rules,
     ShapeSet,
     Target,
-    even_of,
+    find_symmetry,
     fit_parts,
     fit_solid,
     shape_set,
@@ -101,7 +101,7 @@ def test_what_is_symmetric_is_fitted_symmetric(seed):
     target = random_target(seed)
     wanted = np.maximum(target.wanted, target.wanted[:, ::-1])
     even = Target(wanted, 0 * wanted)
-    assert even_of(even)[1]
+    assert find_symmetry(even)[1]
     fit = fit_solid(even, ALL, Rules(even=(False, True)))
     assert np.array_equal(ALL.mirrors[1][fit.numbers[:, ::-1]], fit.numbers)
 

@@ -16,7 +16,7 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
-from world2minecraft.furniture import template, templates_of
+from world2minecraft.furniture import template, templates_of_class
 from world2minecraft.furniture.layout_checks import (
     category_integrity,
     collisions,
@@ -98,7 +98,7 @@ def test_parts_that_meet_by_what_is_forgiven_do_not_collide():
 
 def test_every_template_collides_with_itself_in_the_same_place():
     for class_id in range(5, 12):
-        for one in templates_of(class_id):
+        for one in templates_of_class(class_id):
             assert collisions([put(1, one.name, 0, 0), put(2, one.name, 0.01, 0)]) == [(0, 1)]
 
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.furniture import surface
+from world2minecraft.furniture import surface_cells
 from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
 
@@ -18,7 +18,7 @@ def _room(*boxes):
     for x0, y0, z0, x1, y1, z1 in boxes:
         labels[x0:x1, y0:y1, z0:z1] = SemanticClass.FURN
     solid = labels > 0
-    labels[solid & ~surface(solid)] = 255
+    labels[solid & ~surface_cells(solid)] = 255
     return labels
 
 

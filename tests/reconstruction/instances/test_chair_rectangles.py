@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances.object_extent import min_area_rectangle
 
 CHAIR = SemanticClass.CHAIR
@@ -39,7 +39,9 @@ def test_the_turn_of_a_seat_is_found(angle, sign):
 @pytest.mark.parametrize("name", ["chair", "armchair", "office_chair", "stool"])
 @pytest.mark.parametrize("turns", range(4))
 def test_a_straight_chair_has_no_free_turn(name, turns):
-    cells = cells_of(template(name), template(name).typical_m, quarter_turns=turns, shift=(9, 9, 1))
+    cells = template_cells(
+        template(name), template(name).typical_m, quarter_turns=turns, shift=(9, 9, 1)
+    )
     assert min_area_rectangle(cells, CHAIR, VOXEL_M) is None
 
 

@@ -11,7 +11,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.furniture import cells_of, surface, template
+from world2minecraft.furniture import surface_cells, template, template_cells
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
@@ -101,9 +101,9 @@ def test_the_center_map_holds_what_the_paper_names():
 def test_an_object_seen_as_a_shell_is_one_object(name):
     one = template(name)
     labels = _room()
-    labels[tuple(cells_of(one, one.typical_m, shift=(5, 5, 1)).T)] = one.class_id
+    labels[tuple(template_cells(one, one.typical_m, shift=(5, 5, 1)).T)] = one.class_id
     solid = labels == one.class_id
-    labels[solid & ~surface(solid)] = 255
+    labels[solid & ~surface_cells(solid)] = 255
     found = find_objects(grid_of(labels))
     assert len(found.instances) == 1
     assert found.leftover == 0

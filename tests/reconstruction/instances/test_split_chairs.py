@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances import FindParameters
 from world2minecraft.reconstruction.instances.split_chairs import (
     merge_chair_backs,
@@ -25,7 +25,7 @@ def _room(*pieces):
     labels[:, :, 0] = SemanticClass.FLOOR
     for name, turns, x, y in pieces:
         one = template(name)
-        cells = cells_of(one, one.typical_m, None, turns, (x, y, 1))
+        cells = template_cells(one, one.typical_m, None, turns, (x, y, 1))
         labels[tuple(cells.T)] = one.class_id
     return labels
 

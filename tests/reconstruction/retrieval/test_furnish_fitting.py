@@ -7,7 +7,7 @@ from label_grids import grid_of
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances import find_objects, measure_object
 from world2minecraft.reconstruction.retrieval import fit_template, furnish, ranked_matches
 
@@ -20,7 +20,7 @@ def found_object(name: str, quarter_turns: int = 0):
     labels = np.zeros((50, 54, 34), np.uint8)
     labels[:, :, 0] = 2
     labels[7] = 3
-    labels[tuple(cells_of(one, one.typical_m, shift=(8, 14, 1)).T)] = one.class_id
+    labels[tuple(template_cells(one, one.typical_m, shift=(8, 14, 1)).T)] = one.class_id
     grid = grid_of(np.ascontiguousarray(turn_grid(labels, quarter_turns)))
     found = find_objects(grid)
     return found.grid, found.instances[0]

@@ -10,8 +10,8 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
-from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
-from world2minecraft.furniture.rasterization import overlaps
+from world2minecraft.furniture import TEMPLATES, surface_cells, template, template_cells
+from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import (
     FurnishParameters,
@@ -33,7 +33,7 @@ def _room(name, quarter_turns, size_m=None, *, hidden=False, wall=True, lift=Non
     one = template(name)
     bottom = lift or (13 if one.mount == "wall" else 1)
     at = (8, 14, bottom)
-    cells = cells_of(one, size_m or one.typical_m, parameters, shift=at)
+    cells = template_cells(one, size_m or one.typical_m, parameters, shift=at)
     labels = np.zeros((58, 62, 40), np.uint8)
     labels[:, :, 0] = SemanticClass.FLOOR
     if wall:
@@ -41,7 +41,7 @@ def _room(name, quarter_turns, size_m=None, *, hidden=False, wall=True, lift=Non
     labels[tuple(cells.T)] = one.class_id
     if hidden:
         solid = labels == one.class_id
-        labels[solid & ~surface(solid)] = 255
+        labels[solid & ~surface_cells(solid)] = 255
     return np.ascontiguousarray(turn_grid(labels, quarter_turns))
 
 
@@ -136,8 +136,8 @@ def test_parameters_are_fitted(name, parameter, value):
     size = template(name).typical_m
     _, (placement,) = _furnished(grid_of(_room(name, 0, **given_values)))
     assert placement.template == name
-    fitted = cells_of(template(name), size, placement.parameters)
-    np.testing.assert_array_equal(fitted, cells_of(template(name), size, given_values))
+    fitted = template_cells(template(name), size, placement.parameters)
+    np.testing.assert_array_equal(fitted, template_cells(template(name), size, given_values))
 
 
 def test_a_table_seen_from_above_stands_on_the_floor():
@@ -201,7 +201,7 @@ def test_the_fast_overlap_is_the_slow_one(seed):
             inside = (cell >= 0).all() and (cell < code.shape).all()
             kind = int(code[tuple(cell)]) if inside else 1
             slow[index] += [kind == 2, kind == 1, kind == 3]
-    np.testing.assert_array_equal(overlaps(solid, code, corners), slow)
+    np.testing.assert_array_equal(count_overlaps(solid, code, corners), slow)
 
 
 @pytest.mark.parametrize(

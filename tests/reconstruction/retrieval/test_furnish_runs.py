@@ -10,7 +10,7 @@ from label_grids import grid_of
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import ObjectInstance
-from world2minecraft.furniture import surface
+from world2minecraft.furniture import surface_cells
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
 from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import (
@@ -32,7 +32,7 @@ def _kitchen(hidden=True, kettle=False):
     labels[40:48, 1:9, 1:26] = FURN
     if hidden:
         solid = labels > 0
-        labels[solid & ~surface(solid)] = 255
+        labels[solid & ~surface_cells(solid)] = 255
     if kettle:
         labels[20:23, 3:6, 12:15] = SemanticClass.OBJS
         labels[20:23, 3:6, 11] = 255

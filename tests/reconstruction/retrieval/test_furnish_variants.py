@@ -10,7 +10,7 @@ from label_grids import grid_of
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import cells_of, template
+from world2minecraft.furniture import template, template_cells
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
@@ -79,7 +79,7 @@ def test_the_order_of_objects_does_not_matter(order):
 
 def _room_with_sofa(rgb):
     one = template("sofa")
-    cells = cells_of(one, one.typical_m, shift=(8, 14, 1))
+    cells = template_cells(one, one.typical_m, shift=(8, 14, 1))
     labels = np.zeros((40, 62, 30), np.uint8)
     labels[:, :, 0], labels[7] = SemanticClass.FLOOR, SemanticClass.WALL
     labels[tuple(cells.T)] = one.class_id

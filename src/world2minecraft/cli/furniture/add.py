@@ -8,7 +8,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.furniture.user_import import Adopted
+    from world2minecraft.furniture.user_import import ImportedFurniture
 
 EXAMPLES = """\
 w2m furniture add my_chair.schem --class chair --blocks-per-metre 2
@@ -63,7 +63,7 @@ def run(
     Raises:
         UsageError: a name or a class is none, or is taken. InputError: the file cannot be read.
     """
-    from world2minecraft.furniture.user_import import Wish, adopt
+    from world2minecraft.furniture.user_import import ImportRequest, import_blocks
     from world2minecraft.furniture.user_library import check_name
     from world2minecraft.minecraft.file_format import Losses
     from world2minecraft.minecraft.formats import read_blocks
@@ -74,10 +74,10 @@ def run(
     volume = read_blocks(source, losses)
     losses.add("block entities", len(volume.block_entities))
     losses.add("entities", len(volume.entities))
-    wish = Wish(
+    wish = ImportRequest(
         chosen, kind, blocks_per_metre, front, size, title, mount, recolour=recolour, match=match
     )
-    adopted = adopt(volume, wish)
+    adopted = import_blocks(volume, wish)
     write_checked(adopted, target)
     _tell(adopted, target, front, [f"{count} {what} left behind" for what, count in losses])
 
@@ -89,27 +89,27 @@ def check_free(name: str, force: bool) -> Path:
         UsageError: the library has a piece of this name, or the user has and ``force`` is not
             given.
     """
-    from world2minecraft.furniture.library import design_files
-    from world2minecraft.furniture.user_library import own_folder
+    from world2minecraft.furniture.library import builtin_design_files
+    from world2minecraft.furniture.user_library import user_design_folder
 
-    if name in design_files():
+    if name in builtin_design_files():
         raise UsageError(f"the library has a {name} of its own; add --name another_name")
-    target = own_folder() / f"{name}.json"
+    target = user_design_folder() / f"{name}.json"
     if target.exists() and not force:
         raise UsageError(f"{target} is there already; add --force to replace it, or --name another")
     return target
 
 
-def write_checked(adopted: "Adopted", target: Path) -> None:
+def write_checked(adopted: "ImportedFurniture", target: Path) -> None:
     """Write a piece that can be read again. Raises ``OutputError``."""
     from world2minecraft.core.files import write_json
-    from world2minecraft.furniture.user_library import own_template
+    from world2minecraft.furniture.user_library import template_from_json
 
-    own_template(adopted.content)
+    template_from_json(adopted.content)
     write_json(target, adopted.content)
 
 
-def _tell(adopted: "Adopted", target: Path, front: str | None, lost: list[str]) -> None:
+def _tell(adopted: "ImportedFurniture", target: Path, front: str | None, lost: list[str]) -> None:
     content = adopted.content
     size = " x ".join(f"{content['size_m'][key][1]:.2f}" for key in ("depth", "width", "height"))
     count = sum(length for number, length in content["blocks"]["runs"] if number)

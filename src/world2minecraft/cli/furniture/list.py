@@ -34,17 +34,17 @@ def run(
     """
     from world2minecraft.core.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
-    from world2minecraft.furniture.library import by_class, markdown
-    from world2minecraft.furniture.user_library import own_files
+    from world2minecraft.furniture.library import group_by_class, templates_to_markdown
+    from world2minecraft.furniture.user_library import user_design_files
 
     number = class_id(kind) if kind else None
     every = [template(name) for name in TEMPLATES.names()]
     found = [one for one in every if _meant(one, word, number)]
     if as_markdown:
-        print(markdown(found), end="")
+        print(templates_to_markdown(found), end="")
         return
-    own = own_files()
-    for heading, members in by_class(found).items():
+    own = user_design_files()
+    for heading, members in group_by_class(found).items():
         print(heading)
         for one in members:
             print(line_of(one, own=one.name in own))

@@ -59,10 +59,10 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
     """
     from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.furniture.library import by_class
+    from world2minecraft.furniture.library import group_by_class
     from world2minecraft.rendering.contact_sheet import contact_sheet, sheet_png
 
-    found = by_class(templates).items()
+    found = group_by_class(templates).items()
     groups = {
         heading: [card for one in members for card in _card(one)] for heading, members in found
     }
@@ -72,10 +72,10 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
 
 
 def _card(one: "Template") -> list["Card"]:
-    from world2minecraft.furniture.preview_scene import volume_of
+    from world2minecraft.furniture.preview_scene import preview_volume
     from world2minecraft.rendering.contact_sheet import Card
 
-    volumes = {f"{scale:g} a metre": volume_of(one, scale, room=False) for scale in SCALES}
+    volumes = {f"{scale:g} a metre": preview_volume(one, scale, room=False) for scale in SCALES}
     drawn = {label: volume for label, volume in volumes.items() if volume is not None}
     size = " x ".join(f"{side:.2f}" for side in one.typical_m)
     return [Card(one.title, f"{one.name}   {size} m", drawn)] if drawn else []

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.construction.canvas import UNSEEN_BLOCKS, Canvas
+from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.block_alignment import BlockAligner
 from world2minecraft.construction.display.boxes import (
     DisplayBox,
@@ -27,9 +28,7 @@ from world2minecraft.construction.display.worktops import (
     deepened,
     plate_pieces,
 )
-from world2minecraft.construction.palettes import Palette
-from world2minecraft.construction.parameters import BuildParameters
-from world2minecraft.construction.surface_painting import chair_paints, paint_surface
+from world2minecraft.construction.surface_painting import BlockChoice, chair_paints, paint_surface
 from world2minecraft.construction.template_blocks import LATE_RANKS, placement_order
 from world2minecraft.construction.worktops import (
     Worktop,
@@ -70,9 +69,7 @@ def boxes_of_cells(
     colours: np.ndarray,
     known: np.ndarray,
     grid: OccupancyGrid,
-    class_id: int,
-    palette: Palette,
-    parameters: BuildParameters,
+    choice: BlockChoice,
 ) -> list[DisplayBox]:
     """Return the pieces of an object's own cells in the frame of ``frame_of_cells``.
 
@@ -81,9 +78,7 @@ def boxes_of_cells(
         colours: float32 [N, 3], their Oklab colours.
         known: bool [N], which of them have one.
         grid: where they lie; its unseen cells inside the object may be filled.
-        class_id: whose blocks of the palette may be used.
-        palette: what may be used.
-        parameters: how colours are weighed.
+        choice: which blocks may be used.
     """
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     at = tuple((cells - low).T)
@@ -93,7 +88,6 @@ def boxes_of_cells(
     tinted[at] = colours
     has_colour = np.zeros(mask.shape, bool)
     has_colour[at] = known
-    most = min(MAX_COLOURS, parameters.object_colours)
     states = paint_surface(mask, tinted, has_colour, class_id, palette, parameters, most).astype(
         str
     )
@@ -144,13 +138,10 @@ class DisplayBuilder:
     def __init__(
         self,
         canvas: Canvas,
-        grid: OccupancyGrid,
-        colours: np.ndarray,
-        coloured: np.ndarray,
-        palette: Palette,
-        parameters: BuildParameters,
+        source: BuildSource,
         instances: Sequence[ObjectInstance],
     ):
+        grid, colours, coloured, palette, parameters = source
         free = (grid.labels == 0) & (grid.source != UNSEEN)
         self.free = free
         self.canvas, self.grid, self.palette, self.parameters = canvas, grid, palette, parameters
@@ -237,9 +228,9 @@ class DisplayBuilder:
             cells, tinted = np.concatenate([cells, added]), np.concatenate([cells, alike])
         at = tuple(tinted.T)
         usable = self.exposed[at] if self.exposed[at].any() else self.coloured[at]
-        pieces = boxes_of_cells(
-            cells, self.colours[at], usable, self.grid, class_id, self.palette, self.parameters
-        )
+        limit = min(MAX_COLOURS, self.parameters.object_colours)
+        choice = BlockChoice(class_id, self.palette, self.parameters, limit)
+        pieces = boxes_of_cells(cells, self.colours[at], usable, self.grid, choice)
         self._put(pieces, frame_of_cells(cells, self.grid), class_id, number, "any")
 
     def _put(

@@ -1,6 +1,7 @@
 """Which block each part of a piece of furniture is of: its role's material in the real colour."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.surface_painting import FADED, colour_costs
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.furniture import Part, Template
-from world2minecraft.furniture.materials import FIXED, Material, swatches
+from world2minecraft.furniture.materials import FIXED, Material, list_swatches
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.visual_shapes import is_luminous
@@ -43,16 +44,18 @@ def states_of_parts(
     roles = tuple(dict.fromkeys(part.role for part in parts))
     sizes = {role: sum(_size(one) for one in parts if one.role == role) for role in roles}
     main = max(roles, key=lambda role: (round(sizes[role], 9), role))
-    source = (found.class_id, palette, parameters)
+    choose = partial(
+        _state_of_role, class_id=found.class_id, palette=palette, parameters=parameters
+    )
     whole = colours.get(main, colours.get(""))
-    chosen = {main: _state_of_role(found.materials.get(main), whole, True, *source)}
+    chosen = {main: choose(found.materials.get(main), whole, True)}
     for role in roles:
         material = found.materials.get(role)
         if role not in colours and _is_alike(material, found.materials.get(main)):
             chosen[role] = chosen[main]
         elif role != main:
             colour = colours.get(role, whole)
-            chosen[role] = _state_of_role(material, colour, role in colours, *source)
+            chosen[role] = choose(material, colour, role in colours)
     return [chosen[part.role] for part in parts]
 
 
@@ -143,7 +146,7 @@ def _state_of_role(
     own = _whole(material, palette.defaults[class_id])
     if material.kind == FIXED or not material.takes_colour or colour is None:
         return own
-    kind = [_full(swatch.sample) for swatch in swatches(material.kind, frozenset({"full"}))]
+    kind = [_full(swatch.sample) for swatch in list_swatches(material.kind, frozenset({"full"}))]
     allowed = [state for state in kind if palette.allows(state)]
     best, away = nearest_state(colour, plain, parameters)
     if not allowed:

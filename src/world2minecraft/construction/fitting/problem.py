@@ -37,7 +37,7 @@ def cover_blocks(
     at = [windows[axis][0][cells[:, axis]] for axis in range(3)]
     index = (at[0][:, :, None, None], at[1][:, None, :, None], at[2][:, None, None, :])
     shares = [windows[axis][1][cells[:, axis]] for axis in range(3)]
-    return cells, [_carried(layer[index].astype(np.float32), shares) for layer in layers]
+    return cells, [_resample(layer[index].astype(np.float32), shares) for layer in layers]
 
 
 def _windows(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -67,7 +67,7 @@ def _met(solid: np.ndarray, windows: Sequence[tuple[np.ndarray, np.ndarray]]) ->
     return solid
 
 
-def _carried(values: np.ndarray, shares: Sequence[np.ndarray]) -> np.ndarray:
+def _resample(values: np.ndarray, shares: Sequence[np.ndarray]) -> np.ndarray:
     """Return cells [N, A, B, C] as sub-cells [N, 512] by each block's own shares [N, 8, K]."""
     count, a, b, c = values.shape
     along = np.matmul(shares[0], values.reshape(count, a, b * c)).reshape(count, SUB, b, c)
@@ -126,27 +126,27 @@ def thin_cells(solid: np.ndarray, voxel_m: float, thin_m: float = THIN_M) -> np.
     side = max(2, int(np.ceil(thin_m / voxel_m - 1e-9)))
     core = np.asarray(solid, bool)
     for axis in range(3):
-        core = _slid(_padded(core, side - 1, axis), side, axis, np.logical_and)
+        core = _sliding_reduce(_pad_axis(core, side - 1, axis), side, axis, np.logical_and)
     for axis in range(3):
-        core = _slid(core, side, axis, np.logical_or)
+        core = _sliding_reduce(core, side, axis, np.logical_or)
     return solid & ~core
 
 
-def _padded(values: np.ndarray, reach: int, axis: int) -> np.ndarray:
+def _pad_axis(values: np.ndarray, reach: int, axis: int) -> np.ndarray:
     widths = [(0, 0)] * values.ndim
     widths[axis] = (reach, reach)
     return np.pad(values, widths)
 
 
-def _slid(values: np.ndarray, side: int, axis: int, joined: np.ufunc) -> np.ndarray:
-    """Return ``joined`` over each run of ``side`` cells along an axis."""
+def _sliding_reduce(values: np.ndarray, side: int, axis: int, reduce: np.ufunc) -> np.ndarray:
+    """Return ``reduce`` over each run of ``side`` cells along an axis."""
     count = values.shape[axis] - side + 1
     run = [slice(None)] * values.ndim
     run[axis] = slice(0, count)
     result = values[tuple(run)].copy()
     for step in range(1, side):
         run[axis] = slice(step, step + count)
-        joined(result, values[tuple(run)], out=result)
+        reduce(result, values[tuple(run)], out=result)
     return result
 
 
@@ -279,5 +279,13 @@ def problem_at(
     wanted, thin = (split_into_blocks(np.pad(values, widths)) for values in target[:2])
     used = wanted.any(3)
     x, y = ((start[axis] + half[axis]) / SUB for axis in (0, 1))
-    blocks = (np.argwhere(used), wanted[used], thin[used], used.shape)
-    return problem_of(*blocks, shapes, calm, (x, y), target.bottom)
+    return problem_of(
+        np.argwhere(used),
+        wanted[used],
+        thin[used],
+        used.shape,
+        shapes,
+        calm=calm,
+        middle=(x, y),
+        floor=target.bottom,
+    )

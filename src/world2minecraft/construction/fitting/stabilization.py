@@ -216,8 +216,8 @@ def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[
     among = np.array(legs or range(len(ways)))
     span = np.ptp(spots[among, :2], axis=0).max() + 1
     if span < MIN_SPAN:
-        apart = np.abs(spots[among, :2] - spots[:, :2].mean(0)).sum(1)
-        return [ways[int(among[apart.argmin()])]]
+        distances = np.abs(spots[among, :2] - spots[:, :2].mean(0)).sum(1)
+        return [ways[int(among[distances.argmin()])]]
     corners = {
         int(among[(spots[among, 0] * a + spots[among, 1] * b).argmax()])
         for a in (1, -1)
@@ -382,11 +382,11 @@ def stabilize(
     grid = mirror_shapes(grid, shapes, rules.even)
     scores = problem.gains.scores(lam)
     scores[barred] = -np.inf
-    apart = np.isin(shapes.kinds, ("carpet", "post"))
+    distances = np.isin(shapes.kinds, ("carpet", "post"))
     scores[:, apart] = -np.inf
     if rules.stands and rules.legs:
         _add_legs(grid, problem, shapes)
-    movable = np.flatnonzero(~apart[grid[problem.at]])
+    movable = np.flatnonzero(~distances[grid[problem.at]])
     grid = join_shapes(grid, movable, scores, problem, shapes)
     grid = make_stair_corners(mirror_shapes(grid, shapes, rules.even), shapes)
     if rules.stands:

@@ -21,7 +21,7 @@ from world2minecraft.editing.scene.object_boxes import (
 from world2minecraft.editing.scene.object_placement import standing_box
 from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
 from world2minecraft.editing.scene.scene_objects import instance_of, object_of
-from world2minecraft.furniture import Template, cells_of, template, templates_of
+from world2minecraft.furniture import Template, template, template_cells, templates_of_class
 
 ObjectClass = Annotated[int, Field(ge=5, le=11)]
 TemplateName = Annotated[str, Field(min_length=1, max_length=200)]
@@ -46,7 +46,7 @@ class AddObject(Command):
         chosen = self._template()
         corner, counts, turns = standing_box(draft, chosen, self.at_m, self.quarter_turns)
         size_m = np.round(np.array(counts) * draft.voxel_m, 9)
-        solid = cells_of(chosen, size_m, None, turns, corner.tolist(), draft.voxel_m)
+        solid = template_cells(chosen, size_m, None, turns, corner.tolist(), draft.voxel_m)
         cells = solid[is_free(draft, solid)]
         if not len(cells):
             sides = " x ".join(f"{side:.2f}" for side in size_m)
@@ -65,7 +65,7 @@ class AddObject(Command):
 
     def _template(self) -> Template:
         if self.template is None:
-            return templates_of(self.class_id)[0]
+            return templates_of_class(self.class_id)[0]
         return template_for(self.template, self.class_id)
 
 

@@ -13,7 +13,7 @@ from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.object_boxes import describe_object, object_by_id, plan_extent_m
 from world2minecraft.editing.scene.object_transforms import Id, plan_shift
-from world2minecraft.furniture import Template, facing, size_in_cells, surroundings
+from world2minecraft.furniture import Template, estimate_facing, read_surroundings, size_in_cells
 
 WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
 WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.
@@ -87,7 +87,7 @@ def _facing(
 ) -> int:
     """Return which way a full box of its size would look."""
     cells = (np.argwhere(np.ones(counts, bool)) + corner).astype(np.int32)
-    return facing(cells, chosen.class_id, surroundings(draft.labels)).quarter_turns
+    return estimate_facing(cells, chosen.class_id, read_surroundings(draft.labels)).quarter_turns
 
 
 class SnapObject(Command):

@@ -1,4 +1,10 @@
-"""Answer the items of a set: prompts, parsing of replies, and answers by a vision-language model."""
+"""Answer the items of a set: the reply format, its parser, and a vision-language model that answers.
+
+``letter`` asks as supervised models were trained, ``think`` as models trained by reward were, and
+``json`` holds any model to a schema. All are parsed alike: a JSON field, a tagged answer, an
+``Answer:`` line, or a reply that is the letter or one option's words alone. A letter among prose
+is no answer.
+"""
 
 import re
 from collections.abc import Mapping
@@ -26,13 +32,6 @@ from world2minecraft.external_models.structured_replies import (
 from world2minecraft.navigation.agents.vlm_agent import describe_try
 from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
 from world2minecraft.navigation.values import Item
-
-# The form of an answer: the letter of an option, and how it is read from what a model says.
-#
-# ``letter`` asks as supervised models were trained, ``think`` as models trained by reward were, and
-# ``json`` holds any model to a schema. All are read alike: a JSON field, a tagged answer, an
-# ``Answer:`` line, or a reply that is the letter or one option's words alone. A letter among prose
-# is no answer.
 
 STYLES = ("letter", "think", "json")
 THINK = (

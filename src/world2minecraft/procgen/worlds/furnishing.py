@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.furniture import Idiom, template
-from world2minecraft.furniture.block_designs import block_size, laid
+from world2minecraft.furniture import BlockDesign, template
+from world2minecraft.furniture.block_designs import block_size, lay_template
 from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import Ways
@@ -89,7 +89,7 @@ class Furnisher:
         turns: int,
         rng: np.random.Generator,
         size_m: Sequence[float] | None = None,
-    ) -> Idiom | None:
+    ) -> BlockDesign | None:
         """Return a design turned and in the room's materials; its size is drawn where none is."""
         made = template(name)
         if size_m is None:
@@ -99,7 +99,7 @@ class Furnisher:
                 else span.typical - span.minimum) for span in made.size_m
             ]  # fmt: skip
         size = np.array([span.clip(v) for span, v in zip(made.size_m, size_m, strict=True)])
-        found = laid(made, block_size(size, self.house.blocks_per_metre), None, turns)
+        found = lay_template(made, block_size(size, self.house.blocks_per_metre), None, turns)
         return None if found is None else dressed(found, made, self.looks[room.number], rng)
 
     def put_at_wall(
@@ -211,12 +211,12 @@ class Furnisher:
         if good.sum() < 0.3 * len(good):
             return 0
         blocks = tuple(b for b, keep in zip(found.blocks, good, strict=True) if keep)
-        return self._set(name, Idiom(blocks, found.size), cells[good], room, turns)
+        return self._set(name, BlockDesign(blocks, found.size), cells[good], room, turns)
 
     def put(
         self,
         name: str,
-        found: Idiom,
+        found: BlockDesign,
         low: Sequence[int],
         room: BlockRoom,
         turns: int,
@@ -233,7 +233,7 @@ class Furnisher:
                     return self._set(name, found, at, room, turns)
         return 0
 
-    def _cells(self, found: Idiom) -> np.ndarray:
+    def _cells(self, found: BlockDesign) -> np.ndarray:
         """Return the cells of a design's blocks, x y z up from its least, int [N, 3]."""
         offsets = np.array([block.offset for block in found.blocks])
         deep = found.size[2]
@@ -249,7 +249,9 @@ class Furnisher:
         free = (self.canvas.states[own] == 0) & ~self.kept[own]
         return bool(free.all() and inside[tuple(flat.T)].all())
 
-    def _set(self, name: str, found: Idiom, at: np.ndarray, room: BlockRoom, turns: int) -> int:
+    def _set(
+        self, name: str, found: BlockDesign, at: np.ndarray, room: BlockRoom, turns: int
+    ) -> int:
         instance, class_id = self.next_instance(), template(name).class_id
         for (x, y, z), block in zip(at.tolist(), found.blocks, strict=True):
             self.canvas.set(self.canvas.at(x, y, z), block.state, class_id, instance, name)
@@ -258,7 +260,7 @@ class Furnisher:
         self.things.append(thing)
         return instance
 
-    def _corner(self, item: Item, found: Idiom, room: BlockRoom) -> list[int]:
+    def _corner(self, item: Item, found: BlockDesign, room: BlockRoom) -> list[int]:
         """Return the least block of a thing's design, x y z of the house."""
         scale = self.house.blocks_per_metre
         box, cell = item.box_m, self.house.plan.cells[room.number]
@@ -278,14 +280,14 @@ class Furnisher:
         above = round((box[2] - floor_m) * scale)
         return [*corner, room.ground + min(above, max(room.height - tall, 0))]
 
-    def _on(self, low: list[int], found: Idiom) -> int:
+    def _on(self, low: list[int], found: BlockDesign) -> int:
         """Return the layer on the highest thing under a design's middle, not over its place."""
         x, y, _ = self.canvas.at(low[0] + found.size[0] // 2, low[1] + found.size[2] // 2, 0)
         top = self.canvas.at(0, 0, low[2] + 1)[2]
         filled = np.flatnonzero(self.canvas.states[x, y, : top + 1])
         return int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
 
-    def _carries(self, place: list[int], found: Idiom, thing: Thing) -> bool:
+    def _carries(self, place: list[int], found: BlockDesign, thing: Thing) -> bool:
         """Whether each block of a design's foot would stand on a block of the thing."""
         foot = self._cells(found)
         foot = foot[foot[:, 2] == 0] + np.array(place) - [0, 0, 1]
@@ -293,7 +295,7 @@ class Furnisher:
         return bool((self.canvas.instance[at] == thing.instance).all())
 
     def _along(
-        self, found: Idiom, room: BlockRoom, turns: int, rng: np.random.Generator
+        self, found: BlockDesign, room: BlockRoom, turns: int, rng: np.random.Generator
     ) -> list[tuple[int, int]]:
         """Return places at the wall behind a front, in a drawn order, corners rather first."""
         wide, deep = found.size[0], found.size[2]
@@ -306,7 +308,7 @@ class Furnisher:
         order = rng.permutation(spots)[:PLACES_TRIED].tolist()
         return [(at, one) if axis == 1 else (one, at) for one in order]
 
-    def _has_wall(self, found: Idiom, low: Corner, turns: int) -> bool:
+    def _has_wall(self, found: BlockDesign, low: Corner, turns: int) -> bool:
         """Whether all of a design's back is before bare wall."""
         wide, tall, deep = found.size
         high = (low[0] + wide, low[1] + deep, low[2] + tall)
@@ -317,7 +319,7 @@ class Furnisher:
         behind = self.canvas.semantic[self.canvas.box((a[0], a[1], a[2]), (b[0], b[1], b[2]))]
         return bool((behind == SemanticClass.WALL).all())
 
-    def _front_is_free(self, found: Idiom, low: Corner, room: BlockRoom, turns: int) -> bool:
+    def _front_is_free(self, found: BlockDesign, low: Corner, room: BlockRoom, turns: int) -> bool:
         """Whether nothing stands right before a design's front."""
         wide, tall, deep = found.size
         high = (low[0] + wide, low[1] + deep, low[2] + tall)

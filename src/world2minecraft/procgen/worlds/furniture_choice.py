@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.furniture.block_designs import Idiom
+from world2minecraft.furniture.block_designs import BlockDesign
 from world2minecraft.furniture.materials import (
     Material,
     Swatch,
     kinds,
-    restated,
+    list_swatches,
     shape_of,
-    swatches,
+    with_swatch,
 )
 from world2minecraft.furniture.template import Template
 from world2minecraft.procgen.worlds.styles import RoomLook
@@ -119,7 +119,9 @@ def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
     return DESIGNS.get(name, ())
 
 
-def dressed(design: Idiom, template: Template, look: RoomLook, rng: np.random.Generator) -> Idiom:
+def dressed(
+    design: BlockDesign, template: Template, look: RoomLook, rng: np.random.Generator
+) -> BlockDesign:
     """Return a design with those of its materials in the room's that take a colour."""
     blocks = list(design.blocks)
     values: dict[str, str] = {}
@@ -136,13 +138,13 @@ def dressed(design: Idiom, template: Template, look: RoomLook, rng: np.random.Ge
         for n in own:
             shape = shape_of(blocks[n].state, material.kind)
             if shape and swatch:
-                blocks[n] = blocks[n]._replace(state=restated(blocks[n].state, shape, swatch))
-    return Idiom(tuple(blocks), design.size, design.materials)
+                blocks[n] = blocks[n]._replace(state=with_swatch(blocks[n].state, shape, swatch))
+    return BlockDesign(tuple(blocks), design.size, design.materials)
 
 
 def swatches_of(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     """Return the materials of a kind that have all the shapes, those not chosen by colour too."""
-    offered = {s.value: s for s in swatches(kind, shapes)}
+    offered = {s.value: s for s in list_swatches(kind, shapes)}
     for value, blocks in kinds()[kind].blocks.items():
         if value not in offered and shapes <= set(blocks):
             offered[value] = Swatch(kind, value, blocks["full"])

@@ -19,7 +19,7 @@ from world2minecraft.core.types import (
     Placement,
 )
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanSurface
-from world2minecraft.furniture import cells_of, size_in_cells, template
+from world2minecraft.furniture import size_in_cells, template, template_cells
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.reconstruction.floorplans.furniture_categories import (
     OWN_CELLS,
@@ -199,7 +199,7 @@ def stand(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray
         cells = np.argwhere(np.ones(sides, bool)) + corner
     else:
         size = counts * canvas.voxel_m
-        cells = cells_of(template(name), size, None, turns, corner.tolist(), canvas.voxel_m)
+        cells = template_cells(template(name), size, None, turns, corner.tolist(), canvas.voxel_m)
     cells = cells[((cells >= 0) & (cells < canvas.labels.shape)).all(axis=1)]
     cells = cells[canvas.labels[tuple(cells.T)] == SemanticClass.EMPTY]
     if len(cells):

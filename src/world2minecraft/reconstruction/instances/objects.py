@@ -14,7 +14,7 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
-from world2minecraft.furniture.facing import Surroundings, facing, surroundings
+from world2minecraft.furniture.facing import Surroundings, estimate_facing, read_surroundings
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import (
@@ -122,7 +122,7 @@ def _instances(
             f"{len(groups):,} objects are too many, {MAX_OBJECTS:,} at most; "
             "leave out small ones, such as by --set find.min_cells=20"
         )
-    around = surroundings(grid.labels)
+    around = read_surroundings(grid.labels)
     return tuple(
         _instance(number, grid, group, around, reach)
         for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
@@ -144,7 +144,7 @@ def measure_object(
     labels[tuple(cells.T)] = class_id
     source = np.where(labels == UNKNOWN, UNSEEN, OBSERVED).astype(np.uint8)
     grid = replace(grid, labels=labels, source=source)
-    return _instance(number, grid, cells, surroundings(labels), True)
+    return _instance(number, grid, cells, read_surroundings(labels), True)
 
 
 def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:
@@ -172,7 +172,7 @@ def _instance(
     reach: bool,
 ) -> ObjectInstance:
     class_id = int(grid.labels[tuple(cells[0])])
-    front = facing(cells, class_id, around)
+    front = estimate_facing(cells, class_id, around)
     low, size = _box_m(grid, cells, class_id, reach)
     center = low + size / 2
     rotated = min_area_rectangle(cells, class_id, grid.voxel_m) if reach else None

@@ -6,7 +6,13 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import template
-from world2minecraft.furniture.chair_fitting import AGAINST, OWN, SeatFit, fit_seat, look_at
+from world2minecraft.furniture.chair_fitting import (
+    AGAINST,
+    OWN,
+    SeatFit,
+    direction_to_table,
+    fit_seat,
+)
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
 from world2minecraft.reconstruction.instances.parameters import FindParameters
@@ -129,7 +135,7 @@ def _chair_of_cells(
     """Return the chair, int32 [N] from 0, of each cell; all 0 where it is one."""
     code, corner = _crop(cells, labels)
     own = cells - corner
-    look = look_at(cells, tables, int(TABLE_SEARCH_M / voxel_m))
+    look = direction_to_table(cells, tables, int(TABLE_SEARCH_M / voxel_m))
     fits = _fit_chairs(code.copy(), own, floor - int(corner[2]), voxel_m, look)
     if len(fits) < 2 or not _clearly_better(fits, code, own, floor - int(corner[2]), voxel_m):
         return np.zeros(len(cells), np.int32)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture import Template, template, templates_of
+from world2minecraft.furniture import Template, template, templates_of_class
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, within_rooms
@@ -63,7 +63,7 @@ def ranked_matches(
     if not len(instance.cells):
         return ()
     best: dict[str, tuple[str, int, float]] = {}
-    for one in _matches(grid, instance, templates_of(instance.class_id), rooms)[1]:
+    for one in _matches(grid, instance, templates_of_class(instance.class_id), rooms)[1]:
         row = (one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
         best.setdefault(row[0], row)
     return tuple(best.values())[:count]

@@ -7,9 +7,9 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture import template, templates_of
-from world2minecraft.furniture.chair_fitting import fit_seat, look_at, without_open_top
-from world2minecraft.furniture.facing import Surroundings, facing, surroundings
+from world2minecraft.furniture import template, templates_of_class
+from world2minecraft.furniture.chair_fitting import direction_to_table, fit_seat, without_open_top
+from world2minecraft.furniture.facing import Surroundings, estimate_facing, read_surroundings
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
@@ -124,7 +124,7 @@ def furnish(
     in the same place.
     """
     chosen = parameters or FurnishParameters()
-    around = surroundings(grid.labels)
+    around = read_surroundings(grid.labels)
     placed: list[Choice] = []
     for instance in instances:
         if len(instance.cells):
@@ -153,7 +153,7 @@ def _furnish_one(
     parts = []
     for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
         cells = (run + whole.evidence.corner).astype(np.int32)
-        front = facing(cells, instance.class_id, around).quarter_turns
+        front = estimate_facing(cells, instance.class_id, around).quarter_turns
         parts.append(_match(grid, instance, cells, front, chosen, floor_m))
     least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
@@ -175,7 +175,7 @@ def _with_tidy_crumbs(
         low = part.evidence.corner + trial.corner
         boxes.append((low, low + np.array(trial.turned_counts)))
     crumbs = [_cells_of(part) for part in parts if not part.matches]
-    reach = reach_of(templates_of(instance.class_id), grid.voxel_m)
+    reach = reach_of(templates_of_class(instance.class_id), grid.voxel_m)
     front = parts[0].quarter_turns
     kept = tidied(crumbs, [_cells_of(part) for part in placed], boxes)
     return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in kept]
@@ -194,7 +194,7 @@ def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> M
     evidence = found.evidence
     cells = _cells_of(found)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
-    look = look_at(cells, tables, int(chosen.seat_look_m / grid.voxel_m))
+    look = direction_to_table(cells, tables, int(chosen.seat_look_m / grid.voxel_m))
     fit = fit_seat(template("chair"), evidence.code, evidence.floor, grid.voxel_m, look)
     if (
         fit is None
@@ -216,7 +216,7 @@ def _match(
     chosen: FurnishParameters,
     floor_m: float,
 ) -> Matched:
-    templates = templates_of(instance.class_id)
+    templates = templates_of_class(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
     matches = best_matches(templates, evidence, _bias(quarter_turns, grid, chosen), chosen)

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.furniture import Template
-from world2minecraft.furniture import raster
-from world2minecraft.furniture.rasterization import overlaps
+from world2minecraft.furniture import Template, rasterize
+from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
 
@@ -73,7 +72,7 @@ def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bia
     score, not IoU, so that a template goes beyond the object only as far as it must.
     """
     solid = _turned(trial.template, trial.counts, trial.values, bias.voxel_m, trial.quarter_turns)
-    counts = overlaps(solid, evidence.code, shifts + np.array(trial.corner))
+    counts = count_overlaps(solid, evidence.code, shifts + np.array(trial.corner))
     ious = counts[:, 0] / (evidence.own + counts[:, 1])
     scores = ious - bias.beyond_weight * counts[:, 2] / np.count_nonzero(solid)
     best = int(np.argmax(np.round(scores, 12)))
@@ -105,7 +104,7 @@ def _strangeness(value: float, minimum: float, typical: float, maximum: float) -
 def _turned(
     template: Template, counts: Cells, values: Values, voxel_m: float, quarter_turns: int
 ) -> np.ndarray:
-    solid = raster(template, counts, values, voxel_m)
+    solid = rasterize(template, counts, values, voxel_m)
     return np.ascontiguousarray(turn_grid(solid, quarter_turns))
 
 
