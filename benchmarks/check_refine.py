@@ -37,7 +37,7 @@ from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.sceneforge.document.identity import folder_of
+from world2minecraft.sceneforge.document.identity import document_folder
 from world2minecraft.sceneforge.editor import Editor
 
 LABEL_ERROR = 0.1
@@ -80,7 +80,7 @@ def reconstructed(seed: int, work: Path, labels: bool) -> tuple[Path, Path]:
 
 def scene_of(run: Path, folder: Path, empty: bool) -> Path:
     """Return a folder with a copy of a run's scene, or with its grid seen to be empty."""
-    for old in (folder, folder_of(folder)):
+    for old in (folder, document_folder(folder)):
         shutil.rmtree(old, ignore_errors=True)
     folder.mkdir(parents=True)
     if not empty:

@@ -14,11 +14,11 @@ from world2minecraft.evaluation.report.jit_warmup import pictures_compiled_meanw
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
 from world2minecraft.reconstruction.opening import open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.pipeline import STAGES, reconstruct, registered_before
-from world2minecraft.reconstruction.resume import kept_before
+from world2minecraft.reconstruction.pipeline import STAGES, read_registered, reconstruct
+from world2minecraft.reconstruction.resume import resume_parameters
 
 
-def make_run(
+def run_capture(
     capture: Path,
     out: Path,
     chosen: Parameters,
@@ -32,8 +32,8 @@ def make_run(
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
     """
     if start == "report":
-        as_before = kept_before(out, start, STAGES, chosen).parameters
-        scan = registered_before(open_prepared(capture, out, as_before, labels, progress), out)
+        as_before = resume_parameters(out, start, STAGES, chosen).parameters
+        scan = read_registered(open_prepared(capture, out, as_before, labels, progress), out)
     else:
         with pictures_compiled_meanwhile():
             scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
@@ -41,7 +41,7 @@ def make_run(
     return write_report(out, scan, truth=truth, progress=progress)
 
 
-def make_from_plan(
+def run_plan(
     place: AnyPath, out: Path, chosen: Parameters, progress: Progress = silent, name: str = ""
 ) -> PlanWorld:
     """Build a plan's world, with a brief report.

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.furniture import TEMPLATES, check_template, template
 from world2minecraft.furniture.block_designs import block_size
-from world2minecraft.furniture.families.fronts import MOST_REST, body_of, door_columns
+from world2minecraft.furniture.families.fronts import MAX_REST, body_of, door_columns
 from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.preview_scene import preview_volume
 from world2minecraft.minecraft.block_states import check_state, parse_state
@@ -88,7 +88,7 @@ def test_a_front_stands_before_its_body_and_not_far_beyond_the_size(depth, scale
     size = block_size(np.array([depth, 1.0, 1.0]) / scale, scale)
     body = body_of(size)
     assert 1 <= body.depth <= size.depth and body.front in (None, body.depth)
-    assert abs(body.depth - depth) <= max(MOST_REST, 1 - depth) + 1e-6
+    assert abs(body.depth - depth) <= max(MAX_REST, 1 - depth) + 1e-6
     assert body.front is not None or scale == 1.0
 
 

@@ -14,10 +14,10 @@ from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraftocc.block_map import (
     block_map_json,
-    block_map_of,
     class_of_fine,
     classify,
     load_block_map,
+    parse_block_map,
     read_block_map,
     remap_labels,
 )
@@ -249,7 +249,7 @@ def test_conditions_hold_where_they_say(condition, place, holds):
     """A gold block put somewhere into the cottage is a screen where the condition holds."""
     rules = {"probe": [{"class": "tvs", "where": [condition]}, "objs"]}
     probe = {"name": "m", "extends": "nyu", "kinds": {"probe": ["gold_block"]}, "rules": rules}
-    mine = block_map_of(probe | {"structure": ["probe"]})
+    mine = parse_block_map(probe | {"structure": ["probe"]})
     made = cottage()
     made.put(place, "minecraft:gold_block")
     told = CLASS_NAMES[classify(made.volume(), mine).semantic[place]]
@@ -263,7 +263,7 @@ def test_blocks_beside_their_like_are_in_a_row_and_steps_climb():
     made = cottage()
     for place in ((3, 2, 4), (4, 3, 4), (6, 2, 6), (7, 2, 6), (4, 2, 7)):
         made.put(place, "minecraft:gold_block")
-    told = classify(made.volume(), block_map_of(own)).semantic
+    told = classify(made.volume(), parse_block_map(own)).semantic
     places = ((3, 2, 4), (4, 3, 4), (6, 2, 6), (7, 2, 6), (4, 2, 7))
     names = [CLASS_NAMES[told[place]] for place in places]
     assert names == ["tvs", "tvs", "bed", "bed", "objs"]
@@ -460,7 +460,7 @@ def test_the_docs_list_all_conditions_and_their_example_is_a_map():
     for name, what in (CONDITIONS | MEASURES).items():
         assert f"| `{name}` | {what} |" in text
     example = text.partition("```yaml\n")[2].partition("```")[0]
-    mine = block_map_of(yaml.safe_load(example))
+    mine = parse_block_map(yaml.safe_load(example))
     assert mine.classes_of("gold_block") == ("table",)
     assert mine.meaning("red_sandstone") == "loud"
 
@@ -474,4 +474,4 @@ def test_glowing_blocks_are_floors_and_lamps():
 
 
 def test_a_tree_without_extends_needs_nothing_else():
-    assert block_map_of({"name": "m"}).classes_of("minecraft:stone") == ("wall",)
+    assert parse_block_map({"name": "m"}).classes_of("minecraft:stone") == ("wall",)

@@ -249,9 +249,9 @@ PARENT = """
 import pickle, sys
 from pathlib import Path
 from world2minecraft.minecraftocc.building import build_dataset
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 if __name__ == "__main__":
-    with opened_engine("pool", 2) as engine:
+    with open_engine("pool", 2) as engine:
         build_dataset(sys.argv[1], pickle.loads(Path(sys.argv[2]).read_bytes()), engine)
 """
 

@@ -65,9 +65,9 @@ def test_an_item_that_kills_every_worker_is_told_in_one_line():
 PARENT = """
 import sys
 import engine_tasks
-from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.engine import open_engine
 if __name__ == "__main__":
-    with opened_engine("pool", 2) as engine:
+    with open_engine("pool", 2) as engine:
         list(engine.run(getattr(engine_tasks, sys.argv[1]), sys.argv[2:], lambda _: None))
 """
 

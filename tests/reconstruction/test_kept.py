@@ -8,7 +8,12 @@ import pytest
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import STAGES
-from world2minecraft.reconstruction.resume import READ_FIRST_BY, Kept, kept_before, with_kept_files
+from world2minecraft.reconstruction.resume import (
+    READ_FIRST_BY,
+    Resumed,
+    resume_manifest,
+    resume_parameters,
+)
 
 THEN = ["voxel_m=0.1", "find.cluster_radius=3", "capture.every=2", "blocks_per_metre=2"]
 FILES = {"capture": "c", "labels": "l", "plan": None, "networks": []}
@@ -31,7 +36,7 @@ def test_every_parameter_has_a_stage_that_reads_it_first():
 
 def test_what_is_left_out_stays_as_it_was(tmp_path):
     told(tmp_path, then())
-    kept = kept_before(tmp_path, "build", STAGES, Parameters())
+    kept = resume_parameters(tmp_path, "build", STAGES, Parameters())
     parameters = kept.parameters
     assert (parameters.voxel_m, parameters.fuse.voxel_m) == (0.1, 0.1)
     assert parameters.find.cluster_radius == 3 and parameters.capture == {"every": "2"}
@@ -42,16 +47,21 @@ def test_what_is_left_out_stays_as_it_was(tmp_path):
 
 def test_stages_that_run_again_read_what_is_asked(tmp_path):
     told(tmp_path, then())
-    assert kept_before(tmp_path, "find", STAGES, Parameters()).parameters.find.cluster_radius == 2
-    assert kept_before(tmp_path, "scan", STAGES, Parameters()) == Kept(Parameters())
-    assert kept_before(tmp_path, None, STAGES, Parameters()) == Kept(Parameters())
-    assert kept_before(tmp_path, "report", STAGES, Parameters()).parameters.blocks_per_metre == 2
+    assert (
+        resume_parameters(tmp_path, "find", STAGES, Parameters()).parameters.find.cluster_radius
+        == 2
+    )
+    assert resume_parameters(tmp_path, "scan", STAGES, Parameters()) == Resumed(Parameters())
+    assert resume_parameters(tmp_path, None, STAGES, Parameters()) == Resumed(Parameters())
+    assert (
+        resume_parameters(tmp_path, "report", STAGES, Parameters()).parameters.blocks_per_metre == 2
+    )
 
 
 def test_what_is_given_again_is_no_note(tmp_path):
     told(tmp_path, then())
     again = with_settings(Parameters(known=("table height", 0.72)), THEN)
-    assert kept_before(tmp_path, "build", STAGES, again).notes == ()
+    assert resume_parameters(tmp_path, "build", STAGES, again).notes == ()
 
 
 @pytest.mark.parametrize(
@@ -66,7 +76,7 @@ def test_what_contradicts_kept_stages_is_refused(tmp_path, start, setting, was, 
     told(tmp_path, then())
     key = setting.partition("=")[0]
     with pytest.raises(UsageError) as caught:
-        kept_before(tmp_path, start, STAGES, with_settings(Parameters(), [setting]))
+        resume_parameters(tmp_path, start, STAGES, with_settings(Parameters(), [setting]))
     assert str(caught.value) == (
         f"--from {start} keeps what was made with {key} {was}, not {now}; "
         f"leave {key} out, or begin with --from {stage}"
@@ -76,23 +86,23 @@ def test_what_contradicts_kept_stages_is_refused(tmp_path, start, setting, was, 
 def test_files_that_kept_stages_read_are_told_as_they_were(tmp_path):
     told(tmp_path, then())
     now = {"capture": "c", "labels": None, "plan": None, "networks": [], "palette": "p"}
-    kept = kept_before(tmp_path, "label", STAGES, Parameters())
-    assert with_kept_files(tmp_path, "label", now, kept) == {**now, "labels": "l"}
-    kept = kept_before(tmp_path, "fuse", STAGES, Parameters())
-    assert with_kept_files(tmp_path, "fuse", now, kept) == now, "fuse reads labels anew"
+    kept = resume_parameters(tmp_path, "label", STAGES, Parameters())
+    assert resume_manifest(tmp_path, "label", now, kept) == {**now, "labels": "l"}
+    kept = resume_parameters(tmp_path, "fuse", STAGES, Parameters())
+    assert resume_manifest(tmp_path, "fuse", now, kept) == now, "fuse reads labels anew"
     with pytest.raises(InputError, match="made of another capture, or its files have changed"):
-        with_kept_files(tmp_path, "fuse", {**now, "capture": "d"}, kept)
-    kept = kept_before(tmp_path, "build", STAGES, Parameters())
+        resume_manifest(tmp_path, "fuse", {**now, "capture": "d"}, kept)
+    kept = resume_parameters(tmp_path, "build", STAGES, Parameters())
     with pytest.raises(UsageError, match="without these --labels; begin with --from fuse"):
-        with_kept_files(tmp_path, "build", {**now, "labels": "m"}, kept)
+        resume_manifest(tmp_path, "build", {**now, "labels": "m"}, kept)
 
 
 def test_a_manifest_of_another_version_or_a_broken_one(tmp_path):
-    assert kept_before(tmp_path, "build", STAGES, Parameters()) == Kept(Parameters())
+    assert resume_parameters(tmp_path, "build", STAGES, Parameters()) == Resumed(Parameters())
     (tmp_path / "manifest.json").write_text("{")
-    assert kept_before(tmp_path, "build", STAGES, Parameters()) == Kept(Parameters())
+    assert resume_parameters(tmp_path, "build", STAGES, Parameters()) == Resumed(Parameters())
     told(tmp_path, {"no longer": 1, "find": {"gone": 2}, "capture": {}})
-    assert kept_before(tmp_path, "build", STAGES, Parameters()).parameters == Parameters()
+    assert resume_parameters(tmp_path, "build", STAGES, Parameters()).parameters == Parameters()
     told(tmp_path, {"find": {"cluster_radius": "wide"}})
     with pytest.raises(DamagedFileError, match="states cluster_radius 'wide'"):
-        kept_before(tmp_path, "build", STAGES, Parameters())
+        resume_parameters(tmp_path, "build", STAGES, Parameters())

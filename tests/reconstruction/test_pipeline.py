@@ -145,14 +145,14 @@ def test_a_run_that_was_cut_off_goes_on(out, capture, monkeypatch, tmp_path):
     from world2minecraft.reconstruction import stages as steps
 
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "cut")]
-    real = steps.LATER_STEPS["furnish"]
+    real = steps.FILE_STAGES["furnish"]
     monkeypatch.setitem(
-        steps.LATER_STEPS, "furnish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt)
+        steps.FILE_STAGES, "furnish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt)
     )
     assert w2m(words) == 130
     assert json.loads((tmp_path / "cut/manifest.json").read_text())["finished"][-1] == "find"
     stamp = (tmp_path / "cut/evidence.npz").stat().st_mtime_ns
-    monkeypatch.setitem(steps.LATER_STEPS, "furnish", real)
+    monkeypatch.setitem(steps.FILE_STAGES, "furnish", real)
     assert w2m(words) == 0
     assert (tmp_path / "cut/evidence.npz").stat().st_mtime_ns == stamp
 

@@ -9,7 +9,7 @@ from world2minecraft.editing.scene.scene_objects import object_key
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.sources import with_objects
+from world2minecraft.sceneforge.sources import detect_objects
 
 SHAPE = (20, 18, 14)
 
@@ -42,7 +42,7 @@ def room_grid() -> OccupancyGrid:
 
 def write_run(folder: Path) -> Path:
     """The files of a run, as reconstruct leaves them."""
-    grid, objects = with_objects(room_grid())
+    grid, objects = detect_objects(room_grid())
     from world2minecraft.editing.scene import instances_of, placements_of
 
     folder.mkdir(parents=True)

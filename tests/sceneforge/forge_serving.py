@@ -12,7 +12,7 @@ from websockets.sync.client import connect
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.serve import ForgeServer
-from world2minecraft.sceneforge.sources import Opened
+from world2minecraft.sceneforge.sources import OpenedScene
 
 HANG_S = 180.0  # No measure of speed: only what never answers is given up.
 
@@ -21,7 +21,7 @@ def small_editor(shape=(12, 10, 8), folder=Path("none such/OUT")) -> Editor:
     """A floor and a wall, without objects."""
     labels = np.zeros(shape, np.uint8)
     labels[:, :, 0], labels[0] = 2, 3
-    return Editor(Opened("den", folder, (), labels_grid(labels), np.eye(4), ()))
+    return Editor(OpenedScene("den", folder, (), labels_grid(labels), np.eye(4), ()))
 
 
 @contextmanager

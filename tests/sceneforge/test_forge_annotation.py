@@ -15,7 +15,7 @@ from world2minecraft.navigation.language.human_instructions import (
 from world2minecraft.navigation.records import read_trajectories, write_trajectories
 from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
 from world2minecraft.sceneforge.annotation.app import PAGE, annotation_server, build_app
-from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
+from world2minecraft.sceneforge.annotation.store import AnnotationStore
 
 TOKEN, PORT = "t" * 43, 8484
 GOOD = {"number": 1, "level": "goal", "text": "Walk over to the piano, please.",
@@ -48,7 +48,7 @@ def folder(tmp_path):
 
 @pytest.fixture
 def client(folder):
-    app = build_app(AnnotationDesk(folder), TOKEN, PORT)
+    app = build_app(AnnotationStore(folder), TOKEN, PORT)
     headers = {"authorization": f"Bearer {TOKEN}"}
     return TestClient(app, base_url=f"http://127.0.0.1:{PORT}", headers=headers)
 
@@ -79,7 +79,7 @@ def test_what_is_written_is_kept_and_imported(client, folder):
     walks = with_annotations(read_trajectories(folder), found, "annotations")
     assert [one.text for one in walks[1].instructions[2:]] == [GOOD["text"], other["text"]]
     assert client.get("/api/walks").json()["walks"][1]["written"] == 2
-    again = AnnotationDesk(folder)  # Another day.
+    again = AnnotationStore(folder)  # Another day.
     assert again.walk(1)["told"][-1] == {"level": "route", "text": other["text"], "by": "Ada"}
 
 
@@ -104,7 +104,7 @@ def test_what_is_wrong_is_refused(client, folder, changed, error):
 
 
 def test_only_the_link_lets_in(folder):
-    app = build_app(AnnotationDesk(folder), TOKEN, PORT)
+    app = build_app(AnnotationStore(folder), TOKEN, PORT)
     stranger = TestClient(app, base_url=f"http://127.0.0.1:{PORT}")
     assert stranger.get("/api/walks").status_code == 403
     assert stranger.get("/").status_code == 403
@@ -127,20 +127,20 @@ def test_a_picture_outside_of_the_walk_is_not_there(client):
 
 def test_a_set_must_be_one(tmp_path, folder):
     with pytest.raises(InputError):
-        AnnotationDesk(tmp_path / "nothing")
+        AnnotationStore(tmp_path / "nothing")
     line = {"trajectory_id": "t9", "instruction": "Go."}
     (folder / "annotations.jsonl").write_text(json.dumps(line))
     with pytest.raises(InputError, match="speaks of trajectory 't9', which is not there"):
-        AnnotationDesk(folder)
+        AnnotationStore(folder)
     (folder / "annotations.jsonl").write_text(json.dumps({**line, "level": "dance"}))
     with pytest.raises(DamagedFileError, match="line 1: level must be one of goal, route"):
-        AnnotationDesk(folder)
+        AnnotationStore(folder)
 
 
 def test_the_server_serves(folder):
     from urllib.request import Request, urlopen
 
-    with annotation_server(AnnotationDesk(folder), port=0) as server:
+    with annotation_server(AnnotationStore(folder), port=0) as server:
         asked = Request(f"{server.url}api/walks")
         asked.add_header("Authorization", f"Bearer {server.token}")
         with urlopen(asked, timeout=10) as answer:

@@ -23,8 +23,8 @@ from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, 
 from world2minecraft.minecraft.physics.collisions import overlapping
 from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge import block_preview as blocks
-from world2minecraft.sceneforge.array_messages import packed_arrays
-from world2minecraft.sceneforge.block_preview import Build, BuildOptions, HeldScene
+from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.sceneforge.block_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.server import build_routes
 from world2minecraft.sceneforge.session import Session
 
@@ -62,7 +62,7 @@ arrays = kinds.flatmap(
 
 @given(st.dictionaries(st.text(min_size=1, max_size=5), arrays, max_size=4))
 def test_arrays_come_back_as_they_were(held):
-    found = unpacked(packed_arrays(b"TEST", {"said": "ü"}, held), b"TEST")
+    found = unpacked(pack_arrays(b"TEST", {"said": "ü"}, held), b"TEST")
     assert found.pop("said") == "ü"
     assert found.keys() == held.keys()
     for name, values in held.items():
@@ -130,10 +130,10 @@ def test_a_wrong_wish_is_refused_with_what_is_right(script, asked, said):
 
 
 def test_too_many_blocks_are_refused_before_they_are_made():
-    scene = HeldScene.of(small_editor((200, 200, 120)))
+    scene = SceneSnapshot.of(small_editor((200, 200, 120)))
 
     with pytest.raises(UsageError, match="choose fewer"):
-        Build.of(scene, BuildOptions(100.0))
+        BlockBuild.of(scene, BuildOptions(100.0))
 
 
 def test_options_are_checked():
@@ -180,7 +180,7 @@ def test_an_unknown_kind_of_boxes_is_refused(script):
 def test_a_room_that_is_opened_while_another_is_built_never_gets_its_blocks(monkeypatch, tmp_path):
     begun, go_on = threading.Event(), threading.Event()
 
-    def slowly(scene: HeldScene) -> bytes:
+    def slowly(scene: SceneSnapshot) -> bytes:
         begun.set()
         go_on.wait(20)
         return str(scene.grid.shape).encode()
@@ -189,7 +189,7 @@ def test_a_room_that_is_opened_while_another_is_built_never_gets_its_blocks(monk
 
     async def scenario():
         session = Session(small_editor((4, 4, 4), tmp_path / "a"))
-        builds = build_routes.Builds(session)
+        builds = build_routes.BuildCache(session)
         first = asyncio.create_task(builds.collision(None))
         await asyncio.to_thread(begun.wait, 20)
         await session.show(small_editor((5, 5, 5), tmp_path / "b"))

@@ -10,13 +10,13 @@ from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.sceneforge.array_messages import HEADER
-from world2minecraft.sceneforge.comparison import labels_of_truth
+from world2minecraft.sceneforge.comparison import read_truth_labels
 from world2minecraft.sceneforge.editor import Editor
 
 
 def test_the_truth_of_a_generated_room_meets_its_run(small_run):
     grid, scan_to_room = read_room(small_run / "room.npz")
-    truth = labels_of_truth(small_run / "capture", SceneDraft(grid), scan_to_room)
+    truth = read_truth_labels(small_run / "capture", SceneDraft(grid), scan_to_room)
     assert count_occupancy(grid.labels, truth, grid.source > 0).iou > 0.5
 
 

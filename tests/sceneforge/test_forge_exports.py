@@ -18,7 +18,7 @@ from world2minecraft.formats.volume_formats import read_volume, writable_format_
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.reconstruction.stages import built_volume
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.exports import forms, snapshot, stats_csv, write_data
+from world2minecraft.sceneforge.exports import export_forms, stats_csv, write_data, write_snapshot
 from world2minecraft.sceneforge.jobs.worker import TASKS
 from world2minecraft.sceneforge.server import export_routes
 
@@ -70,13 +70,13 @@ def exported(script, form, **choice) -> tuple[str, bytes, list]:
 
 
 def test_every_form_that_is_written_is_offered():
-    offered = {one.id for one in forms()}
+    offered = {one.id for one in export_forms()}
     assert set(writable_format_names()) <= offered
     assert {"world", "png", "npz", "occ", "centers", "stats"} <= offered
 
 
 def test_a_snapshot_is_the_scene_as_it_is_edited(editor, tmp_path):
-    snapshot(editor, tmp_path)
+    write_snapshot(editor, tmp_path)
     grid = read_room(tmp_path / "room.npz")[0]
     assert np.array_equal(grid.labels, editor.draft.labels)
     assert len(read_json(tmp_path / "objects.json")) == len(editor.draft.objects)
@@ -100,7 +100,7 @@ def test_a_schematic_is_read_by_another_program(apart, editor, tmp_path):
     ]
     (tmp_path / name).write_bytes(data)
     read = nbtlib.load(tmp_path / name)
-    snapshot(editor, tmp_path / "snapshot")
+    write_snapshot(editor, tmp_path / "snapshot")
     from world2minecraft.reconstruction.parameters import Parameters
 
     volume = built_volume(tmp_path / "snapshot", Parameters(blocks_per_metre=2))

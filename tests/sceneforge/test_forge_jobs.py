@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError
 from world2minecraft.core.progress import silent
-from world2minecraft.sceneforge.jobs.jobs import MOST_AT_ONCE, CancelledError, Jobs
-from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
+from world2minecraft.sceneforge.jobs.jobs import MAX_RUNNING, CancelledError, Jobs
+from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import TimeLeft
-from world2minecraft.sceneforge.jobs.worker import outcome
+from world2minecraft.sceneforge.jobs.worker import run_task
 
 
 class Clock:
@@ -136,7 +136,7 @@ def test_an_ended_job_stays_as_it_ended(jobs):
 
 def test_only_so_many_run_at_once(jobs):
     go_on = threading.Event()
-    numbers = [jobs.start("Wait", lambda report: go_on.wait(20)) for _ in range(MOST_AT_ONCE)]
+    numbers = [jobs.start("Wait", lambda report: go_on.wait(20)) for _ in range(MAX_RUNNING)]
     with pytest.raises(ConflictError, match="Look: 4 jobs run already"):
         jobs.start("Look", lambda report: None)
     go_on.set()
@@ -171,14 +171,14 @@ def test_nothing_is_said_of_what_is_not_known():
 
 
 def test_a_process_fails_with_its_one_line(jobs, tmp_path):
-    work = run_apart("survey", capture=str(tmp_path / "none"), folder=str(tmp_path))
+    work = run_in_subprocess("survey", capture=str(tmp_path / "none"), folder=str(tmp_path))
     state = jobs.wait(jobs.start("Look", work))
     assert (state.state, state.note) == ("failed", f"{tmp_path / 'none'}: is not there")
 
 
 def test_a_process_is_cut_off(jobs, tmp_path):
     began = threading.Event()
-    work = run_apart("demo", out=str(tmp_path / "OUT"))
+    work = run_in_subprocess("demo", out=str(tmp_path / "OUT"))
     watched = Jobs(lambda message: began.set() if message["stage"] == "capture" else None)
     number = watched.start("Demo", work)
     assert began.wait(120)
@@ -188,4 +188,4 @@ def test_a_process_is_cut_off(jobs, tmp_path):
 
 
 def test_a_task_that_is_not_there_is_named():
-    assert outcome("erase", {}, silent)["error"].startswith("no forge_task is named 'erase'")
+    assert run_task("erase", {}, silent)["error"].startswith("no forge_task is named 'erase'")

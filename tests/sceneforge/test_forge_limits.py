@@ -23,7 +23,7 @@ from forge_serving import (
 from websockets.exceptions import ConnectionClosed
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES, MAX_JSON_DEPTH, json_of
+from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES, MAX_JSON_DEPTH, parse_json
 
 GIGABYTE = 1 << 30
 DEEP = "[" * 100_000 + "]" * 100_000
@@ -175,13 +175,13 @@ def test_bytes_that_are_no_json_are_refused(server, data):
 
 def test_brackets_in_strings_are_no_depth():
     deep = "[" * 100_000
-    assert json_of(json.dumps({"name": deep + '"\\' + deep}))["name"] == deep + '"\\' + deep
+    assert parse_json(json.dumps({"name": deep + '"\\' + deep}))["name"] == deep + '"\\' + deep
     with pytest.raises(UsageError, match="nested"):
-        json_of('{"a": "]]]]]]]]", "b": ' + "[" * 40 + '"]"' + "]" * 40 + "}")
+        parse_json('{"a": "]]]]]]]]", "b": ' + "[" * 40 + '"]"' + "]" * 40 + "}")
     edge = "[" * MAX_JSON_DEPTH + "]" * MAX_JSON_DEPTH
-    assert json_of(edge) is not None
+    assert parse_json(edge) is not None
     with pytest.raises(UsageError, match="nested"):
-        json_of("[" + edge + "]")
+        parse_json("[" + edge + "]")
 
 
 def test_the_server_is_well_after_all_this(server):

@@ -14,13 +14,13 @@ from PIL import Image
 
 from world2minecraft.core.errors import ConflictError
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.sceneforge.document.identity import folder_of
+from world2minecraft.sceneforge.document.identity import document_folder
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
+from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.sources import DEMO_FOLDER
-from world2minecraft.sceneforge.uploads import Captures, is_capture
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.uploads import CaptureStore, is_capture
+from world2minecraft.sceneforge.workspace import Workspace
 
 
 @pytest.fixture
@@ -257,7 +257,7 @@ def test_a_wrong_choice_begins_nothing(server, script, choice, words):
 
 def test_a_job_is_cancelled_over_http(server, script):
     number = server.workshop.jobs.start(
-        "Demo", run_apart("demo", out=str(server.workshop.home / "x"), frames=200)
+        "Demo", run_in_subprocess("demo", out=str(server.workshop.home / "x"), frames=200)
     )
     assert script.post(f"/api/jobs/{number}/cancel").status_code == 200
     assert server.workshop.jobs.wait(number, 30).state == "cancelled"
@@ -267,7 +267,7 @@ def test_a_job_is_cancelled_over_http(server, script):
 def test_a_capture_elsewhere_is_read_where_it_is(tmp_path):
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "a.jpg").write_bytes(photo())
-    captures = Captures(tmp_path / "home")
+    captures = CaptureStore(tmp_path / "home")
     one = captures.adopt(tmp_path / "photos")
     assert captures.adopt(tmp_path / "photos") == one and one.complete
     captures.forget(one.id)
@@ -284,7 +284,7 @@ def test_rooms_that_were_open_come_again(tmp_path):
 
 
 def test_a_file_of_a_broken_capture_leaves_the_others(tmp_path):
-    captures = Captures(tmp_path)
+    captures = CaptureStore(tmp_path)
     one = captures.announce("a", [{"path": "a.jpg", "size": 1}])
     other = captures.announce("b", [{"path": "b.jpg", "size": 1}])
     (one.folder / "capture.json").write_text("{")
@@ -313,7 +313,7 @@ def test_a_run_and_an_occupancy_file_are_no_captures(small_run, tmp_path):
 def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
     home = tmp_path / "home"
     with served(Editor.open(None, out=home / "demo-room"), home=home) as server:
-        server.workshop.begin_with(folder_of(None, home / "demo-room"), False)
+        server.workshop.begin_with(document_folder(None, home / "demo-room"), False)
         with client(server) as script:
             box = {"op": "fill_box", "low": [20, 20, 9], "high": [22, 22, 11], "class_id": 11}
             assert script.post("/api/do", json=box).json()["rev"] == 1
@@ -329,7 +329,7 @@ def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
 
 
 def test_bytes_that_two_connections_bring_never_mix(tmp_path):
-    captures = Captures(tmp_path)
+    captures = CaptureStore(tmp_path)
     one = captures.announce("den", [{"path": "a.mp4", "size": 8}])
 
     async def scenario():
@@ -360,7 +360,7 @@ def test_a_room_that_is_clicked_twice_can_be_edited(tmp_path):
 
     async def scenario():
         session = Session()
-        shop = Workshop(session, tmp_path / "home")
+        shop = Workspace(session, tmp_path / "home")
         await asyncio.gather(shop.open(run), shop.open(run))
         assert session.document.read_only == ""
         assert session.shown == 1
@@ -376,7 +376,7 @@ def test_a_home_that_cannot_be_written_keeps_nobody_from_opening(tmp_path):
 
     async def scenario():
         session = Session()
-        shop = Workshop(session, home, capture=tmp_path)
+        shop = Workspace(session, home, capture=tmp_path)
         await shop.open(run)
         shop._capture = tmp_path  # As ``w2m forge den --capture`` has it.
         assert shop.beside()["truth"] is False

@@ -19,7 +19,7 @@ from world2minecraft.editing.scene import COMMANDS, Command
 from world2minecraft.sceneforge import broadcast as hub
 from world2minecraft.sceneforge import session
 from world2minecraft.sceneforge.array_messages import HEADER
-from world2minecraft.sceneforge.broadcast import MAX_QUEUED, MAX_TABS, Hub
+from world2minecraft.sceneforge.broadcast import MAX_QUEUED, MAX_TABS, Broadcaster
 from world2minecraft.sceneforge.server.serve import ForgeServer
 
 
@@ -237,7 +237,7 @@ def test_another_document_makes_every_tab_begin_anew():
 
 def test_a_queue_that_is_full_is_emptied_and_begins_with_hello():
     async def scenario():
-        tabs = Hub()
+        tabs = Broadcaster()
         tab_ = tabs.open()
         assert tab_
         for number in range(MAX_QUEUED + 100):

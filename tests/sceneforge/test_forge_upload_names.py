@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import LimitError, UsageError
 from world2minecraft.sceneforge.uploads import (
-    MOST_FILES,
+    MAX_FILES,
     UploadFile,
-    checked_files,
-    checked_path,
+    check_files,
+    check_path,
     common_folder,
 )
 
@@ -50,18 +50,18 @@ GOOD = ("0.jpg", "kitchen/rgb/0.jpg", "Küche/Bild 1.JPEG", ".hidden/x", "a...b"
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_names_are_refused(name):
     with pytest.raises(UsageError, match="cannot be a file of a capture"):
-        checked_path(name)
+        check_path(name)
 
 
 @pytest.mark.parametrize("name", GOOD)
 def test_plain_names_stay(name):
-    assert checked_path(name) == name
+    assert check_path(name) == name
 
 
 @given(st.text(max_size=60) | st.text(alphabet="./\\:ab ", max_size=20))
 def test_what_passes_stays_below_its_folder(name):
     try:
-        path = checked_path(name)
+        path = check_path(name)
     except UsageError:
         return
     root = Path("/home/of/captures")
@@ -76,10 +76,10 @@ def one(path, size=1):
 
 
 def test_what_systems_leave_in_folders_is_left_out():
-    files = checked_files([one("a/0.jpg"), one("a/.DS_Store"), one("a/Thumbs.db")], 100)
+    files = check_files([one("a/0.jpg"), one("a/.DS_Store"), one("a/Thumbs.db")], 100)
     assert files == (UploadFile("a/0.jpg", 1),)
     with pytest.raises(UsageError, match="there is nothing in it"):
-        checked_files([one("a/.DS_Store")], 100)
+        check_files([one("a/.DS_Store")], 100)
 
 
 @pytest.mark.parametrize(
@@ -96,12 +96,12 @@ def test_what_systems_leave_in_folders_is_left_out():
         ([one("a", 1 << 30)], LimitError, "has 1,024 MB; at most 512 MB"),
         ([one("a", 300 << 20), one("b", 300 << 20)], LimitError, "has 600 MB"),
         ([one("a", 1 << 80)], LimitError, "at most 512 MB"),
-        ([one("a")] * (MOST_FILES + 1), LimitError, "has 20,001 files; at most 20,000"),
+        ([one("a")] * (MAX_FILES + 1), LimitError, "has 20,001 files; at most 20,000"),
     ],
 )
 def test_lists_that_cannot_be_taken_say_why(files, error, words):
     with pytest.raises(error, match=words):
-        checked_files(files, 512 << 20)
+        check_files(files, 512 << 20)
 
 
 def test_the_one_folder_of_a_dropped_folder_is_found():

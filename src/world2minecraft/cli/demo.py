@@ -57,7 +57,7 @@ def run(
     from world2minecraft.procgen import generate_room, scan_room
     from world2minecraft.reconstruction.parameters import Parameters
     from world2minecraft.reconstruction.run_folder import check_writable
-    from world2minecraft.runs import make_run
+    from world2minecraft.runs import run_capture
 
     check_figures(seed, frames)
     plaque = BuildParameters(plaque=f"A {kind} room")
@@ -71,7 +71,7 @@ def run(
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
-        facts = make_run(out / "capture", out, chosen, progress=progress)
+        facts = run_capture(out / "capture", out, chosen, progress=progress)
     say_where(out, facts)
 
 

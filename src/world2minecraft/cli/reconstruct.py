@@ -145,7 +145,7 @@ def run(
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
-    from world2minecraft.runs import make_run
+    from world2minecraft.runs import run_capture
 
     chosen = Parameters(
         voxel,
@@ -169,7 +169,7 @@ def run(
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
-        facts = make_run(capture, out, chosen, start, labels, progress)
+        facts = run_capture(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
 
 
@@ -202,7 +202,7 @@ def built_from_plan(
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name
-    from world2minecraft.runs import make_from_plan
+    from world2minecraft.runs import run_plan
 
     drawn = find_lone_roomplan(capture)
     if drawn is None:
@@ -212,7 +212,7 @@ def built_from_plan(
             f"{capture} is a RoomPlan and has no frames; leave out {' and '.join(needs_frames)}"
         )
     with shown() as progress:
-        built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
+        built = run_plan(drawn, out, chosen, progress, scene_name(capture))
     say_plan(out, built)
     return True
 

@@ -1,4 +1,4 @@
-"""What one piece of furniture is, beside its size: its parameters, options and materials.
+"""The look of one piece of furniture: its parameters, options and materials.
 
 A family makes its parts and its blocks from a look. It reads as the mapping of its parameters, so
 that ``look["seat_height"]`` is a number in metres or a share.

@@ -1,4 +1,4 @@
-"""Furniture as vanilla blocks, as players build it: a chair is a stair, a table has fences as legs.
+"""Furniture as vanilla blocks as players build it: a chair is a stair, table legs are fences.
 
 At few blocks per metre a leg, a seat and a back are thinner than any block; from six on, the parts
 themselves are fitted block by block, and no design by hand is needed.

@@ -1,4 +1,4 @@
-"""A sheet on which a family lays the blocks of a design, looking east: +x is the front.
+"""A plan on which a family lays the blocks of a design, looking east: +x is the front.
 
 A cell is (front-to-back, side, up): i counts from the back, j from the right (south) side, k from
 the bottom. The sides are ``back`` (west), ``front`` (east), ``right`` (south) and ``left`` (north).

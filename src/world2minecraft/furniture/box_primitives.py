@@ -1,4 +1,7 @@
-"""What many designs are laid from: plates at their height, legs, thin backs and trestles."""
+"""Primitives of furniture designs: the boxes that many templates share, and plates, legs and backs.
+
+Parts are metres in the template's frame; what is laid goes on a ``Plan`` of blocks.
+"""
 
 from collections.abc import Iterable
 
@@ -7,7 +10,9 @@ import numpy as np
 from world2minecraft.furniture.block_plan import Numbers, Plan, Side
 from world2minecraft.furniture.template import Part
 
-# The boxes that many templates share. All lengths are metres in the template's frame.
+# How high in its block the top of a shape lies that rests on the block below.
+RISES = {"carpet": 1 / 16, "trapdoor": 3 / 16, "slab": 0.5, "full": 1.0}
+LEG_SHAPES = ("fence", "wall", "bars", "chain", "full")
 
 
 def part(role: str, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Part:
@@ -50,11 +55,6 @@ def arms(depth: float, width: float, bottom: float, top: float, thickness: float
 def column(role: str, side: float, bottom: float, top: float) -> Part:
     """Return a square post in the middle of the footprint."""
     return slab(role, side, side, bottom, top)
-
-
-# How high in its block the top of a shape lies that rests on the block below.
-RISES = {"carpet": 1 / 16, "trapdoor": 3 / 16, "slab": 0.5, "full": 1.0}
-LEG_SHAPES = ("fence", "wall", "bars", "chain", "full")
 
 
 def lay_plate(

@@ -1,8 +1,8 @@
-"""A whole chair in cells of which only some were seen: tried at every place, turn and size.
+"""Fit a whole chair to cells of which only some were seen, at every place, turn and size.
 
 A chair that is turned by half a quarter lies across the cells of its template, and of one at a
-table only the back is seen. So a cell beside the template counts as met, and a free cell beside
-the chair as nothing.
+table only the back is seen. So a cell next to the template counts as met, and a free cell
+next to the chair as nothing.
 """
 
 from itertools import product
@@ -52,9 +52,9 @@ class SeatFit(NamedTuple):
 
 
 def ignore_adjacent_free_cells(code: np.ndarray) -> np.ndarray:
-    """Return the code, uint8 [X, Y, Z], in which nothing beside the object speaks against it."""
-    beside = ndimage.binary_dilation(code == OWN, FACE_NEIGHBOURS)
-    return np.where(beside & (code == AGAINST), 0, code).astype(np.uint8)
+    """Return the code, uint8 [X, Y, Z], in which no free cell next to the object counts against it."""
+    adjacent = ndimage.binary_dilation(code == OWN, FACE_NEIGHBOURS)
+    return np.where(adjacent & (code == AGAINST), 0, code).astype(np.uint8)
 
 
 def fit_seat(
@@ -76,16 +76,18 @@ def fit_seat(
     cells = np.argwhere(code == OWN)
     if not len(cells) or floor < 0:
         return None
-    heap = _ObjectCells(cells, ignore_adjacent_free_cells(code), look)
+    target = _ObjectCells(cells, ignore_adjacent_free_cells(code), look)
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     best: SeatFit | None = None
     usual, *others = _candidate_shapes(template, int(high[2]) - floor, voxel_m)
     for turns in range(template.turns):
         solid = _turn_template(template, *usual, turns, voxel_m)
-        home = heap.laid(*usual, turns, solid, _candidate_corners(solid.shape, low, high, floor))
+        home = target.best_fit(
+            *usual, turns, solid, _candidate_corners(solid.shape, low, high, floor)
+        )
         around = np.array(home.corner) + AROUND
         moved = (
-            heap.laid(*form, turns, _turn_template(template, *form, turns, voxel_m), around)
+            target.best_fit(*form, turns, _turn_template(template, *form, turns, voxel_m), around)
             for form in others
         )
         for fit in (home, *moved):
@@ -117,7 +119,7 @@ class _ObjectCells(NamedTuple):
     code: np.ndarray
     look: np.ndarray
 
-    def laid(
+    def best_fit(
         self, counts: Cells, values: Values, turns: int, solid: np.ndarray, corners: np.ndarray
     ) -> SeatFit:
         """Return the best of a chair's places, int64 [S, 3]; of equals the first."""
@@ -184,9 +186,9 @@ def direction_to_table(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.
     first = np.maximum(low - reach - EDGE, 0)
     at = np.argwhere(tables[tuple(map(slice, first, high + reach + EDGE))]) + first
     gaps = np.maximum(np.maximum(low - at, at + 1 - high), 0)
-    apart = np.round(np.hypot(gaps[:, 0], gaps[:, 1]), 9)
-    if not len(at) or apart.min() > reach:
+    distance = np.round(np.hypot(gaps[:, 0], gaps[:, 1]), 9)
+    if not len(at) or distance.min() > reach:
         return np.zeros(2)
-    way = at[apart <= apart.min() + EDGE].mean(axis=0) + 0.5 - (low + high) / 2
+    way = at[distance <= distance.min() + EDGE].mean(axis=0) + 0.5 - (low + high) / 2
     length = float(np.linalg.norm(way))
     return way / length if length else np.zeros(2)

@@ -1,4 +1,4 @@
-"""Designs as data files: what a design's JSON says, read and checked.
+"""Design files: read and check the JSON of a furniture design.
 
 Every key is checked before it is used, for people write such files: a wrong one is refused with
 one line that says what was expected and what was given.

@@ -1,4 +1,4 @@
-"""Which way an object looks, by quarter turns: by its shape, its wall, or the table it is at."""
+"""Estimate the front of an object in quarter turns: by its shape, its wall, or its table."""
 
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ class Facing(NamedTuple):
 
 
 class Surroundings(NamedTuple):
-    """What a front is judged by: walls and windows, tables and screens, and the room's middle."""
+    """Context of an object: walls and windows, tables and screens, and the room's middle."""
 
     walls: np.ndarray  # bool [X, Y, Z]
     middle: np.ndarray  # float64 [2], in cells

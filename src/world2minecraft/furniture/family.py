@@ -1,7 +1,7 @@
 """A family: the shape that many designs share, as metric parts and as vanilla blocks.
 
 A design is a small data file that names its family and gives it sizes, parameters, options and
-materials (``reading.py``); the family, one value in ``families/``, makes of them what stands there.
+materials (``design_files``); the family, one value in ``families/``, makes of them what stands there.
 """
 
 from collections.abc import Mapping

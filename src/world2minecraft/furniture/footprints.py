@@ -1,4 +1,4 @@
-"""Upright boxes in plan: what two of them share, and how much of one lies outside a room.
+"""Footprints of upright boxes: shared area and volume, and the share outside a room.
 
 In: anything with ``center_m``, ``size_m`` along its own axes and ``yaw_deg`` or ``quarter_turns``.
 Areas and volumes are exact but for ``outside_share``, which counts points, since a room may have
@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.furniture.layout_checks import inside_polygon, plan_corners_m
 
-POINTS = 50  # A side of the raster over a footprint: a share is told to 0.04 %.
+POINTS = 50  # A side of the raster over a footprint: a share is exact to 0.04 %.
 
 
 def shared_area_m2(a: Any, b: Any) -> float:
@@ -74,11 +74,11 @@ def _clip(polygon: np.ndarray, window: np.ndarray) -> np.ndarray:
 
 def _half_plane(polygon: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Return the part of a polygon whose corners have ``left`` of 0 or more."""
-    kept = []
+    corners = []
     following, left_next = np.roll(polygon, -1, axis=0), np.roll(left, -1)
     for corner, after, here, there in zip(polygon, following, left, left_next, strict=True):
         if here >= 0:
-            kept.append(corner)
+            corners.append(corner)
         if (here >= 0) != (there >= 0):
-            kept.append(corner + (after - corner) * here / (here - there))
-    return np.array(kept).reshape(-1, 2)
+            corners.append(corner + (after - corner) * here / (here - there))
+    return np.array(corners).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Physical sense of a layout: objects that collide, leave the room, hang in the air or get lost.
+"""Physical plausibility of layouts: collisions, out of bounds, floating and lost objects.
 
 In: objects as boxes (ObjectInstance, LayoutObject), as placements, or as labels. Boxes are looked
 at before they become cells, so that touching furniture is no collision.
@@ -26,7 +26,7 @@ from world2minecraft.core.types import BlockVolume, Layout, ObjectInstance, Occu
 from world2minecraft.furniture.solids import depth_m, solids_m
 from world2minecraft.geometry.connected_components import label_components
 
-OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
+OVERLAP_M = 0.04  # Half a default cell: less than the resolution of sizes read from cells.
 OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
 
 
@@ -83,9 +83,9 @@ def overlapping_boxes(
 
 
 def overlap_depth_m(a: Any, b: Any) -> float:
-    """Return how far two boxes must be moved, along one of their axes, to part; 0 if apart.
+    """Return how far two boxes must be moved, along one of their axes, to separate; 0 if disjoint.
 
-    Boxes are upright and turned about z: they are apart where a side of one parts them in plan,
+    Boxes are upright and turned about z: they are disjoint where a side of one separates them in plan,
     or a height does (the separating axis theorem).
     """
     gap_z = abs(a.center_m[2] - b.center_m[2])
@@ -175,7 +175,7 @@ def kept_objects(
     room_to_block = invert(volume.block_to_room)
     reach_m = max(grid.voxel_m, 1 / volume.blocks_per_metre)
     shape = np.array(volume.states.shape)
-    kept = []
+    retained = []
     for index, one in enumerate(instances):
         centers_m = grid.origin_m + (one.cells + 0.5) * grid.voxel_m
         shown = np.zeros(len(centers_m), bool)
@@ -187,8 +187,8 @@ def kept_objects(
             same = (volume.instance[at] == one.id) & (volume.semantic[at] == one.class_id)
             shown |= inside & same
         if len(shown) and shown.mean() >= least_share:
-            kept.append(index)
-    return kept
+            retained.append(index)
+    return retained
 
 
 def floaters(labels: np.ndarray) -> Floaters:
@@ -244,9 +244,9 @@ def inside_polygon(points_m: np.ndarray, polygon_m: np.ndarray, tolerance_m: flo
     to_point = points_m[:, None] - start[None]
     square = np.maximum((side**2).sum(axis=1), 1e-12)
     along = np.clip((to_point * side).sum(axis=2) / square, 0, 1)
-    apart_m = np.linalg.norm(to_point - along[..., None] * side, axis=2).min(axis=1)
+    distance_m = np.linalg.norm(to_point - along[..., None] * side, axis=2).min(axis=1)
     crosses = (start[:, 1] > points_m[:, None, 1]) != (end[:, 1] > points_m[:, None, 1])
     height = np.where(side[:, 1] == 0, 1.0, side[:, 1])
     at_x = start[:, 0] + (points_m[:, None, 1] - start[:, 1]) * side[:, 0] / height
     odd = (crosses & (points_m[:, None, 0] < at_x)).sum(axis=1) % 2 == 1
-    return odd | (apart_m <= tolerance_m)
+    return odd | (distance_m <= tolerance_m)

@@ -1,9 +1,9 @@
-"""The furniture library L of the paper: names to templates.
+"""The furniture library L of the paper: names to templates, and the library as a table.
 
 A template is a data file in ``designs/`` (one file each), a file of the user's own, or comes from
 a package outside through the entry point group ``world2minecraft.template``, which names a
 ``Template``. Objects are matched against those that say so; the others of a family are chosen
-after the match.
+after the match. docs/furniture-library.md shows the table, by class.
 """
 
 from collections.abc import Iterable
@@ -17,8 +17,6 @@ from world2minecraft.furniture.design_files import read_design
 from world2minecraft.furniture.template import Span, Template
 from world2minecraft.furniture.user_library import read_user_design, user_design_files
 
-# The library as a table for people, by class: what docs/furniture-library.md shows.
-
 HEADINGS = {
     "chair": "Chairs",
     "bed": "Beds",
@@ -29,6 +27,33 @@ HEADINGS = {
     "objs": "Lamps, plants, curtains and small things",
 }
 COLUMNS = ("name", "title", "family", "depth", "width", "height", "turns", "mount", "parameters")
+# Of templates that match equally well the first is taken: the plainer one.
+MATCH_ORDER = (
+    "chair",
+    "armchair",
+    "office_chair",
+    "stool",
+    "single_bed",
+    "double_bed",
+    "bunk_bed",
+    "sofa",
+    "corner_sofa",
+    "bench",
+    "dining_table",
+    "round_table",
+    "desk",
+    "coffee_table",
+    "wall_tv",
+    "monitor",
+    "cabinet",
+    "wall_cabinet",
+    "counter",
+    "bookcase",
+    "wardrobe",
+    "lamp",
+    "plant",
+    "box",
+)
 
 
 def group_by_class(templates: Iterable[Template]) -> dict[str, list[Template]]:
@@ -66,35 +91,6 @@ def _span(span: Span) -> str:
     if span.minimum == span.maximum:
         return f"{span.typical:g}"
     return f"{span.minimum:g} · **{span.typical:g}** · {span.maximum:g}"
-
-
-# Of templates that match equally well the first is taken: the plainer one.
-MATCH_ORDER = (
-    "chair",
-    "armchair",
-    "office_chair",
-    "stool",
-    "single_bed",
-    "double_bed",
-    "bunk_bed",
-    "sofa",
-    "corner_sofa",
-    "bench",
-    "dining_table",
-    "round_table",
-    "desk",
-    "coffee_table",
-    "wall_tv",
-    "monitor",
-    "cabinet",
-    "wall_cabinet",
-    "counter",
-    "bookcase",
-    "wardrobe",
-    "lamp",
-    "plant",
-    "box",
-)
 
 
 class Library(Registry):

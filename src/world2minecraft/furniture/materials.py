@@ -1,4 +1,4 @@
-"""What a role of a piece of furniture is made of, and which vanilla block that is in a shape.
+"""Materials of furniture roles, and their vanilla blocks in each shape.
 
 ``data/materials.json`` holds the kinds: wood, cloth, paint, glass, stone and metal, each with its
 values (oak, red, smooth_quartz) and the block of every shape. ``plain`` is whatever full block

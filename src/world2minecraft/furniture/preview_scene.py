@@ -1,4 +1,4 @@
-"""One piece of furniture as blocks by itself: on a floor, against a wall or under a ceiling.
+"""Preview volumes of one piece of furniture: on a floor, against a wall or under a ceiling.
 
 For pictures and checks of a design: what a look at it and a look for unstable blocks need.
 """

@@ -1,4 +1,4 @@
-"""The overlap of a template's cells with an object's, at several places at once."""
+"""Rasterize templates to cells of a grid, and count their overlap with an object's cells."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -8,8 +8,6 @@ import numpy as np
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.jit import njit
 from world2minecraft.furniture.template import Parameters, Template
-
-# Templates as cells of a grid.
 
 MAX_CELLS = 8_000_000  # A box of 4 m at 0.02 m; more is a mistake in the size.
 TOLERANCE_CELLS = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
@@ -58,7 +56,7 @@ def rasterize(
     """Return the solid cells, bool [depth, width, height], of a template that looks to +x.
 
     A part fills the cells whose centres lie in it, and at least one cell along each axis, so
-    that a thin leg or table top is never lost. Read-only, for it is kept for the next call.
+    that a thin leg or table top is never lost. Read-only, for it is cached.
     """
     if np.prod(counts, dtype=np.float64) > MAX_CELLS:
         raise ValueError(f"{template.name} of {counts} cells is too large; {MAX_CELLS} at most")
@@ -101,11 +99,11 @@ def surface_cells(solid: np.ndarray) -> np.ndarray:
 
 @njit
 def count_overlaps(template, code, corners):  # pragma: no cover - compiled
-    """Return int64 [S, 3]: own cells covered, cells against, cells beyond, for each corner.
+    """Count own cells covered, cells against and cells beyond, for each corner; int64 [S, 3].
 
     Args:
         template: bool [A, B, C], the turned template's cells, C order.
-        code: uint8 [X, Y, Z] of ``Evidence``.
+        code: uint8 [X, Y, Z]: 1 against, 2 the object's own cell, 3 beyond it.
         corners: int64 [S, 3], where the template's first cell lies; what falls outside the
             window counts against.
     """

@@ -1,4 +1,4 @@
-"""What of a placement is solid: the parts of its template, or its own cells.
+"""Solid parts of a placement: the parts of its template, or its own cells.
 
 A chair pushed under a table lies within the table's box and touches nothing of it; so whether two
 things meet is asked of their parts.

@@ -1,4 +1,4 @@
-"""What a piece of furniture is before it stands anywhere: a parametric shape with a named front.
+"""Templates: parametric pieces of furniture with a named front.
 
 A template's frame: origin in the middle of its footprint, z = 0 at its bottom, its front looks to
 +x. Sizes are in the order of ``Placement.size_m``: front-to-back (x), side (y), height (z).

@@ -1,4 +1,4 @@
-"""Is a template sound? For writers of templates, the library's own and those of others."""
+"""Validation of templates, for writers of templates of the library and of others."""
 
 from collections.abc import Iterator
 from itertools import product

@@ -1,4 +1,4 @@
-"""Blocks that someone built become a piece of furniture: what a file of ``own.py`` says.
+"""Import blocks that someone built as a piece of furniture, as ``user_library`` stores it.
 
 The box of the blocks is trimmed of air and turned so that its front looks east. What is seen of
 each block gives the metric boxes, by which a match knows the piece.
@@ -113,9 +113,9 @@ def _check(wish: ImportRequest) -> None:
 
 def _check_size(size: np.ndarray) -> None:
     if not (np.isfinite(size).all() and (size >= MIN_SIDE_M).all() and (size <= MAX_SIDE_M).all()):
-        told = " x ".join(f"{side:.2f}" for side in size)
+        given = " x ".join(f"{side:.2f}" for side in size)
         raise UsageError(
-            f"a piece is {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m each way, not {told}; "
+            f"a piece is {MIN_SIDE_M:g} to {MAX_SIDE_M:g} m each way, not {given}; "
             "say its scale with --blocks-per-metre"
         )
 
@@ -130,23 +130,23 @@ def _trim(volume: BlockVolume) -> BlockVolume:
     low, high = held.min(axis=0), held.max(axis=0) + 1
     size = high - low
     if (size > MAX_SIDE).any() or int(np.prod(size)) > MAX_BLOCKS:
-        told = " x ".join(str(side) for side in size.tolist())
+        given = " x ".join(str(side) for side in size.tolist())
         raise UsageError(
-            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {told}; "
+            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {given}; "
             "cut out the piece alone"
         )
     window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     states = np.where(filled[window], volume.states[window], 0)
     used, numbers = np.unique(states, return_inverse=True)
-    kept = [state for state in used.tolist() if state]
-    if len(kept) > MAX_KINDS:
+    used_states = [state for state in used.tolist() if state]
+    if len(used_states) > MAX_KINDS:
         raise UsageError(
-            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(kept)}; cut out it alone"
+            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(used_states)}; cut out it alone"
         )
     numbers = numbers.reshape(states.shape) + (0 if used[0] == 0 else 1)
     return BlockVolume(
         numbers.astype(np.uint16),
-        ("minecraft:air", *(volume.palette[state] for state in kept)),
+        ("minecraft:air", *(volume.palette[state] for state in used_states)),
         np.zeros(states.shape, np.uint8),
         np.zeros(states.shape, np.uint16),
         (0, 0, 0),

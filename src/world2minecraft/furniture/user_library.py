@@ -1,7 +1,7 @@
-"""Furniture of the user's own: block for block, as one file a piece in a folder of the user's.
+"""Furniture of the user's own: block for block, one file per piece in a folder of the user's.
 
 A file holds the blocks as they were built, at the scale they were built at, and the boxes that
-they show; ``adopting.py`` makes it. At its own scale the piece is those blocks; at any other its
+they show; ``user_import`` makes it. At its own scale the piece is those blocks; at any other its
 boxes are fitted like any template's. A design file of a family may lie in the folder too.
 """
 

@@ -10,7 +10,7 @@ from typing import TypeVar
 import torch
 from torch import Tensor
 
-Movable = TypeVar("Moved", "OccInput", "OccTarget")
+Movable = TypeVar("Movable", "OccInput", "OccTarget")
 
 
 @dataclass(frozen=True)

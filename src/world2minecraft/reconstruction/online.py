@@ -31,7 +31,7 @@ from world2minecraft.reconstruction.fusion import EvidenceMap, extract_grid, rem
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.reconstruction.registration import corrected, register
+from world2minecraft.reconstruction.registration import apply_corrections, register
 from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.reconstruction.stages import labelled
 from world2minecraft.rendering.preview import preview
@@ -180,7 +180,7 @@ def placed_scan(
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     scan = open_scan(capture, progress=progress, **options)
     found = register(scan, chosen.register, progress)
-    return realign(corrected(scan, found.corrections), found.surface)
+    return realign(apply_corrections(scan, found.corrections), found.surface)
 
 
 def show(live: LiveMap, out: Path) -> None:

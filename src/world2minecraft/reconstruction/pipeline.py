@@ -3,11 +3,11 @@
 ===========  =================================================  ==================================
 paper line   what                                               here
 ===========  =================================================  ==================================
-4 to 7       O_mono, the evidence of each view                  ``occupy``
-8            O_scene, all views fused                           ``fuse``, ``label``
-9 to 11      density D, candidates C, clusters C'               ``find``
-(eq. argmax) templates by IoU over rotations                    ``furnish``
-12, 13       commands M, executed                               ``build``
+4 to 7       O_mono, the evidence of each view                  ``occupancy``
+8            O_scene, all views fused                           ``fusion``, ``semantics``
+9 to 11      density D, candidates C, clusters C'               ``instances``
+(eq. argmax) templates by IoU over rotations                    ``retrieval``
+12, 13       commands M, executed                               ``construction``
 ===========  =================================================  ==================================
 
 Each stage reads the files that the stage before it wrote, so that any of them can be run again.
@@ -32,15 +32,19 @@ from world2minecraft.formats.scan import (
 from world2minecraft.furniture.user_library import user_design_files, user_design_folder
 from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
 from world2minecraft.reconstruction.fusion import fuse_views
-from world2minecraft.reconstruction.occupancy import notes_of, predictor
+from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
 from world2minecraft.reconstruction.opening import open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.registration import corrected, register, told
-from world2minecraft.reconstruction.resume import kept_before, with_kept_files
+from world2minecraft.reconstruction.registration import (
+    apply_corrections,
+    register,
+    with_registration_note,
+)
+from world2minecraft.reconstruction.resume import resume_manifest, resume_parameters
 from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture
-from world2minecraft.reconstruction.stages import LATER_STEPS
+from world2minecraft.reconstruction.stages import FILE_STAGES, run_stage
 
-STAGES = ("scan", "register", "fuse", *LATER_STEPS)
+STAGES = ("scan", "register", "fuse", *FILE_STAGES)
 
 
 def reconstruct(
@@ -69,66 +73,73 @@ def reconstruct(
         UsageError: a setting is other than the one that stages before ``start`` were made with.
     """
     run = RunFolder(out, STAGES, start)
-    kept = kept_before(out, start, STAGES, parameters or Parameters())
-    chosen = kept.parameters
+    resumed = resume_parameters(out, start, STAGES, parameters or Parameters())
+    chosen = resumed.parameters
     early = start is None or STAGES.index(start) <= STAGES.index("fuse")
-    used = predictor(chosen.predictor, chosen.occupy) if early else None
+    network = predictor(chosen.predictor, chosen.occupy) if early else None
     with run.timed("scan"):
         scan = open_prepared(capture, out, chosen, labels, progress)
-    run.begin(with_kept_files(out, start, manifest(capture, labels, chosen, out), kept))
+    stated = manifest(capture, labels, chosen, out)
+    run.begin(resume_manifest(out, start, stated, resumed))
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)
     if run.needs("register"):
         with run.stage("register"):
-            found = register(scan, chosen.register.suited(scan.depth_kind), progress)
-            scan = realign(corrected(scan, found.corrections), found.surface)
-            scan = told(scan, found.corrections.facts)
-            write_poses(run.path("poses.npz"), found.corrections)
-            write_scan(run.path("scan.json"), scan, found.corrections.facts)
+            scan = _register(run, scan, chosen, progress)
     else:
-        scan = registered_before(scan, out)
-    if used is not None and run.needs("fuse"):
+        scan = read_registered(scan, out)
+    if network is not None and run.needs("fuse"):
         with run.stage("fuse"):
-            rules = chosen.fuse.suited(scan.depth_kind)
-            evidence, scan = (
-                fuse_views(used.predict(scan), scan, rules, progress),
-                skip_damaged_frames(scan),
-            )
-            scan = replace(scan, notes=(*scan.notes, *notes_of(used)))
-            if chosen.plan:
-                evidence, told_of_plan = voted_by_plan(evidence, Path(chosen.plan))
-                scan = replace(scan, notes=(*scan.notes, *told_of_plan))
-            write_evidence(run.path("evidence.npz"), evidence)
-            write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
-    run_later_stages(run, chosen, until, progress)
-    return replace(scan, notes=(*scan.notes, *kept.notes))
-
-
-def run_later_stages(
-    run: RunFolder, chosen: Parameters, until: str | None = None, progress: Progress = silent
-) -> None:
-    """Run what is not yet finished of the stages after fusion, ``until`` one of them."""
-    for stage, step in LATER_STEPS.items():
+            scan = _fuse(run, scan, chosen, network, progress)
+    for stage in FILE_STAGES:
         if run.needs(stage):
-            progress(stage, 0, 1)
             with run.stage(stage):
-                step(run.folder, chosen)
+                run_stage(stage, run.folder, chosen, progress)
                 if stage == "label" and chosen.plan:
                     add_plan_openings(run.folder, Path(chosen.plan))
-            progress(stage, 1, 1)
         if stage == until:
             break
+    return replace(scan, notes=(*scan.notes, *resumed.notes))
 
 
-def registered_before(scan: Scan, out: Path) -> Scan:
+def _register(run: RunFolder, scan: Scan, chosen: Parameters, progress: Progress) -> Scan:
+    """Refine poses and depth scales, write them, and return the scan with them applied."""
+    found = register(scan, chosen.register.suited(scan.depth_kind), progress)
+    scan = realign(apply_corrections(scan, found.corrections), found.surface)
+    scan = with_registration_note(scan, found.corrections.facts)
+    write_poses(run.path("poses.npz"), found.corrections)
+    write_scan(run.path("scan.json"), scan, found.corrections.facts)
+    return scan
+
+
+def _fuse(
+    run: RunFolder, scan: Scan, chosen: Parameters, network: Predictor, progress: Progress
+) -> Scan:
+    """Fuse the evidence of all views, write it, and return the scan with what is to be noted."""
+    rules = chosen.fuse.suited(scan.depth_kind)
+    evidence, scan = (
+        fuse_views(network.predict(scan), scan, rules, progress),
+        skip_damaged_frames(scan),
+    )
+    notes = notes_of(network)
+    if chosen.plan:
+        evidence, notes_of_plan = voted_by_plan(evidence, Path(chosen.plan))
+        notes = (*notes, *notes_of_plan)
+    scan = replace(scan, notes=(*scan.notes, *notes))
+    write_evidence(run.path("evidence.npz"), evidence)
+    write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
+    return scan
+
+
+def read_registered(scan: Scan, out: Path) -> Scan:
     """Return a scan as an earlier run in ``out`` registered and placed it.
 
     Raises:
         InputError: no run got so far there. DamagedFileError: its files cannot be read.
     """
     placed = with_recorded_alignment(scan, out / "scan.json")
-    return corrected(placed, read_poses(out / "poses.npz"))
+    return apply_corrections(placed, read_poses(out / "poses.npz"))
 
 
 def network_files(chosen: Parameters) -> list[Path]:

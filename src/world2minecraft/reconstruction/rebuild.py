@@ -1,4 +1,7 @@
-"""From an occupancy grid to blocks, without its capture: in a folder, or as they are."""
+"""Build blocks from an occupancy grid or a finished run, without its capture.
+
+The stages are those of ``pipeline``: a grid alone begins at ``find``, a run at ``build``.
+"""
 
 import tempfile
 from pathlib import Path
@@ -14,7 +17,7 @@ from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import BUILT_FROM, check_finished, check_writable
-from world2minecraft.reconstruction.stages import LATER_STEPS, built_volume
+from world2minecraft.reconstruction.stages import built_volume, run_stage
 
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")
@@ -37,13 +40,14 @@ def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress 
         raise UsageError(f"{source} holds blocks, and --out takes a room; {ways} to one")
     if source.is_dir():
         _copy_run(source, out)
-        stages = ("build",)
+        stages: tuple[str, ...] = ("build",)
     else:
         grid = read_occupancy(source)
         check_writable(out)
         write_room(out / "room.npz", grid, np.eye(4))
         stages = ("find", "furnish", "build")
-    _run_stages(stages, out, parameters, progress)
+    for stage in stages:
+        run_stage(stage, out, parameters, progress)
 
 
 def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent) -> BlockVolume:
@@ -67,7 +71,8 @@ def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         folder = Path(scratch)
         write_room(folder / "room.npz", grid, np.eye(4))
-        _run_stages(("find", "furnish"), folder, parameters, progress)
+        for stage in ("find", "furnish"):
+            run_stage(stage, folder, parameters, progress)
         return built_volume(folder, parameters)
 
 
@@ -75,15 +80,6 @@ def is_block_file(source: Path) -> bool:
     """Whether a known format finds blocks at ``source``."""
     found = (FORMATS.load(name)() for name in FORMATS.names())
     return any(format_.can_read and format_.is_at(source) for format_ in found)
-
-
-def _run_stages(
-    stages: tuple[str, ...], folder: Path, parameters: Parameters, progress: Progress
-) -> None:
-    for stage in stages:
-        progress(stage, 0, 1)
-        LATER_STEPS[stage](folder, parameters)
-        progress(stage, 1, 1)
 
 
 def _copy_run(source: Path, out: Path) -> None:

@@ -26,7 +26,7 @@ FILES_READ_FIRST_BY = {"capture": "scan", "labels": "fuse", "plan": "fuse", "net
 
 
 @dataclass(frozen=True)
-class Kept:
+class Resumed:
     """What goes on as it was.
 
     parameters: those asked for, with the kept stages' own as they were. facts: of the manifest,
@@ -44,7 +44,9 @@ class Kept:
         return (f"kept from before: {', '.join(self.changed)}",) if self.changed else ()
 
 
-def kept_before(out: Path, start: str | None, stages: Sequence[str], asked: Parameters) -> Kept:
+def resume_parameters(
+    out: Path, start: str | None, stages: Sequence[str], asked: Parameters
+) -> Resumed:
     """Return the parameters with which a run in ``out`` goes on from a stage.
 
     Args:
@@ -68,10 +70,10 @@ def kept_before(out: Path, start: str | None, stages: Sequence[str], asked: Para
         chosen = _with_value(chosen, key.split("."), was, out)
         changed.append(f"{key}={_shown(was)}")
     files = [name for name, by in FILES_READ_FIRST_BY.items() if by in kept and name in old]
-    return Kept(chosen, {name: old[name] for name in files}, tuple(changed))
+    return Resumed(chosen, {name: old[name] for name in files}, tuple(changed))
 
 
-def with_kept_files(out: Path, start: str | None, now: Mapping[str, Any], kept: Kept) -> dict:
+def resume_manifest(out: Path, start: str | None, now: Mapping[str, Any], kept: Resumed) -> dict:
     """Return a manifest whose hashes of files are those that kept stages read.
 
     Raises:

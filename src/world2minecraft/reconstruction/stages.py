@@ -5,6 +5,7 @@
 """
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from world2minecraft.construction import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
@@ -48,7 +50,7 @@ from world2minecraft.reconstruction.semantics import (
     with_whole_walls,
     without_wall_guesses,
 )
-from world2minecraft.reconstruction.semantics.completion import LEARNT_VOXEL_M, VOXEL_TOLERANCE
+from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -75,20 +77,9 @@ def labelled(
     """
     name = chosen.labeller
     if name == "auto":
-        name = usual_labeller(evidence, from_photos)
+        name = choose_labeller(evidence, from_photos)
     grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
     return calibrate(grid, evidence, confidence_table(name))
-
-
-def usual_labeller(evidence: FusedEvidence, from_photos: bool) -> str:
-    """Return the labeller that ``auto`` takes.
-
-    It is the network where depth was measured and cells are of the size that it learnt. The errors
-    of stereo it has not seen: in a real kitchen's photos it took a table's end for a bed.
-    """
-    if not from_photos and abs(evidence.voxel_m / LEARNT_VOXEL_M - 1) <= VOXEL_TOLERANCE:
-        return "completion"
-    return "votes" if evidence.votes.any() else "geometric"
 
 
 def find_stage(folder: Path, chosen: Parameters) -> None:
@@ -113,7 +104,7 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
-    volume, edits = _mended(folder, chosen)
+    volume, edits = _build_and_repair(folder, chosen)
     name = scene_name(folder) or WORLD_NAME
     write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
     write_edits(folder / "build", edits)
@@ -125,7 +116,7 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
 
     Those that an earlier build wrote show what was there before, and go.
     """
-    _forget_forms(folder / "build", chosen.format_names)
+    _remove_old_forms(folder / "build", chosen.format_names)
     if not chosen.format_names:
         return
     options = WriteOptions(
@@ -139,20 +130,20 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
     write_json(folder / "build" / "forms.json", rows)
 
 
-def _forget_forms(build: Path, kept: tuple[str, ...]) -> None:
-    """Take away the further forms of an earlier build but for ``kept``, and what told of them."""
-    told = build / "forms.json"
-    if not told.is_file():
+def _remove_old_forms(build: Path, wanted: tuple[str, ...]) -> None:
+    """Remove the further forms of an earlier build but for ``wanted``, and their list."""
+    listed = build / "forms.json"
+    if not listed.is_file():
         return
-    stated = read_json(told)
+    stated = read_json(listed)
     suffixes = {_suffix_of(str(name)) for name in stated} if isinstance(stated, dict) else set()
-    for suffix in sorted(suffixes - {_suffix_of(name) for name in kept} - {"", ".schem"}):
+    for suffix in sorted(suffixes - {_suffix_of(name) for name in wanted} - {"", ".schem"}):
         place = build / f"room{suffix}"
         if place.is_dir():
             shutil.rmtree(place, ignore_errors=True)
         else:
             place.unlink(missing_ok=True)
-    told.unlink()
+    listed.unlink()
 
 
 def _suffix_of(name: str) -> str:
@@ -165,11 +156,13 @@ def _suffix_of(name: str) -> str:
 
 def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
     """``room.npz``, ``objects.json`` and ``placements.json`` -> the blocks; nothing is written."""
-    return _mended(folder, chosen)[0]
+    return _build_and_repair(folder, chosen)[0]
 
 
-def _mended(folder: Path, chosen: Parameters) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
-    """The blocks, and what was mended in them after they were built."""
+def _build_and_repair(
+    folder: Path, chosen: Parameters
+) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
+    """Return the blocks, and what was repaired in them after they were built."""
     grid, _ = read_room(folder / "room.npz")
     volume = build_volume(
         grid,
@@ -197,9 +190,17 @@ def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:
     return np.array([0.0, np.round(depth_m / grid.voxel_m) * grid.voxel_m])
 
 
-LATER_STEPS = {
+# The stages that go from file to file, in order.
+FILE_STAGES: dict[str, Callable[[Path, Parameters], None]] = {
     "label": label_stage,
     "find": find_stage,
     "furnish": furnish_stage,
     "build": build_stage,
 }
+
+
+def run_stage(stage: str, folder: Path, chosen: Parameters, progress: Progress = silent) -> None:
+    """Run one of ``FILE_STAGES`` on the folder of a run."""
+    progress(stage, 0, 1)
+    FILE_STAGES[stage](folder, chosen)
+    progress(stage, 1, 1)

@@ -26,7 +26,7 @@ from world2minecraft.editing.scene import SceneDraft
 _ALIGN = 8
 
 
-def packed_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
+def pack_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
     """Return the bytes of arrays and of what is told about them."""
     rows, parts, offset = {}, [], 0
     for name, values in arrays.items():
@@ -42,8 +42,8 @@ def packed_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np
 
 MAGIC, VERSION = b"W2MV", 1
 HEADER = struct.Struct("<4sHBB3If3fI")
-U8, U16 = 0, 1
-THREE_A_CELL = 1
+DTYPE_U8, DTYPE_U16 = 0, 1
+FLAG_RGB = 1
 VOLUMES = ("labels", "instance", "confidence", "colour")
 
 
@@ -58,15 +58,15 @@ class Volume:
     def as_bytes(self) -> bytes:
         """Return it as ``W2MV``; confidence is 0 to 255 then."""
         is_share = self.values.dtype == np.float16
-        values = as_bytes(self.values) if is_share else self.values
-        kind = U16 if values.dtype == np.uint16 else U8
-        flags = THREE_A_CELL if values.ndim == 4 else 0
+        values = confidence_bytes(self.values) if is_share else self.values
+        kind = DTYPE_U16 if values.dtype == np.uint16 else DTYPE_U8
+        flags = FLAG_RGB if values.ndim == 4 else 0
         place = (*values.shape[:3], self.voxel_m, *map(float, self.origin_m))
         head = HEADER.pack(MAGIC, VERSION, kind, flags, *place, CLASS_COUNT)
         return head + values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
 
 
-def volume_of(draft: SceneDraft, what: str) -> Volume:
+def copy_volume(draft: SceneDraft, what: str) -> Volume:
     """Return a copy of the array named ``what``: labels, instance, confidence or colour.
 
     Raises:
@@ -82,6 +82,6 @@ def labels_bytes(draft: SceneDraft, labels: np.ndarray) -> bytes:
     return Volume(labels, draft.voxel_m, draft.origin_m).as_bytes()
 
 
-def as_bytes(confidence: np.ndarray) -> np.ndarray:
+def confidence_bytes(confidence: np.ndarray) -> np.ndarray:
     """Return confidence, 0 to 1, as uint8 of the same shape, 0 to 255."""
     return np.round(confidence.astype(np.float32) * 255).astype(np.uint8)

@@ -20,12 +20,12 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
 from world2minecraft.reconstruction.stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
-from world2minecraft.sceneforge.array_messages import packed_arrays
+from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.editor import Editor
 
 MAGIC = b"W2MB"
-MOST_CELLS = 12_000_000  # Of the box around a build; a page draws no more.
-SIZES = (0.25, 100.0)  # Blocks a metre, as ``Parameters`` allows.
+MAX_CELLS = 12_000_000  # Of the box around a build; a page draws no more.
+SCALE_RANGE = (0.25, 100.0)  # Blocks a metre, as ``Parameters`` allows.
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class BuildOptions:
     style: str = "blocks"
 
     def __post_init__(self):
-        low, high = SIZES
+        low, high = SCALE_RANGE
         if not low <= self.blocks_per_metre <= high:
             asked = f"blocks_per_metre must be {low} to {high:.0f}, not {self.blocks_per_metre}"
             raise UsageError(f"{asked}; try 1, 2, 4 or 12.5")
@@ -45,7 +45,7 @@ class BuildOptions:
 
 
 @dataclass(frozen=True, eq=False)
-class HeldScene:
+class SceneSnapshot:
     """A scene at one moment, so that it can be built while it is edited further.
 
     ``shown`` tells it from other rooms of the server at the same revision, as ``Session.shown``.
@@ -67,7 +67,7 @@ class HeldScene:
 
 
 @dataclass(frozen=True, eq=False)
-class Build:
+class BlockBuild:
     """The blocks of a scene, and what the page is sent of them."""
 
     rev: int
@@ -75,7 +75,7 @@ class Build:
     volume: BlockVolume
 
     @classmethod
-    def of(cls, scene: HeldScene, options: BuildOptions) -> "Build":
+    def of(cls, scene: SceneSnapshot, options: BuildOptions) -> "Build":
         """Build a scene; takes a second for a room.
 
         Raises:
@@ -83,10 +83,10 @@ class Build:
         """
         size = options.blocks_per_metre * scene.grid.voxel_m
         cells = float(np.prod(np.array(scene.grid.shape) * size + 4))
-        if cells > MOST_CELLS:
+        if cells > MAX_CELLS:
             raise UsageError(
                 f"{options.blocks_per_metre:g} blocks a metre make {cells:.3g} blocks here, more "
-                f"than {MOST_CELLS:,}; choose fewer"
+                f"than {MAX_CELLS:,}; choose fewer"
             )
         volume = build_volume(
             scene.grid,
@@ -126,7 +126,7 @@ class Build:
             "texture_px": mesh.atlas.side_px,
             "blocks": int((self.volume.states > 0).sum()),
         }
-        return packed_arrays(MAGIC, told, _arrays(mesh))
+        return pack_arrays(MAGIC, told, _arrays(mesh))
 
     def facts(self) -> dict[str, Any]:
         """Return what the page is told of any build: its revision, its place and where to begin."""

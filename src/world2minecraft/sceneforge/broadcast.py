@@ -47,7 +47,7 @@ class Tab:
         while True:
             if self._lost:
                 self._lost = False
-                return as_text(hello())
+                return to_json_text(hello())
             if self._queue:
                 text = self._queue.popleft()
                 self._bytes -= len(text)
@@ -56,7 +56,7 @@ class Tab:
             await self._something.wait()
 
 
-class Hub:
+class Broadcaster:
     """All tabs of a server. Its methods are called on the server's loop, but for ``tell_soon``."""
 
     def __init__(self):
@@ -85,7 +85,7 @@ class Hub:
 
     def tell(self, message: dict[str, Any]) -> None:
         """Send a message of wire.ts to every tab."""
-        text = as_text(message)
+        text = to_json_text(message)
         for tab in self._tabs:
             tab.put(text)
 
@@ -100,6 +100,6 @@ class Hub:
             tab.forget()
 
 
-def as_text(message: dict[str, Any]) -> str:
+def to_json_text(message: dict[str, Any]) -> str:
     """Return a message as it is sent."""
     return json.dumps(message, separators=(",", ":"), allow_nan=False)

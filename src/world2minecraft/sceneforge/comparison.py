@@ -20,7 +20,7 @@ from world2minecraft.formats.occupancy_files import read_occupancy
 SUFFIXES = (".npz", ".npy", ".json")
 
 
-def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
+def read_file_labels(path: Path, draft: SceneDraft) -> np.ndarray:
     """Return the labels uint8 [X, Y, Z] of an occupancy file in the cells of a scene.
 
     A cell takes the label at its centre, 255 where the file does not reach.
@@ -32,7 +32,7 @@ def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
     return resample_labels(read_occupancy(path), draft)
 
 
-def truth_folder(run: Path, capture: Path | None) -> Path | None:
+def find_truth_folder(run: Path, capture: Path | None) -> Path | None:
     """Return where the truth of a generated room lies, None where there is none."""
     for folder in (run / "capture", capture):
         if folder is not None and (folder / "truth.npz").is_file():
@@ -40,7 +40,7 @@ def truth_folder(run: Path, capture: Path | None) -> Path | None:
     return None
 
 
-def labels_of_truth(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -> np.ndarray:
+def read_truth_labels(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -> np.ndarray:
     """Return the truth uint8 [X, Y, Z] of a generated room in the cells of a scene.
 
     Raises:
@@ -52,7 +52,7 @@ def labels_of_truth(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -
     return carry_truth(truth.labels, truth.voxel_m, truth.origin_m, truth_to_room, *place)
 
 
-def beside_reached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
+def mask_unreached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
     """Return labels with 255 where a scan never came near: a truth's walls are thick.
 
     Args:
@@ -64,7 +64,7 @@ def beside_reached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
     return np.where(near, labels, np.uint8(UNKNOWN))
 
 
-def checked_name(name: str) -> str:
+def check_suffix(name: str) -> str:
     """Return the suffix of a file to compare with.
 
     Raises:

@@ -6,9 +6,9 @@ floaters, holes and doubtful objects of a real run, so that there is something t
 
 from pathlib import Path
 
-from world2minecraft.sceneforge.sources import Opened, read_source
+from world2minecraft.sceneforge.sources import OpenedScene, read_source
 
 
-def demo_room(folder: Path | None = None) -> Opened:
+def demo_room(folder: Path | None = None) -> OpenedScene:
     """Return a living room with its objects; ``folder`` is where it would be saved."""
     return read_source(None, folder)

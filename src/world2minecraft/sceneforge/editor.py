@@ -22,10 +22,10 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import Command, SceneDraft, parse_command
 from world2minecraft.sceneforge.document.document import Document
-from world2minecraft.sceneforge.document.identity import folder_of
-from world2minecraft.sceneforge.document.memory_document import Unkept
+from world2minecraft.sceneforge.document.identity import document_folder
+from world2minecraft.sceneforge.document.memory_document import MemoryDocument
 from world2minecraft.sceneforge.queries import parse_query
-from world2minecraft.sceneforge.sources import Opened
+from world2minecraft.sceneforge.sources import OpenedScene
 from world2minecraft.sceneforge.tools import tools_of
 from world2minecraft.sceneforge.wire import PROTOCOL, classes_json, counts_json, objects_json
 
@@ -44,9 +44,13 @@ class Editor:
 
     progress: Progress = staticmethod(silent)
 
-    def __init__(self, document: Unkept | Opened, clock: Callable[[], float] = time.time):
+    def __init__(
+        self, document: MemoryDocument | OpenedScene, clock: Callable[[], float] = time.time
+    ):
         """Take an open document, or a scene to be edited in memory alone; see ``Editor.open``."""
-        self.document = Unkept(document, clock) if isinstance(document, Opened) else document
+        self.document = (
+            MemoryDocument(document, clock) if isinstance(document, OpenedScene) else document
+        )
         self.name = self.document.opened.name
         self.tools = tools_of(self.opened.rooms)
         self.has: dict[str, Any] = {"photos": 0, "truth": False}
@@ -83,7 +87,7 @@ class Editor:
         return self.document.draft
 
     @property
-    def opened(self) -> Opened:
+    def opened(self) -> OpenedScene:
         """The scene as it was opened first, and what it was read from."""
         return self.document.opened
 
@@ -110,7 +114,7 @@ class Editor:
     def holds(self, source: Path | None) -> bool:
         """Whether this is the scene that ``open`` would give for a source."""
         document = self.document
-        return isinstance(document, Document) and document.folder == folder_of(source)
+        return isinstance(document, Document) and document.folder == document_folder(source)
 
     def do(self, op: str | Command | Operation, *, actor: str = "", **fields: Any) -> Operation:
         """Do a command and return what it did.

@@ -18,7 +18,7 @@ from world2minecraft.evaluation.metrics.effort import (
     mean_row,
 )
 from world2minecraft.sceneforge.document.effort_log import read_effort
-from world2minecraft.sceneforge.document.identity import folder_of, read_identity
+from world2minecraft.sceneforge.document.identity import document_folder, read_identity
 
 Row = Mapping[str, float | None]
 # The paper's rows: name, title, how far it is indented.
@@ -46,7 +46,7 @@ def effort_at(place: Path) -> Effort:
     Raises:
         InputError: it was never opened, or its log cannot be read.
     """
-    folder = folder_of(place)
+    folder = document_folder(place)
     if not folder.is_dir():
         raise InputError(place, "was never edited: no folder of edits lies beside it")
     identity = read_identity(folder)

@@ -1,7 +1,7 @@
 """The scene as it is edited, for other programs: what can be made of it, and where it can go.
 
 Data (``occ.json``, ``room.npz`` ...) is written here at once. What needs blocks is built by a
-worker from a ``snapshot`` of the scene, while the scene is edited further.
+worker from a ``write_snapshot`` of the scene, while the scene is edited further.
 """
 
 import csv
@@ -22,11 +22,11 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.formats.volume_formats import (writable_format_names)
+from world2minecraft.formats.volume_formats import writable_format_names
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
 from world2minecraft.sceneforge.editor import Editor
 
-DATA = {
+DATA_FILES = {
     "npz": "room.npz",
     "occ": "occ.json",
     "centers": "centers.json",
@@ -47,23 +47,23 @@ class ExportForm:
     built: bool
 
 
-def forms() -> tuple[ExportForm, ...]:
+def export_forms() -> tuple[ExportForm, ...]:
     """Return all forms that a scene can be downloaded in."""
     others = [name for name in writable_format_names() if name not in (*BUILT_FIRST, *MODELS)]
     game = [ExportForm(name, "game", True) for name in (*BUILT_FIRST, *others)]
     models = [ExportForm(name, "3d", True) for name in MODELS]
-    return (*game, *models, *(ExportForm(name, "data", False) for name in DATA))
+    return (*game, *models, *(ExportForm(name, "data", False) for name in DATA_FILES))
 
 
-def form_of(name: str) -> ExportForm:
+def get_export_form(name: str) -> ExportForm:
     """Return a form by its id. Raises UnknownNameError."""
-    known = {one.id: one for one in forms()}
+    known = {one.id: one for one in export_forms()}
     if name not in known:
         raise UnknownNameError("export", name, known)
     return known[name]
 
 
-def snapshot(editor: Editor, folder: Path) -> None:
+def write_snapshot(editor: Editor, folder: Path) -> None:
     """Write the scene as it is now to a folder, as ``Editor.save`` would to its own.
 
     Raises:
@@ -81,12 +81,12 @@ def snapshot(editor: Editor, folder: Path) -> None:
 
 
 def write_data(editor: Editor, form: str, folder: Path) -> Path:
-    """Write one of ``DATA`` of the scene as it is now; return the file.
+    """Write one of ``DATA_FILES`` of the scene as it is now; return the file.
 
     Raises:
         OutputError: the folder cannot be written.
     """
-    path = folder / DATA[form]
+    path = folder / DATA_FILES[form]
     grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
     instances = instances_of(objects, grid.instance)
     if form == "npz":

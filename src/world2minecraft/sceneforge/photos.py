@@ -24,8 +24,8 @@ from world2minecraft.evaluation.report.placed_frames import judge_capture_of, pl
 from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.geometry.undistort import undistort_image
 
-LONGEST_PX, SMALL_PX = 1280, 200
-HELD_BYTES = 48 << 20  # Of pictures that were made: some hundred.
+MAX_SIDE_PX, SMALL_PX = 1280, 200
+CACHE_BYTES = 48 << 20  # Of pictures that were made: some hundred.
 QUALITY = 84
 
 
@@ -82,14 +82,14 @@ class RunPhotos:
     def _pixels(self, photo: PlacedPhoto, small: bool) -> np.ndarray:
         place = photo.frame.colour_path
         if place is None:
-            return _depth_picture(photo.frame, self.encoding, SMALL_PX if small else LONGEST_PX)
+            return _depth_picture(photo.frame, self.encoding, SMALL_PX if small else MAX_SIDE_PX)
         if small:
             return read_small(place, SMALL_PX)
         return undistort_image(read_colour(place), photo.camera, photo.ideal)
 
     def _keep(self, key: tuple[int, bool], data: bytes) -> None:
         self._made[key] = data
-        while len(self._made) > 1 and sum(map(len, self._made.values())) > HELD_BYTES:
+        while len(self._made) > 1 and sum(map(len, self._made.values())) > CACHE_BYTES:
             self._made.popitem(last=False)
 
 
@@ -147,7 +147,7 @@ def count_photos(run: Path, capture: Path | None) -> int:
     return len(used_by(run))
 
 
-def ideal_camera(camera: Camera, longest_px: int = LONGEST_PX) -> Camera:
+def ideal_camera(camera: Camera, longest_px: int = MAX_SIDE_PX) -> Camera:
     """Return a camera that sees the largest part of a picture around its principal point.
 
     Args:

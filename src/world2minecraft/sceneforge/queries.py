@@ -43,8 +43,12 @@ from world2minecraft.reconstruction.instances.density_clustering import (
     object_cells,
 )
 from world2minecraft.reconstruction.retrieval import ranked_matches
-from world2minecraft.sceneforge.comparison import labels_of_file, labels_of_truth, truth_folder
-from world2minecraft.sceneforge.sources import Opened
+from world2minecraft.sceneforge.comparison import (
+    find_truth_folder,
+    read_file_labels,
+    read_truth_labels,
+)
+from world2minecraft.sceneforge.sources import OpenedScene
 
 # What all questions about a scene share; ``queries`` has them by name.
 
@@ -60,7 +64,7 @@ class QueriedScene(Protocol):
         ...
 
     @property
-    def opened(self) -> Opened:
+    def opened(self) -> OpenedScene:
         """The scene as it was opened first."""
         ...
 
@@ -158,7 +162,7 @@ class Compare(Query):
 
     def answer(self, scene: QueriedScene) -> Any:
         """Return ``{"added", "removed", "changed"}`` runs, ``cells`` of each and the figures."""
-        return compared(scene.draft, self._other(scene))
+        return compare_draft(scene.draft, self._other(scene))
 
     def _other(self, scene: QueriedScene) -> np.ndarray:
         if self.path == OPENED:
@@ -166,14 +170,14 @@ class Compare(Query):
             return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
         folder = scene.opened.folder
         if self.path != TRUTH:
-            return labels_of_file(file_within(folder, self.path), scene.draft)
-        place = truth_folder(folder, None)
+            return read_file_labels(file_within(folder, self.path), scene.draft)
+        place = find_truth_folder(folder, None)
         if place is None:
             raise UsageError("no truth lies in the scene's folder; only generated rooms have one")
-        return labels_of_truth(place, scene.draft, scene.opened.scan_to_room)
+        return read_truth_labels(place, scene.draft, scene.opened.scan_to_room)
 
 
-def compared(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
+def compare_draft(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
     """Return what ``compare`` answers for other labels uint8 [X, Y, Z] in the scene's cells."""
     found = compare_labels(draft.labels, other)
     masks = {"added": found.added, "removed": found.removed, "changed": found.changed}
@@ -220,8 +224,8 @@ CELL_QUERIES: dict[str, type[Query]] = {
 # Questions about the objects of a scene: other furniture, centres, clashes, doubtful places.
 
 OFFERED = 5
-LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
-MOST_PLACES = 200
+MIN_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
+MAX_PLACES = 200
 
 
 def _odd(value: int) -> int:
@@ -303,8 +307,8 @@ class Doubtful(Query):
                 "doubt": round(one.doubt, 3),
                 "object_id": one.object_id or None,
             }
-            for one in found[:MOST_PLACES]
-            if one.doubt >= LEAST_DOUBT
+            for one in found[:MAX_PLACES]
+            if one.doubt >= MIN_DOUBT
         ]
 
 

@@ -18,19 +18,19 @@ import numpy as np
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import Command, SceneDraft, parse_command
-from world2minecraft.sceneforge.array_messages import as_bytes, volume_of
-from world2minecraft.sceneforge.broadcast import Hub
+from world2minecraft.sceneforge.array_messages import confidence_bytes, copy_volume
+from world2minecraft.sceneforge.broadcast import Broadcaster
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.jobs.background_job import TITLES, beside, copy_of
+from world2minecraft.sceneforge.jobs.background_job import TITLES, copy_editor, run_in_background
 from world2minecraft.sceneforge.jobs.jobs import Jobs
 from world2minecraft.sceneforge.wire import PROTOCOL, counts_json, object_json
 
 # What the tabs are told of an operation: ``Change`` of wire.ts, and the preview of one.
 
-MAX_HELD_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
+MAX_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
 
 
-def change_of(editor: Editor, rev: int, step: str, operation: Operation) -> dict[str, Any]:
+def change_message(editor: Editor, rev: int, step: str, operation: Operation) -> dict[str, Any]:
     """Return what every tab is told of a step that was just done to the scene.
 
     Objects are those that changed, and those that gained or lost cells.
@@ -46,7 +46,7 @@ def change_of(editor: Editor, rev: int, step: str, operation: Operation) -> dict
         "counts_as": operation.counts_as,
         "actor": operation.actor,
         "step": step,
-        "cells": held_runs(operation.cells, operation.after, draft.shape),
+        "cells": encode_runs(operation.cells, operation.after, draft.shape),
         "objects": [object_json(draft.objects[n], int(editor.cells_of[n])) for n in changed],
         "gone": sorted(named - draft.objects.keys()),
         "counts": counts_json(draft.counts),
@@ -55,7 +55,7 @@ def change_of(editor: Editor, rev: int, step: str, operation: Operation) -> dict
     }
 
 
-def preview_of(draft: SceneDraft, operation: Operation) -> dict[str, Any]:
+def preview_message(draft: SceneDraft, operation: Operation) -> dict[str, Any]:
     """Return what an operation would do: its cells as they would be, its objects, the gone."""
     counts = np.bincount(operation.after.instance, minlength=1)
     after = [
@@ -66,29 +66,29 @@ def preview_of(draft: SceneDraft, operation: Operation) -> dict[str, Any]:
     return {
         "kind": operation.kind,
         "counts_as": operation.counts_as,
-        "cells": held_runs(operation.cells, operation.after, draft.shape),
+        "cells": encode_runs(operation.cells, operation.after, draft.shape),
         "objects": after,
         "gone": sorted({one.id for one in operation.objects_before} - held),
     }
 
 
-def held_runs(
+def encode_runs(
     cells: np.ndarray, held: GridCells, shape: tuple[int, int, int]
 ) -> list[list[int]] | None:
     """Return what cells int [N, 3] hold as [first, length, label, instance, confidence].
 
-    Confidence is 0 to 255. None where there would be more than ``MAX_HELD_RUNS``.
+    Confidence is 0 to 255. None where there would be more than ``MAX_RUNS``.
     """
     if not len(cells):
         return []
     flat = np.ravel_multi_index(tuple(cells.T), shape)
     order = np.argsort(flat, kind="stable")
-    columns = (flat, held.labels, held.instance, as_bytes(held.confidence))
+    columns = (flat, held.labels, held.instance, confidence_bytes(held.confidence))
     rows = np.column_stack([np.asarray(one, np.int64)[order] for one in columns])
     breaks = np.ones(len(rows), bool)
     breaks[1:] = (np.diff(rows[:, 0]) != 1) | (rows[1:, 1:] != rows[:-1, 1:]).any(axis=1)
     first = np.flatnonzero(breaks)
-    if len(first) > MAX_HELD_RUNS:
+    if len(first) > MAX_RUNS:
         return None
     lengths = np.diff(first, append=len(rows))
     return np.column_stack([rows[first, 0], lengths, rows[first, 1:]]).tolist()
@@ -110,7 +110,7 @@ class Session:
 
     def __init__(self, editor: Editor | None = None):
         self.editor: Editor | None = None
-        self.hub = Hub()
+        self.hub = Broadcaster()
         self.jobs = Jobs(self.hub.tell_soon)
         self.shown = 0
         self._count = 0
@@ -165,7 +165,7 @@ class Session:
             document = self.document
             if command["op"] in QUICK and self._is_small:
                 return await self._done(document.do(checked, actor=actor))
-            planned = await asyncio.to_thread(_planned, document, checked)
+            planned = await asyncio.to_thread(_plan, document, checked)
             return await self._step(lambda: document.do(planned, actor=actor))
 
     async def undo(self, actor: str = "") -> dict[str, Any]:
@@ -185,7 +185,7 @@ class Session:
         checked = parse_command(command)
 
         def work(document: Editor) -> dict[str, Any]:
-            return preview_of(document.draft, _planned(document, checked))
+            return preview_message(document.draft, _plan(document, checked))
 
         if command["op"] in TITLES and not self._is_small:
             return await self._beside(command["op"], work)
@@ -262,7 +262,7 @@ class Session:
             self.shown = self._count
 
             def told(rev: int, step: str, operation: Operation) -> None:
-                self.hub.tell_soon(change_of(editor, rev, step, operation))
+                self.hub.tell_soon(change_message(editor, rev, step, operation))
 
             self._unlisten = editor.on_change(told)
 
@@ -286,13 +286,13 @@ class Session:
 
     async def _beside(self, name: str, work: Callable[[Editor], Value]) -> Value:
         """Return what long work on a copy of the scene gives; only copying takes a turn."""
-        copy = await self._asked(copy_of)
-        return await beside(self.jobs, name, copy, work)
+        copy = await self._asked(copy_editor)
+        return await run_in_background(self.jobs, name, copy, work)
 
     async def _do_long(self, name: str, command: Command, actor: str) -> dict[str, Any]:
         """Plan a command beside and do it, where its cells are still what they were."""
         document = self.document
-        planned = await self._beside(name, lambda copy: _planned(copy, command))
+        planned = await self._beside(name, lambda copy: _plan(copy, command))
         async with self._turn:
             if document is not self.editor:
                 raise UsageError("another room was opened meanwhile; nothing was done")
@@ -303,13 +303,13 @@ class Session:
             return await asyncio.to_thread(question, self.document)
 
 
-def _planned(document: Editor, command: Command) -> Operation:
+def _plan(document: Editor, command: Command) -> Operation:
     """Plan without the document's lock: its turn keeps other edits of the server away."""
     return command.plan(document.draft, document.tools)
 
 
 def _volume(document: Editor, what: str, zipped: bool) -> tuple[int, bytes]:
-    rev, volume = document.read(lambda: (document.rev, volume_of(document.draft, what)))
+    rev, volume = document.read(lambda: (document.rev, copy_volume(document.draft, what)))
     raw = volume.as_bytes()  # Only copying it holds up an edit.
     if not zipped:
         return rev, raw

@@ -39,7 +39,7 @@ from world2minecraft.reconstruction.retrieval import furnish
 MAX_CENTERS = 65535
 
 
-def instances_at(
+def instances_from_centers(
     grid: OccupancyGrid, centers: Sequence[Center]
 ) -> tuple[OccupancyGrid, tuple[ObjectInstance, ...]]:
     """Return the grid with instances, and one object for each centre of an object class.
@@ -101,7 +101,7 @@ DEMO_OUT = Path("demo-room")
 
 
 @dataclass(frozen=True, eq=False)
-class Opened:
+class OpenedScene:
     """A scene as it was found.
 
     ``folder`` is where it is saved; ``is_run`` tells that the files that stand there may be
@@ -121,7 +121,7 @@ class Opened:
     is_demo: bool = False
 
 
-def source_of(source: Path | None) -> Path:
+def resolve_source(source: Path | None) -> Path:
     """Return what a path means: a run for its ``room.npz``, the demo's folder for None."""
     if source is None:
         return DEMO_OUT.absolute()
@@ -130,7 +130,7 @@ def source_of(source: Path | None) -> Path:
     return source.absolute()
 
 
-def read_source(source: Path | None, out: Path | None = None) -> Opened:
+def read_source(source: Path | None, out: Path | None = None) -> OpenedScene:
     """Read a scene from where it lies.
 
     Args:
@@ -141,7 +141,7 @@ def read_source(source: Path | None, out: Path | None = None) -> Opened:
         InputError: there is nothing, or nothing that can be read. DamagedFileError: a file is not
         what its format says. LimitError: it is too large.
     """
-    place = source_of(source)
+    place = resolve_source(source)
     if source is None:
         opened = replace(
             _read_run(DEMO_FOLDER),
@@ -156,7 +156,7 @@ def read_source(source: Path | None, out: Path | None = None) -> Opened:
     return opened if out is None else replace(opened, folder=out.absolute(), is_run=False)
 
 
-def rooms_of(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
+def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
     """Return the rooms that furniture stays within; none where nothing tells of them."""
     try:
         return read_rooms(source, grid) if source.is_dir() else ()
@@ -164,11 +164,11 @@ def rooms_of(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
         return ()
 
 
-def _read_run(folder: Path) -> Opened:
+def _read_run(folder: Path) -> OpenedScene:
     if not (folder / "room.npz").is_file():
         raise InputError(folder, "is no run of w2m: room.npz is missing; w2m reconstruct makes one")
     grid, scan_to_room = read_room(folder / "room.npz")
-    rooms = rooms_of(folder, grid)
+    rooms = read_source_rooms(folder, grid)
     inputs = tuple(folder / name for name in RUN_FILES if (folder / name).is_file())
     if (folder / "objects.json").is_file():
         instances = read_objects(folder / "objects.json", grid)
@@ -176,35 +176,35 @@ def _read_run(folder: Path) -> Opened:
         placed = read_placements(folder / "placements.json") if is_furnished else ()
         objects = objects_of(instances, placed)
     else:
-        grid, objects = with_objects(grid, rooms)
+        grid, objects = detect_objects(grid, rooms)
     fields = (folder.name, folder, inputs, grid, scan_to_room, objects, rooms)
-    return Opened(*fields, source=folder, is_run=True)
+    return OpenedScene(*fields, source=folder, is_run=True)
 
 
-def _read_file(source: Path) -> Opened:
+def _read_file(source: Path) -> OpenedScene:
     grid = read_occupancy(source)
     scan_to_room = read_room(source)[1] if source.name == "room.npz" else np.eye(4)
-    grid, objects = with_objects(grid)
+    grid, objects = detect_objects(grid)
     is_run = source.name == "room.npz"
     folder = source.parent if is_run else source.parent / source.stem
     fields = (source.name, folder, (source,), grid, scan_to_room, objects)
-    return Opened(*fields, source=source, is_run=is_run)
+    return OpenedScene(*fields, source=source, is_run=is_run)
 
 
-def _read_paper(source: Path) -> Opened:
+def _read_paper(source: Path) -> OpenedScene:
     grid, unit = read_any_occ(source)
     beside = source.with_name(source.name.replace("occ", "centers"))
     inputs, centers = (source,), None
     if beside != source and beside.is_file():
         centers, inputs = read_any_centers(beside, grid, unit), (source, beside)
-    grid, objects = with_objects(grid, (), centers)
+    grid, objects = detect_objects(grid, (), centers)
     is_run = source.name == "occ.json" and not (source.parent / "room.npz").exists()
     folder = source.parent if is_run else source.parent / source.stem
     fields = (source.name, folder, inputs, grid, np.eye(4), objects)
-    return Opened(*fields, source=source, is_run=is_run)
+    return OpenedScene(*fields, source=source, is_run=is_run)
 
 
-def with_objects(
+def detect_objects(
     grid: OccupancyGrid,
     rooms: Sequence[Layout] = (),
     centers: Sequence[Center] | None = None,
@@ -221,5 +221,5 @@ def with_objects(
         found = find_objects(grid)
         grid, instances = found.grid, found.instances
     else:
-        grid, instances = instances_at(grid, centers)
+        grid, instances = instances_from_centers(grid, centers)
     return grid, objects_of(instances, furnish(grid, instances, None, rooms))

@@ -21,10 +21,10 @@ def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
     def fit(grid: OccupancyGrid, one: ObjectInstance, name: str, turns: int | None) -> Placement:
         return fit_template(grid, one, name, turns, rooms)
 
-    return Tools(match, found, fit, measure_object)
+    return Tools(match, find_instances, fit, measure_object)
 
 
-def found(
+def find_instances(
     grid: OccupancyGrid, parameters: dict[str, Any]
 ) -> tuple[np.ndarray, tuple[ObjectInstance, ...]]:
     """Return the instance ids uint16 [X, Y, Z] and the objects that ``find`` finds.

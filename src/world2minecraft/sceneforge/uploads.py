@@ -36,10 +36,10 @@ from world2minecraft.minecraft.worlds.installation import check_name
 
 # The names of uploaded files: hostile until checked, then safe as paths on every system.
 
-MOST_FILES = 20_000  # Ten minutes of frames with depth and confidence.
-MOST_DEPTH = 12
-MOST_PART_BYTES = 200
-MOST_PATH_BYTES = 400
+MAX_FILES = 20_000  # Ten minutes of frames with depth and confidence.
+MAX_DEPTH = 12
+MAX_PART_BYTES = 200
+MAX_PATH_BYTES = 400
 # What no file may be named on Windows, and what means something else than a name there.
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f]')
@@ -54,7 +54,7 @@ class UploadFile:
     size: int
 
 
-def checked_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
+def check_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     """Return the files that a page says it will send.
 
     Args:
@@ -67,11 +67,9 @@ def checked_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     """
     if not isinstance(told, list) or not told:
         raise UsageError('"files" must be a list of {"path", "size"}, one for each file')
-    if len(told) > MOST_FILES:
-        raise LimitError(
-            "the capture", f"has {len(told):,} files; at most {MOST_FILES:,} are taken"
-        )
-    files = tuple(one for one in map(_checked, told) if not _ignored(one.path))
+    if len(told) > MAX_FILES:
+        raise LimitError("the capture", f"has {len(told):,} files; at most {MAX_FILES:,} are taken")
+    files = tuple(one for one in map(_check_file, told) if not _ignored(one.path))
     if not files:
         raise UsageError("there is nothing in it; drop a folder with pictures, a zip or a video")
     total = sum(one.size for one in files)
@@ -81,34 +79,34 @@ def checked_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
             f"has {total >> 20:,} MB; at most {most_bytes >> 20:,} MB are taken by the page. "
             "Start w2m forge with the path of the capture instead, or with --max-upload",
         )
-    _check_apart(one.path for one in files)
+    _check_distinct(one.path for one in files)
     return files
 
 
-def _checked(told: Any) -> UploadFile:
+def _check_file(told: Any) -> UploadFile:
     if not isinstance(told, Mapping) or not isinstance(told.get("path"), str):
         raise UsageError('each file must be {"path": "folder/name.jpg", "size": bytes}')
     size = told.get("size")
     if not isinstance(size, int) or isinstance(size, bool) or size < 0:
         raise UsageError(f"the size of {told['path'][:80]!r} must be whole bytes, not {size!r:.40}")
-    return UploadFile(checked_path(told["path"]), size)
+    return UploadFile(check_path(told["path"]), size)
 
 
-def checked_path(name: str) -> str:
+def check_path(name: str) -> str:
     """Return a relative path with ``/`` that stays below its folder, on every system.
 
     Raises:
         UsageError: it does not.
 
     Example:
-        >>> checked_path("kitchen/rgb/0.jpg")
+        >>> check_path("kitchen/rgb/0.jpg")
         'kitchen/rgb/0.jpg'
     """
     shown = repr(name[:80])
     if name.startswith("/") or "\\" in name or _FORBIDDEN.search(name):
         raise UsageError(f"{shown} cannot be a file of a capture: its name leaves the folder")
     parts = PurePosixPath(name).parts
-    if not parts or len(parts) > MOST_DEPTH or len(name.encode(errors="replace")) > MOST_PATH_BYTES:
+    if not parts or len(parts) > MAX_DEPTH or len(name.encode(errors="replace")) > MAX_PATH_BYTES:
         raise UsageError(f"{shown} cannot be a file of a capture: its path is empty or too long")
     for part in parts:
         _check_part(part, shown)
@@ -122,7 +120,7 @@ def _check_part(part: str, shown: str) -> None:
         raise UsageError(f"{shown} cannot be a file of a capture: it is no text") from error
     if part == ".." or part != part.strip() or part.endswith(".") or _RESERVED.fullmatch(part):
         raise UsageError(f"{shown} cannot be a file of a capture: {part!r} is no plain name")
-    if size > MOST_PART_BYTES or not part.isprintable():
+    if size > MAX_PART_BYTES or not part.isprintable():
         raise UsageError(f"{shown} cannot be a file of a capture: a part is too long or not plain")
 
 
@@ -130,7 +128,7 @@ def _ignored(path: str) -> bool:
     return path.rpartition("/")[2].casefold() in IGNORED
 
 
-def _check_apart(paths: Iterable[str]) -> None:
+def _check_distinct(paths: Iterable[str]) -> None:
     """Refuse files that would overwrite each other where case does not count."""
     seen: set[str] = set()
     folders: set[str] = set()
@@ -151,7 +149,7 @@ def common_folder(files: Iterable[UploadFile]) -> str:
     return min(tops) if len(tops) == 1 and all(rest for _, _, rest in firsts) else ""
 
 
-MOST_UPLOAD_BYTES = 512 << 20
+MAX_UPLOAD_BYTES = 512 << 20
 SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
 CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
 RUN, UPLOAD = "run", "upload"
@@ -268,7 +266,7 @@ class CaptureFolder:
         return held
 
 
-class Captures:
+class CaptureStore:
     """All captures below a home.
 
     Args:
@@ -276,7 +274,7 @@ class Captures:
         most_bytes: the most that one upload may hold.
     """
 
-    def __init__(self, home: Path, most_bytes: int = MOST_UPLOAD_BYTES):
+    def __init__(self, home: Path, most_bytes: int = MAX_UPLOAD_BYTES):
         self.home, self.most_bytes = home, most_bytes
         self.folder = home / "captures"
 
@@ -322,7 +320,7 @@ class Captures:
             UsageError: a name cannot be used. LimitError: it is too large.
             OutputError: the disk is full.
         """
-        checked = checked_files(files, self.most_bytes)
+        checked = check_files(files, self.most_bytes)
         self._check_space(sum(one.size for one in checked))
         top = common_folder(checked)
         inner = tuple(UploadFile(one.path[len(top) + 1 :], one.size) for one in checked)

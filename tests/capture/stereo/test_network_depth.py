@@ -13,7 +13,11 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import DepthMap, Photo, Scan
 from world2minecraft.reconstruction.fusion import FuseParameters, extract_grid, fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
-from world2minecraft.reconstruction.registration import RegisterParameters, corrected, register
+from world2minecraft.reconstruction.registration import (
+    RegisterParameters,
+    apply_corrections,
+    register,
+)
 
 ROOM = BoxRoom((7.0, 5.5, 2.7))  # So large that 5 % of a wall's distance is more than a voxel.
 OFF = 0.05  # Up to so much, as monocular networks are known for.
@@ -85,7 +89,9 @@ def within_one_voxel(scan: Scan, true: Scan) -> tuple[float, float]:
 
 
 def registered(scan: Scan) -> Scan:
-    return corrected(scan, register(scan, RegisterParameters().suited("network")).corrections)
+    return apply_corrections(
+        scan, register(scan, RegisterParameters().suited("network")).corrections
+    )
 
 
 @pytest.mark.parametrize("seed", [0, 1])

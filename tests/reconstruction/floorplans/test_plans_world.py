@@ -33,7 +33,7 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import templ
 from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import moved_plan
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.runs import make_from_plan
+from world2minecraft.runs import run_plan
 
 SESSION = session_of(21.0, (3.0, -1.4, 0.7))
 
@@ -241,7 +241,7 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
     assert find_lone_roomplan(place) == place
     assert find_lone_roomplan(place.parent) == place
     out = tmp_path / "OUT"
-    built = make_from_plan(place, out, Parameters(blocks_per_metre=2.0), silent, "flat")
+    built = run_plan(place, out, Parameters(blocks_per_metre=2.0), silent, "flat")
     say_plan(out, built)
     assert "1 room of a plan, 4.0 x 3.2 x 2.4 m, 4 objects." in capsys.readouterr().out
     assert "flat in Minecraft" in (out / "report.html").read_text()

@@ -18,7 +18,7 @@ from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.reconstruction.opening import one_photo, open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.runs import make_run
+from world2minecraft.runs import run_capture
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 FOV_DEG = 2 * np.degrees(np.arctan(120 / 260))
@@ -55,7 +55,7 @@ def network(tmp_path):
 def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, network):
     out = tmp_path / "OUT"
     chosen = Parameters(predictor=f"mono:{network}", capture={"fov_deg": str(FOV_DEG)})
-    facts = make_run(photo, out, chosen)
+    facts = run_capture(photo, out, chosen)
     assert (out / "build" / "world" / "level.dat").is_file() and facts
     scan = json.loads((out / "scan.json").read_text())
     assert scan["source"] == "photo" and scan["scale"] == "estimated"
@@ -66,7 +66,7 @@ def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, netwo
     manifest = json.loads((out / "manifest.json").read_text())
     assert len(manifest["networks"]) == 1
     again = tmp_path / "AGAIN"
-    make_run(photo, again, chosen)
+    run_capture(photo, again, chosen)
     for name in ("evidence.npz", "room.npz", "manifest.json", "objects.json"):
         assert (again / name).read_bytes() == (out / name).read_bytes(), name
 

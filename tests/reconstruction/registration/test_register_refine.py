@@ -9,8 +9,12 @@ from scipy.spatial.transform import Rotation
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Corrections, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
-from world2minecraft.reconstruction.registration import RegisterParameters, register, told
-from world2minecraft.reconstruction.registration import corrected
+from world2minecraft.reconstruction.registration import (
+    RegisterParameters,
+    apply_corrections,
+    register,
+    with_registration_note,
+)
 from world2minecraft.reconstruction.registration.pose_refinement import register_surface
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
@@ -198,7 +202,7 @@ def test_a_corrected_scan_has_moved_poses_and_stretched_depth():
     scan = scan_of(2)
     change = np.eye(4)
     change[:3, 3] = [0.1, 0, 0]
-    fixed = corrected(scan, Corrections(("0001",), change[None], np.array([1.5])))
+    fixed = apply_corrections(scan, Corrections(("0001",), change[None], np.array([1.5])))
     first, second = list(fixed.views)
     raw = list(scan.views)
     assert len(fixed.views) == 2
@@ -210,7 +214,7 @@ def test_a_corrected_scan_has_moved_poses_and_stretched_depth():
 def test_the_surface_is_that_of_the_corrected_views():
     scan = scan_of(6)
     found = register(scan, RegisterParameters())
-    again = collect_oriented_points(corrected(scan, found.corrections).views)
+    again = collect_oriented_points(apply_corrections(scan, found.corrections).views)
     np.testing.assert_allclose(again.cameras, found.surface.cameras, atol=1e-6)
     np.testing.assert_allclose(again.points_m, found.surface.points_m, atol=1e-4)
 
@@ -227,12 +231,12 @@ def test_what_is_told():
         "kept": True, "moved_median_mm": 7.13, "turned_median_deg": 0.33, "depth_scaled": True,
         "depth_scale_spread": 0.0288, "misfit_before_mm": 18.7, "misfit_after_mm": 0.5,
     }  # fmt: skip
-    assert told(scan_of(1), facts).notes == (
+    assert with_registration_note(scan_of(1), facts).notes == (
         "poses were moved to meet each other: by 7.1 mm and 0.33 degrees in the middle of all "
         "frames; depth scales that differed by 2.9% were evened out; surface kept apart now meets "
         "within 0.5 mm, before 18.7 mm",
     )
-    assert told(scan_of(1), {"kept": False}).notes == ()
+    assert with_registration_note(scan_of(1), {"kept": False}).notes == ()
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from world2minecraft.reconstruction.semantics.completion import (
 )
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
-from world2minecraft.reconstruction.stages import usual_labeller
+from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
 
 class Saying:
@@ -168,9 +168,9 @@ def test_votes_decide_where_they_agree_and_the_network_where_they_do_not(scanned
 
 def test_auto_takes_the_network_for_measured_depth_in_cells_of_the_size_that_it_learnt(scanned):
     evidence = scanned[1]
-    assert usual_labeller(evidence, from_photos=False) == "completion"
-    assert usual_labeller(evidence, from_photos=True) == "geometric"
+    assert choose_labeller(evidence, from_photos=False) == "completion"
+    assert choose_labeller(evidence, from_photos=True) == "geometric"
     large = replace(evidence, voxel_m=0.16)
-    assert usual_labeller(large, from_photos=False) == "geometric"
+    assert choose_labeller(large, from_photos=False) == "geometric"
     voted = replace(large, votes=np.ones_like(large.votes))
-    assert usual_labeller(voted, from_photos=False) == "votes"
+    assert choose_labeller(voted, from_photos=False) == "votes"

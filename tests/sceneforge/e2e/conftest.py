@@ -16,7 +16,7 @@ from forge_driving import Driver, opened_page
 from world2minecraft.sceneforge.demo import demo_room
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.serve import ForgeServer
-from world2minecraft.sceneforge.sources import Opened
+from world2minecraft.sceneforge.sources import OpenedScene
 
 TESTS = Path(__file__).resolve().parents[2]
 for part in ("plans", "server"):  # RoomPlans and a server's console, written for other tests.
@@ -44,7 +44,7 @@ def browser() -> Iterator:
 
 
 @pytest.fixture(scope="session")
-def room() -> Opened:
+def room() -> OpenedScene:
     """The demo room, made once."""
     return demo_room()
 

@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from test_forge_annotation import a_set
 
 from world2minecraft.sceneforge.annotation.app import annotation_server
-from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
+from world2minecraft.sceneforge.annotation.store import AnnotationStore
 
 WRONG = "Go to the sofa over there."
 TEXTS = ("Go to the piano over there.", "Walk on, then turn left.", "On to the piano, at its left.")
@@ -23,7 +23,7 @@ def test_a_walk_is_told_on_three_levels(browser, tmp_path, size):
     context = browser.new_context(viewport=dict(zip(("width", "height"), size, strict=True)))
     page, failures = context.new_page(), []
     page.on("pageerror", lambda error: failures.append(str(error)))
-    with annotation_server(AnnotationDesk(a_set(tmp_path)), 0) as server:
+    with annotation_server(AnnotationStore(a_set(tmp_path)), 0) as server:
         page.goto(server.link)
         page.wait_for_selector("#strip img")
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")

@@ -142,11 +142,11 @@ MAX_ROTATION_STRETCH = (
 class MatchGraph:
     """What connects photos.
 
-    ``match_descriptors`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
+    ``matches`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
     pycolmap's value for the same; ``alike`` int [N, N] is a first count for all pairs.
     """
 
-    match_descriptors: dict[Pair, np.ndarray]
+    matches: dict[Pair, np.ndarray]
     geometry: dict[Pair, Any]
     alike: np.ndarray
 

@@ -109,7 +109,7 @@ def _planned(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views
+    from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views
 
     start = source.start()
     if reachable and start is None:
@@ -118,7 +118,7 @@ def _planned(
         camera=camera,
         start=start,
         reachable_only=reachable,
-        layouts=layouts_beside(source.path),
+        layouts=find_layouts(source.path),
     )
     compiling_note()
     with shown() as progress:

@@ -86,7 +86,7 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.sceneforge.document.identity import folder_of
+    from world2minecraft.sceneforge.document.identity import document_folder
     from world2minecraft.sceneforge.editor import Editor
     from world2minecraft.sceneforge.server.serve import ForgeServer
     from world2minecraft.sceneforge.sources import DEMO_OUT
@@ -101,7 +101,7 @@ def run(
     editor = Editor.open(source, out=place) if demo or (source and not dropped) else None
     places = {"home": home, "capture": capture, "most_upload_bytes": max_upload << 20}
     server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
-    first = source or (editor and folder_of(None, place))
+    first = source or (editor and document_folder(None, place))
     if first:
         server.workshop.begin_with(first, dropped)
     if place is not None:

@@ -32,9 +32,9 @@ def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowse
         InputError: the set has no walk, or cannot be read. UsageError: the port is taken.
     """
     from world2minecraft.sceneforge.annotation.app import annotation_server
-    from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
+    from world2minecraft.sceneforge.annotation.store import AnnotationStore
 
-    desk = AnnotationDesk(folder, out)
+    desk = AnnotationStore(folder, out)
     server = annotation_server(desk, port)
     print(f"{len(desk.walks)} walks; what is written is kept in {desk.out}")
     print(f"SceneForge: {server.link}", flush=True)

@@ -35,7 +35,7 @@ from world2minecraft.formats.scan import write_scan
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.stages import LATER_STEPS
+from world2minecraft.reconstruction.stages import FILE_STAGES
 
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 
@@ -129,7 +129,7 @@ def allowed_cells(out: Path, truth: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
         _write_true_evidence(case, work)
-        LATER_STEPS["label"](work, case.parameters)
+        FILE_STAGES["label"](work, case.parameters)
         grid, _ = read_room(work / "room.npz")
     return cell_facts(grid, case.room)
 
@@ -216,6 +216,6 @@ _PUT_IN: dict[str, Callable[[Case, Path], None]] = {
 
 def _go_on(case: Case, work: Path, first: str) -> None:
     """Run the real stages from ``first`` on."""
-    names = list(LATER_STEPS)
+    names = list(FILE_STAGES)
     for name in names[names.index(first) :]:
-        LATER_STEPS[name](work, case.parameters)
+        FILE_STAGES[name](work, case.parameters)

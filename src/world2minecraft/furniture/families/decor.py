@@ -1,4 +1,4 @@
-"""What makes a room someone's: a fireplace, a clock, a piano, a bicycle, things on boards."""
+"""Decor: fireplaces, clocks, aquariums, pianos, bicycles and small things on boards."""
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan

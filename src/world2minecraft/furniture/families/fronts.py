@@ -10,7 +10,7 @@ from world2minecraft.furniture.block_plan import Numbers, Plan, panel_properties
 from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.blocks import block_table
 
-LEAST_REST, MOST_REST = 0.04, 0.7  # Of a block: what a front stands in; more is body.
+MIN_REST, MAX_REST = 0.04, 0.7  # Of a block: what a front stands in; more is body.
 COARSE = 1.5  # Up to so many blocks a metre a front beyond the body would be in people's way.
 
 
@@ -34,7 +34,7 @@ def body_of(size: BlockSize) -> Body:
     """
     whole = int(size.exact[0])
     rest = size.exact[0] - whole
-    if whole and LEAST_REST <= rest <= MOST_REST:
+    if whole and MIN_REST <= rest <= MAX_REST:
         return Body(whole, whole)
     return Body(size.depth, size.depth if size.per_metre > COARSE else None)
 

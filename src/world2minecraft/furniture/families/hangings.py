@@ -1,4 +1,4 @@
-"""What hangs flat: curtains, blinds, pictures, mirrors, radiators, rugs on the floor.
+"""Flat hangings: curtains, blinds, pictures, mirrors, radiators, rugs on the floor.
 
 Nothing here holds on to the wall: plates, panes and wool stand by themselves in the game.
 """

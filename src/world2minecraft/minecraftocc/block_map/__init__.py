@@ -22,7 +22,7 @@ __all__ = [
     "MAPS",
     "BlockMap",
     "block_map_json",
-    "block_map_of",
+    "parse_block_map",
     "class_of_fine",
     "classify",
     "load_block_map",

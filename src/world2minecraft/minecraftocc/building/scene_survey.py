@@ -23,7 +23,7 @@ from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
 from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
 from world2minecraft.minecraftocc.store.folder import SCENES
-from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views, write_views
+from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views, write_views
 from world2minecraft.minecraftocc.types import FineClass
 from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.rendering import LightSettings, prepare_scene
@@ -157,7 +157,7 @@ def _make_survey(
         rule = TourRule(
             camera=recipe.camera,
             light=LightSettings(hour=hour),
-            layouts=layouts_beside(source.path),
+            layouts=find_layouts(source.path),
         )
         views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
     write_views(poses_path(folder, spec.scene_id), views, volume.block_to_room, spec.scene_id)

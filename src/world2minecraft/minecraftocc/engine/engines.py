@@ -26,7 +26,7 @@ class InProcessEngine:
         """Begin with no notes."""
         self.notes: list[str] = []
 
-    def __enter__(self) -> "HereEngine":
+    def __enter__(self) -> "InProcessEngine":
         """Return the engine."""
         return self
 

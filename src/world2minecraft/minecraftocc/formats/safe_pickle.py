@@ -75,7 +75,7 @@ class DtypeValue:
             raise PickleRefused(f"has an array of {str(code)[:20]!r}")
         self.dtype = np.dtype(code)
 
-    def build(self, state: Any) -> "Type":
+    def build(self, state: Any) -> "DtypeValue":
         """Take the byte order; a dtype with fields or shapes is refused."""
         match state:
             case (_, "<" | ">" | "|" | "=" as order, None, None, None, *_):

@@ -16,7 +16,7 @@ class FineCount:
     name: str  # a block's id, or "design:NAME" for a piece of furniture, whatever it is made of
     pixels: int  # over all pictures
     pictures: int  # that see it at all
-    clear_pictures: int  # that see it by ENOUGH_PIXELS or more
+    clear_pictures: int  # that see it by MIN_PIXELS or more
 
     @property
     def is_furniture(self) -> bool:

@@ -20,7 +20,7 @@ __all__ = [
     "OccStore",
     "SampleFiles",
     "ShardWriter",
-    "Verdict",
+    "VerifyReport",
     "open_store",
     "pack_sample",
     "read_classes",

@@ -15,7 +15,7 @@ __all__ = [
     "PlannedView",
     "TourRule",
     "kind_of_yaw",
-    "layouts_beside",
+    "find_layouts",
     "nyu_camera",
     "paper_camera",
     "plan_views",

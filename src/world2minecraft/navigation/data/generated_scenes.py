@@ -19,7 +19,7 @@ from world2minecraft.navigation.scene import open_scene
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.runs import make_run
+from world2minecraft.runs import run_capture
 
 MAX_SCENES, MAX_SEEDS = 1_000, 1_000_000
 TRIES = 5  # Of a room in which a scan leaves no way between things.
@@ -96,5 +96,5 @@ def _make_room(out: Path, kind: str, chance: int) -> None:
     """Generate a room, scan it and reconstruct it."""
     shutil.rmtree(out / "capture", ignore_errors=True)  # Of one that was broken off.
     scan_room(generate_room(chance, kind=kind), out / "capture", seed=chance)
-    make_run(out / "capture", out, Parameters())
+    run_capture(out / "capture", out, Parameters())
     shutil.rmtree(out / "capture")

@@ -30,7 +30,7 @@ class CacheLocation:
     root: Path | None = None  # The user's cache folder where None.
 
     @classmethod
-    def named(cls, text: str) -> "CachePlace":
+    def named(cls, text: str) -> "CacheLocation":
         """Return what ``--cache`` says: a folder, ``off``, or nothing for the usual place."""
         return cls(False) if text == "off" else cls(True, Path(text) if text else None)
 

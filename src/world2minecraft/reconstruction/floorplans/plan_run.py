@@ -28,7 +28,7 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval.placement_settling import settle
 from world2minecraft.reconstruction.run_folder import check_writable
-from world2minecraft.reconstruction.stages import LATER_STEPS
+from world2minecraft.reconstruction.stages import run_stage
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +101,7 @@ def build_captured(
     told = {"program": __version__, "parameters": parameters.as_json(), **source}
     write_json(out / "manifest.json", told)
     progress("plan", 1, 1)
-    progress("build", 0, 1)
-    LATER_STEPS["build"](out, parameters)
-    progress("build", 1, 1)
+    run_stage("build", out, parameters, progress)
     return PlanWorld(scan, layouts, len(held.instances))
 
 

@@ -30,7 +30,7 @@ __all__ = [
     "calibrate",
     "close_structure",
     "confidence_table",
-    "fuse_views",
     "extract_grid",
+    "fuse_views",
     "remove_floaters",
 ]

@@ -30,7 +30,7 @@ from world2minecraft.reconstruction.homes.room_placement import (
 )
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_finished, check_writable
-from world2minecraft.reconstruction.stages import LATER_STEPS
+from world2minecraft.reconstruction.stages import run_stage
 
 MOST_RUNS = 50
 
@@ -113,9 +113,7 @@ def join(
     _write(out, home, scan)
     write_json(out / "manifest.json", _manifest(folders, placed, voxel_m, chosen))
     progress("join", 1, 1)
-    progress("build", 0, 1)
-    LATER_STEPS["build"](out, chosen)
-    progress("build", 1, 1)
+    run_stage("build", out, chosen, progress)
     return scan
 
 

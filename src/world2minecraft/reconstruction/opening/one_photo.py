@@ -15,7 +15,7 @@ from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
-from world2minecraft.capture.stereo import DepthModel, depth_model
+from world2minecraft.capture.stereo import DepthModel, load_depth_model
 from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
@@ -40,7 +40,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
 
     Raises:
         CaptureError: neither a depth network nor a monocular one was asked for, or the depth
-            network gives no metres. UsageError, InputError: what ``depth_model`` raises.
+            network gives no metres. UsageError, InputError: what ``load_depth_model`` raises.
     """
     by_network = chosen.predictor.partition(":")[0] == MONO
     if not chosen.depth_model and not by_network:
@@ -56,7 +56,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         "skipped": [[*row] for row in judged.skipped],
     }
     if chosen.depth_model:
-        model = depth_model(chosen.depth_model)
+        model = load_depth_model(chosen.depth_model)
         if model.kind != "metric":
             raise CaptureError(
                 judged.capture.folder,

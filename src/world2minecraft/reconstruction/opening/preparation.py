@@ -14,7 +14,7 @@ from world2minecraft.capture.photo_stream import CapturePhotos, photos_of_captur
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.stereo import depth_maps, depth_model, network_maps
+from world2minecraft.capture.stereo import depth_maps, load_depth_model, network_maps
 from world2minecraft.capture.validation import ValidatedCapture, validate
 from world2minecraft.core.errors import (
     CaptureError,
@@ -187,7 +187,7 @@ def _with_own_depth(
 def _with_stereo(
     photos: CapturePhotos, scene: SparseScene, chosen: Parameters, progress: Progress
 ) -> Iterator[View]:
-    guide = depth_model(chosen.depth_model) if chosen.depth_model else None
+    guide = load_depth_model(chosen.depth_model) if chosen.depth_model else None
     if not chosen.stereo.network_alone:
         maps = depth_maps(photos, scene, chosen.stereo, progress, guide)
     elif guide is None:

@@ -23,7 +23,7 @@ class CorrectedViews:
     def __iter__(self) -> Iterator[View]:
         """Read the views from the first."""
         for view in self.views:
-            yield corrected_view(view, self.changes)
+            yield correct_view(view, self.changes)
 
     @property
     def damaged(self) -> dict[str, str]:
@@ -31,7 +31,7 @@ class CorrectedViews:
         return getattr(self.views, "damaged", {})
 
 
-def corrected(scan: Scan, corrections: Corrections) -> Scan:
+def apply_corrections(scan: Scan, corrections: Corrections) -> Scan:
     """Return the scan whose views come with corrected poses and depths."""
     changes = {
         name: (change, float(scale))
@@ -42,7 +42,7 @@ def corrected(scan: Scan, corrections: Corrections) -> Scan:
     return replace(scan, views=CorrectedViews(scan.views, changes))
 
 
-def told(scan: Scan, facts: Mapping[str, Any]) -> Scan:
+def with_registration_note(scan: Scan, facts: Mapping[str, Any]) -> Scan:
     """Return the scan with a sentence on what registration did among its notes."""
     if not facts.get("kept"):
         return scan
@@ -59,7 +59,7 @@ def told(scan: Scan, facts: Mapping[str, Any]) -> Scan:
     return replace(scan, notes=(*scan.notes, text))
 
 
-def corrected_view(view: View, changes: dict[str, tuple[np.ndarray, float]]) -> View:
+def correct_view(view: View, changes: dict[str, tuple[np.ndarray, float]]) -> View:
     """Return one view put right; a view that is not among the changes stays as it is."""
     if view.name not in changes:
         return view

@@ -10,23 +10,23 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
-from world2minecraft.sceneforge.server.failures import ANSWERS
+from world2minecraft.sceneforge.annotation.store import AnnotationStore
+from world2minecraft.sceneforge.server.failures import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.guard import Guard
 from world2minecraft.sceneforge.server.limits import BodyLimit
-from world2minecraft.sceneforge.server.requests import object_of
+from world2minecraft.sceneforge.server.requests import read_json_object
 from world2minecraft.sceneforge.server.serve import PageServer
 
 PAGE = Path(__file__).parent / "page"
 MAX_BODY = 64 << 10
 
 
-def annotation_server(desk: AnnotationDesk, port: int | None = None) -> PageServer:
+def annotation_server(desk: AnnotationStore, port: int | None = None) -> PageServer:
     """Return the server of a desk; only this machine can reach it, and only with its link."""
     return PageServer(lambda token, port: build_app(desk, token, port), port=port)
 
 
-def build_app(desk: AnnotationDesk, token: str, port: int) -> Starlette:
+def build_app(desk: AnnotationStore, token: str, port: int) -> Starlette:
     """Return the application that serves a desk."""
     app = Starlette(
         routes=[
@@ -41,13 +41,13 @@ def build_app(desk: AnnotationDesk, token: str, port: int) -> Starlette:
             Middleware(Guard, token=token, port=port),
             Middleware(BodyLimit, json_bytes=MAX_BODY, upload_bytes=0),
         ],
-        exception_handlers=ANSWERS,
+        exception_handlers=EXCEPTION_HANDLERS,
     )
     app.state.desk = desk
     return app
 
 
-def _desk(request: Request) -> AnnotationDesk:
+def _desk(request: Request) -> AnnotationStore:
     return request.app.state.desk
 
 
@@ -77,7 +77,7 @@ async def _add(request: Request) -> Response:
 
 
 async def _fields(request: Request, *names: str) -> tuple:
-    told = await object_of(request)
+    told = await read_json_object(request)
     number, texts = told.get("number"), [told.get(name) for name in names]
     if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
         raise UsageError(f"the body has number, and {', '.join(names)} as texts")

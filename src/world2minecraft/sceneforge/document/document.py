@@ -27,19 +27,19 @@ from world2minecraft.editing.scene.journal import DO, UNDO
 from world2minecraft.sceneforge.document import saving
 from world2minecraft.sceneforge.document.effort_log import EffortLog
 from world2minecraft.sceneforge.document.identity import (
-    folder_of,
+    document_folder,
     is_document,
     read_identity,
-    retire_changed,
+    retire_outdated,
     write_identity,
 )
-from world2minecraft.sceneforge.document.memory_document import Unkept
+from world2minecraft.sceneforge.document.memory_document import MemoryDocument
 from world2minecraft.sceneforge.document.recovery import (
     JOURNAL_FILE,
-    Recovered,
-    begin_anew,
+    RecoveredScene,
+    copy_damaged,
     recover,
-    set_aside,
+    rewrite_journal,
 )
 from world2minecraft.sceneforge.document.snapshots import (
     State,
@@ -47,14 +47,14 @@ from world2minecraft.sceneforge.document.snapshots import (
     snapshot_paths,
     write_state,
 )
-from world2minecraft.sceneforge.sources import Opened, read_source
+from world2minecraft.sceneforge.sources import OpenedScene, read_source
 
 SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0
 HISTORY_BYTES = 256 << 20  # What undo reaches takes at most so much of the disk, packed.
-KEPT_SNAPSHOTS = 2
+MAX_SNAPSHOTS = 2
 
 
-class Document(Unkept):
+class Document(MemoryDocument):
     """One scene with its folder. One thread at a time may use it; the editor sees to that.
 
     ``notes`` tell what was found at opening, and what went wrong since. ``recovered`` counts the
@@ -103,13 +103,13 @@ class Document(Unkept):
             InputError: the source cannot be read. OutputError: the folder cannot be made.
             ConflictError: the source changed since, and there are edits that were not saved.
         """
-        folder = folder_of(source, out)
+        folder = document_folder(source, out)
         opened = None if is_document(folder) else read_source(source, out)
-        lock, reason = _locked(folder)
+        lock, reason = _take_lock(folder)
         if lock is None:
             return cls(folder, clock, None, reason)
         try:
-            notes = _settle(folder, source, out, opened)
+            notes = _prepare(folder, source, out, opened)
             document = cls(folder, clock, lock, "")
         except OutputError as error:
             lock.let_go()
@@ -163,19 +163,19 @@ class Document(Unkept):
         self._lock.let_go()
         self._lock, self.read_only = None, "it is closed"
 
-    def _take(self, found: Recovered) -> None:
+    def _take(self, found: RecoveredScene) -> None:
         self.draft = found.draft
         self.rev, self._base, self._journal = found.rev, found.base, found.journal
         self.history = SceneHistory(self.draft, found.journal, found.line)
         self._snapshot_rev, self._snapshot_s = self.rev, self.clock()
 
-    def _own(self, found: Recovered) -> None:
+    def _own(self, found: RecoveredScene) -> None:
         """Make the folder ready to be written to."""
         _tidy(self.folder)
         path = self.folder / JOURNAL_FILE
         if found.fault:
             if path.exists():
-                aside = set_aside(path)
+                aside = copy_damaged(path)
                 self.notes.append(f"The damaged journal is kept as {aside.name}.")
             furthest = max(found.rev, found.journal.rev, self.saved_rev) + 1
             self._begin_anew(replace(found, rev=furthest))
@@ -215,7 +215,7 @@ class Document(Unkept):
         self.wait()
         reached = len(self.history.line.numbers)
         line, journal = self.history.line, self._journal
-        found = Recovered(self.draft, journal, line, self.rev, self._base)
+        found = RecoveredScene(self.draft, journal, line, self.rev, self._base)
         try:
             self._begin_anew(found)
         except OutputError as error:
@@ -226,8 +226,8 @@ class Document(Unkept):
             most = f"{self.history_bytes >> 20:,} MB"
             self.notes.append(f"The {forgotten} oldest edits cannot be undone: {most} are kept.")
 
-    def _begin_anew(self, found: Recovered) -> None:
-        journal, line, rev = begin_anew(self.folder, found, self.history_bytes)
+    def _begin_anew(self, found: RecoveredScene) -> None:
+        journal, line, rev = rewrite_journal(self.folder, found, self.history_bytes)
         self._take(replace(found, journal=journal, line=line, rev=rev))
 
     def _snapshot(self) -> None:
@@ -245,7 +245,7 @@ class Document(Unkept):
             self.notes.append(f"No snapshot was written: {error}. The journal holds every edit.")
 
 
-def _locked(folder: Path) -> tuple[Lock | None, str]:
+def _take_lock(folder: Path) -> tuple[Lock | None, str]:
     """Return the lock of a document, or None and why it cannot be had."""
     lock = Lock(folder / "lock")
     try:
@@ -263,15 +263,15 @@ def _locked(folder: Path) -> tuple[Lock | None, str]:
     return lock, ""
 
 
-def _settle(
-    folder: Path, source: Path | None, out: Path | None, opened: Opened | None
+def _prepare(
+    folder: Path, source: Path | None, out: Path | None, opened: OpenedScene | None
 ) -> list[str]:
     """Bring the files of a document in order before it is read; return what to tell the user."""
     notes = []
-    if is_document(folder) and saving.finish_cut_off(folder, read_identity(folder).target):
+    if is_document(folder) and saving.finish_interrupted_save(folder, read_identity(folder).target):
         notes.append("A save that was cut off is finished.")
     if is_document(folder) and source is not None and source != folder:
-        retired = retire_changed(folder)
+        retired = retire_outdated(folder)
         notes += [retired] if retired else []
     if not is_document(folder):
         opened = opened or read_source(source, out)
@@ -279,7 +279,7 @@ def _settle(
     return notes
 
 
-def generation_of(opened: Opened) -> str:
+def generation_of(opened: OpenedScene) -> str:
     """Return the name of the first generation of a scene's journal: a hash of its cells."""
     held = (opened.grid.labels, opened.grid.instance, opened.grid.colour)
     return hashlib.sha256(b"".join(np_bytes.tobytes() for np_bytes in held)).hexdigest()[:8]
@@ -288,7 +288,7 @@ def generation_of(opened: Opened) -> str:
 def _prune(folder: Path, generation: str) -> None:
     """Remove old snapshots of a generation, but for the newest and the first."""
     held = [path for path in snapshot_paths(folder) if path.stem.endswith(generation)]
-    for path in held[KEPT_SNAPSHOTS:-1]:
+    for path in held[MAX_SNAPSHOTS:-1]:
         path.unlink(missing_ok=True)
 
 

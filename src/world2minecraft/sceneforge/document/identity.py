@@ -16,7 +16,12 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.sceneforge.document import saving
 from world2minecraft.sceneforge.document.recovery import BASE_FILE, recover
 from world2minecraft.sceneforge.document.snapshots import State, write_state
-from world2minecraft.sceneforge.sources import DEMO_FOLDER, Opened, rooms_of, source_of
+from world2minecraft.sceneforge.sources import (
+    DEMO_FOLDER,
+    OpenedScene,
+    read_source_rooms,
+    resolve_source,
+)
 
 FORMAT, VERSION = "world2minecraft/sceneforge", 1
 SUFFIX = ".forge"
@@ -34,19 +39,19 @@ class Identity:
     inputs: Mapping[Path, str]
     is_demo: bool = False
 
-    def opened(self, base: State) -> Opened:
+    def opened(self, base: State) -> OpenedScene:
         """Return the scene as it was opened first, with what stands beside its source now."""
         source = DEMO_FOLDER if self.is_demo else self.source
         fields = (self.name, self.target, tuple(self.inputs), base.grid, base.scan_to_room)
-        rooms = rooms_of(source, base.grid)
-        return Opened(*fields, base.objects, rooms, source, is_demo=self.is_demo)
+        rooms = read_source_rooms(source, base.grid)
+        return OpenedScene(*fields, base.objects, rooms, source, is_demo=self.is_demo)
 
 
-def folder_of(source: Path | None, out: Path | None = None) -> Path:
+def document_folder(source: Path | None, out: Path | None = None) -> Path:
     """Return the document's folder of a source: beside it, or beside where it is saved."""
     if source is not None and is_document(source):
         return source
-    place = (out or source_of(source)).absolute()
+    place = (out or resolve_source(source)).absolute()
     place = Path(os.path.normpath(place))
     return place.with_name(place.name + SUFFIX)
 
@@ -56,7 +61,7 @@ def is_document(path: Path) -> bool:
     return (path / DOCUMENT_FILE).is_file()
 
 
-def write_identity(folder: Path, opened: Opened, generation: str) -> None:
+def write_identity(folder: Path, opened: OpenedScene, generation: str) -> None:
     """Make a document of a scene that was read. Raises OutputError."""
     outputs = [opened.folder / name for name in saving.SAVED_FILES] if opened.is_run else []
     held = {path: saving.sha256(path) for path in (*opened.inputs, *outputs)}
@@ -68,9 +73,9 @@ def write_identity(folder: Path, opened: Opened, generation: str) -> None:
             "format": FORMAT,
             "version": VERSION,
             "name": opened.name,
-            "source": _told(opened.source, folder),
-            "target": _told(opened.folder, folder),
-            "inputs": {_told(path, folder): value for path, value in held.items() if value},
+            "source": _relative(opened.source, folder),
+            "target": _relative(opened.folder, folder),
+            "inputs": {_relative(path, folder): value for path, value in held.items() if value},
             "is_demo": opened.is_demo,
         },
     )
@@ -98,7 +103,7 @@ def read_identity(folder: Path) -> Identity:
         raise DamagedFileError(path, f"is no document of this program ({error})") from error
 
 
-def retire_changed(folder: Path) -> str:
+def retire_outdated(folder: Path) -> str:
     """Set a document aside whose source was written anew by another program; tell so.
 
     Returns:
@@ -148,7 +153,7 @@ def _retire(folder: Path) -> Path:
     return aside
 
 
-def _told(path: Path, folder: Path) -> str:
+def _relative(path: Path, folder: Path) -> str:
     try:
         return Path(os.path.relpath(path.absolute(), folder.absolute().parent)).as_posix()
     except ValueError:  # Another drive of Windows.

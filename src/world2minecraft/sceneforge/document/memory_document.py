@@ -8,10 +8,10 @@ from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import MemoryLog, SceneDraft, SceneHistory
 from world2minecraft.sceneforge.document.saving import write_scene_files
 from world2minecraft.sceneforge.document.snapshots import State
-from world2minecraft.sceneforge.sources import Opened
+from world2minecraft.sceneforge.sources import OpenedScene
 
 
-class Unkept:
+class MemoryDocument:
     """One scene that is edited; ``Document`` is one that is kept.
 
     ``draft`` is the scene, ``history`` changes it. ``rev`` counts the steps so far, those of undo
@@ -22,9 +22,9 @@ class Unkept:
 
     draft: SceneDraft
     history: SceneHistory
-    opened: Opened
+    opened: OpenedScene
 
-    def __init__(self, opened: Opened, clock: Callable[[], float]):
+    def __init__(self, opened: OpenedScene, clock: Callable[[], float]):
         """Take a scene that was read."""
         self.opened, self.clock = opened, clock
         self.draft = SceneDraft(opened.grid, opened.objects)

@@ -29,7 +29,7 @@ JOURNAL_FILE, BASE_FILE = "journal.bin", "base.npz"
 
 
 @dataclass(frozen=True, eq=False)
-class Recovered:
+class RecoveredScene:
     """A scene as its document's files give it.
 
     ``fault`` says what is wrong with the journal, empty where nothing is; ``lost`` counts the
@@ -45,7 +45,7 @@ class Recovered:
     lost: int = 0
 
 
-def recover(folder: Path) -> Recovered:
+def recover(folder: Path) -> RecoveredScene:
     """Return the scene of a document; nothing is written.
 
     Raises:
@@ -57,17 +57,19 @@ def recover(folder: Path) -> Recovered:
     if state.generation != journal.generation:
         is_new = not journal.generation and state is base
         fault = fault or ("" if is_new else f"{journal.file.path} is of another scene or missing")
-        return Recovered(state.draft(), journal, Line(), state.rev, base, fault)
+        return RecoveredScene(state.draft(), journal, Line(), state.rev, base, fault)
     steps = journal.steps[state.rev - journal.start :]
     if state.rev > journal.rev:
         fault = fault or f"{journal.file.path} ends before the edits that were in it"
-    draft, line, done, reason = _replayed(state, journal, steps)
+    draft, line, done, reason = _replay(state, journal, steps)
     fault = fault or reason
     line = _reachable(line, journal)
-    return Recovered(draft, journal, line, state.rev + done, base, fault, len(steps) - done)
+    return RecoveredScene(draft, journal, line, state.rev + done, base, fault, len(steps) - done)
 
 
-def begin_anew(folder: Path, found: Recovered, keep_bytes: int) -> tuple[SceneJournal, Line, int]:
+def rewrite_journal(
+    folder: Path, found: RecoveredScene, keep_bytes: int
+) -> tuple[SceneJournal, Line, int]:
     """Begin a new journal with the newest operations of an old one.
 
     The new one's snapshots are written first, then it takes the place of the old one, so that a
@@ -85,7 +87,7 @@ def begin_anew(folder: Path, found: Recovered, keep_bytes: int) -> tuple[SceneJo
     Raises:
         OutputError: it cannot be written; the old journal goes on.
     """
-    line = _kept(found.line, found.journal, keep_bytes)
+    line = _trim_line(found.line, found.journal, keep_bytes)
     undone = len(line.numbers) - line.done
     rev = max(found.rev, len(line.numbers) + undone)
     generation = _next_generation(found.journal.generation, rev)
@@ -97,7 +99,7 @@ def begin_anew(folder: Path, found: Recovered, keep_bytes: int) -> tuple[SceneJo
     first = SceneDraft(found.draft.grid(), found.draft.objects.values())
     for operation in reversed(operations[: line.done]):
         first.apply(operation.inverse())
-    for draft, at, reach in ((first, start, Line()), (found.draft, rev, _renumbered(line))):
+    for draft, at, reach in ((first, start, Line()), (found.draft, rev, _renumber(line))):
         objects = tuple(draft.objects.values())
         fields = (found.base.scan_to_room, at, generation, reach)
         write_state(snapshot_path(folder, at, generation), State(draft.grid(), objects, *fields))
@@ -111,10 +113,10 @@ def begin_anew(folder: Path, found: Recovered, keep_bytes: int) -> tuple[SceneJo
     for path in snapshot_paths(folder):
         if not path.stem.endswith(generation):
             path.unlink(missing_ok=True)
-    return journal, _renumbered(line), rev
+    return journal, _renumber(line), rev
 
 
-def set_aside(path: Path) -> Path:
+def copy_damaged(path: Path) -> Path:
     """Keep a damaged file under another name too; return that. Raises OutputError."""
     names = (path.with_name(f"{path.stem}-damaged-{n}{path.suffix}") for n in count(1))
     aside = next(path for path in names if not path.exists())
@@ -177,7 +179,7 @@ def _states(folder: Path, generation: str) -> Iterator[State]:
         return
 
 
-def _replayed(
+def _replay(
     state: State, journal: SceneJournal, steps: Sequence[Step]
 ) -> tuple[SceneDraft, Line, int, str]:
     """Do steps again; return the scene, the line, how many were done and why no more."""
@@ -209,7 +211,7 @@ def _reachable(line: Line, journal: SceneJournal) -> Line:
     return line.within(first, last)
 
 
-def _kept(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
+def _trim_line(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
     """Return a line without its oldest operations, so that it takes at most so many bytes."""
     first, held = len(line.numbers), 0
     while first > 0 and held + journal.bytes_of(line.numbers[first - 1]) <= keep_bytes:
@@ -218,7 +220,7 @@ def _kept(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
     return line.within(min(first, line.done), len(line.numbers))
 
 
-def _renumbered(line: Line) -> Line:
+def _renumber(line: Line) -> Line:
     return line._replace(numbers=tuple(range(len(line.numbers))))
 
 

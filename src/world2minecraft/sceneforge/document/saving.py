@@ -21,7 +21,7 @@ from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.document.snapshots import State
 
 SAVED_FILE, STAGED = "saved.json", "saving"
-BESIDE = ("scan.json", "layout.json")
+EXTRA_FILES = ("scan.json", "layout.json")
 SAVED_FILES = ("room.npz", "objects.json", "placements.json", "occ.json", "centers.json")
 
 
@@ -71,20 +71,20 @@ def save(
         scene is saved again or opened next.
     """
     staged = document / STAGED
-    _forget(staged)
+    _remove_staged(staged)
     write_scene_files(staged, state)
-    for name in BESIDE:
+    for name in EXTRA_FILES:
         if (source / name).is_file() and not (target / name).exists():
             write_bytes(staged / name, (source / name).read_bytes())
-    names = (*SAVED_FILES, *(name for name in BESIDE if (staged / name).is_file()))
+    names = (*SAVED_FILES, *(name for name in EXTRA_FILES if (staged / name).is_file()))
     files = {name: sha256(staged / name) for name in names}
     allowed = {*known, *files.values(), *saved_hashes(document)}
     for name in files:
         if (found := sha256(target / name)) and found not in allowed:
-            _forget(staged)
+            _remove_staged(staged)
             reason = "was changed by another program since; move it away, then save again"
             raise ConflictError(target / name, reason)
-    told = _told(document)
+    told = _read_record(document)
     hashes = sorted({*saved_hashes(document), *files.values()})
     pending = {"rev": state.rev, "files": files}
     write_json(document / SAVED_FILE, told | {"pending": pending, "known": hashes})
@@ -92,7 +92,7 @@ def save(
     return files
 
 
-def finish_cut_off(document: Path, target: Path) -> bool:
+def finish_interrupted_save(document: Path, target: Path) -> bool:
     """Finish a save to ``target`` that was cut off; return whether there was one.
 
     A target that is not beside the document is left alone: the document may come from elsewhere.
@@ -100,10 +100,10 @@ def finish_cut_off(document: Path, target: Path) -> bool:
     Raises:
         OutputError: the disk is full or may not be written.
     """
-    pending = _told(document).get("pending", {})
+    pending = _read_record(document).get("pending", {})
     files = pending.get("files", {})
     whole = bool(files) and all(
-        name in (*SAVED_FILES, *BESIDE) and sha256(document / STAGED / name) == value
+        name in (*SAVED_FILES, *EXTRA_FILES) and sha256(document / STAGED / name) == value
         for name, value in files.items()
     )
     if not whole or target.resolve().parent != document.resolve().parent:
@@ -114,12 +114,12 @@ def finish_cut_off(document: Path, target: Path) -> bool:
 
 def saved_rev(document: Path) -> int:
     """Return the revision that was last saved, 0 for none."""
-    return _told(document)["rev"]
+    return _read_record(document)["rev"]
 
 
 def saved_hashes(document: Path) -> set[str]:
     """Return the SHA-256 of all files that saves wrote, or were about to write."""
-    return {str(value) for value in _told(document)["known"]}
+    return {str(value) for value in _read_record(document)["known"]}
 
 
 def _finish(document: Path, target: Path, pending: Mapping[str, Any]) -> None:
@@ -128,14 +128,14 @@ def _finish(document: Path, target: Path, pending: Mapping[str, Any]) -> None:
             write_bytes(target / name, (document / STAGED / name).read_bytes())
     known = sorted(pending["files"].values())
     write_json(document / SAVED_FILE, {"rev": pending["rev"], "known": known})
-    _forget(document / STAGED)
+    _remove_staged(document / STAGED)
 
 
-def _forget(staged: Path) -> None:
+def _remove_staged(staged: Path) -> None:
     shutil.rmtree(staged, ignore_errors=True)
 
 
-def _told(document: Path) -> dict[str, Any]:
+def _read_record(document: Path) -> dict[str, Any]:
     """Return what ``saved.json`` tells; as if nothing was saved where it is missing or damaged."""
     try:
         told = read_json(document / SAVED_FILE, 1 << 20)

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.jobs.jobs import CancelledError, Jobs, Report
+from world2minecraft.sceneforge.jobs.jobs import CancelledError, JobProgress, Jobs
 
 # What takes seconds of millions of cells, and what it is called meanwhile.
 TITLES = {
@@ -29,13 +29,15 @@ STAGES = ("scene", "planes", "pieces", "doubts")
 Value = TypeVar("Value")
 
 
-def copy_of(editor: Editor) -> Editor:
+def copy_editor(editor: Editor) -> Editor:
     """Return a scene as it is now, to be looked at and planned on by another thread."""
     held, draft = editor.opened, editor.draft
     return Editor(replace(held, grid=draft.grid(), objects=tuple(draft.objects.values())))
 
 
-async def beside(jobs: Jobs, name: str, copy: Editor, work: Callable[[Editor], Value]) -> Value:
+async def run_in_background(
+    jobs: Jobs, name: str, copy: Editor, work: Callable[[Editor], Value]
+) -> Value:
     """Run work on a copy of the scene as a job, and return what it gives.
 
     Args:
@@ -54,7 +56,7 @@ async def beside(jobs: Jobs, name: str, copy: Editor, work: Callable[[Editor], V
         if not answer.done():  # Whoever asked may be gone.
             act(value)
 
-    def run(report: Report) -> None:
+    def run(report: JobProgress) -> None:
         try:
             report("scene", 0, 0)
             copy.progress = report

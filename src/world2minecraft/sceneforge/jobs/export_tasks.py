@@ -28,7 +28,7 @@ from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.stages import built_volume, scene_name
 from world2minecraft.rendering.preview import preview
-from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of
+from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
 
 WORLD, PICTURE = "world", "png"
 
@@ -48,7 +48,7 @@ def export(
     Returns:
         ``file``, its name; ``bytes``; ``lost`` [[what, count]], what the form could not carry.
     """
-    chosen, losses = parameters_of(choice), Losses()
+    chosen, losses = parameters_of_choice(choice), Losses()
     volume = _blocks(Path(folder), chosen, progress)
     progress("write", 0, 1)
     path = _written(volume, Path(folder), form, Path(target), chosen, losses)
@@ -99,7 +99,7 @@ def install(
         name: what the world is called; the scene's name where it is empty.
         progress: told of each step.
     """
-    chosen = parameters_of(choice)
+    chosen = parameters_of_choice(choice)
     into = Game(str(game[0]), Path(str(game[1])), game[2])
     volume = _blocks(Path(folder), chosen, progress)
     progress("install", 0, 1)
@@ -122,7 +122,7 @@ def into_world(
     progress: Progress,
 ) -> dict[str, Any]:
     """Build the scene into a world of the user, as ``w2m build --into`` does, with its backups."""
-    chosen = parameters_of(choice)
+    chosen = parameters_of_choice(choice)
     volume = _blocks(Path(folder), chosen, progress)
     progress("write", 0, 1)
     put = place_volume(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
@@ -149,7 +149,7 @@ def on_server(
     progress: Progress,
 ) -> dict[str, Any]:
     """Build the scene on a running server, as ``w2m build --rcon`` does; it cannot be undone."""
-    chosen = parameters_of(choice)
+    chosen = parameters_of_choice(choice)
     host, port = parse_address(address)
     volume = _blocks(Path(folder), chosen, progress)
     put = place_volume(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])

@@ -19,9 +19,9 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.sceneforge.jobs.time_left import TimeLeft
 
-SOONEST_S = 0.1  # More states a second are seen by nobody.
-KEPT = 50  # Ended jobs that are remembered, for tabs that come later.
-MOST_AT_ONCE = 4
+MIN_INTERVAL_S = 0.1  # More states a second are seen by nobody.
+MAX_ENDED_JOBS = 50  # Ended jobs that are remembered, for tabs that come later.
+MAX_RUNNING = 4
 
 
 class CancelledError(Exception):
@@ -48,7 +48,7 @@ class JobState:
         return {"type": "job"} | asdict(self)
 
 
-class Report(Protocol):
+class JobProgress(Protocol):
     """What work is given: it calls it as ``Progress``, and may say how it is cut off."""
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
@@ -60,7 +60,7 @@ class Report(Protocol):
         ...
 
 
-Work = Callable[[Report], Any]
+JobFunction = Callable[[JobProgress], Any]
 
 
 class Jobs:
@@ -84,7 +84,7 @@ class Jobs:
     def start(
         self,
         title: str,
-        work: Work,
+        work: JobFunction,
         usual_s: Mapping[str, float] | None = None,
         ended: Callable[[JobState], None] = lambda state: None,
     ) -> str:
@@ -92,7 +92,7 @@ class Jobs:
 
         Args:
             title: for people.
-            work: is given a ``Report``; what it returns, JSON values, is the job's result.
+            work: is given a ``JobProgress``; what it returns, JSON values, is the job's result.
             usual_s: its stages in order with their usual seconds, for the time left.
             ended: called with the last state, in the job's thread, before it is told.
 
@@ -101,7 +101,7 @@ class Jobs:
         """
         with self._lock:
             running = [one for one in self._jobs.values() if one.state.state == "running"]
-            if len(running) >= MOST_AT_ONCE:
+            if len(running) >= MAX_RUNNING:
                 titles = ", ".join(one.state.title for one in running)
                 raise ConflictError(title, f"{len(running)} jobs run already ({titles}); wait")
             self._count += 1
@@ -149,12 +149,12 @@ class Jobs:
 
     def _forget(self) -> None:
         ended = [name for name, job in self._jobs.items() if job.state.state != "running"]
-        for name in ended[: max(len(ended) - KEPT, 0)]:
+        for name in ended[: max(len(ended) - MAX_ENDED_JOBS, 0)]:
             del self._jobs[name]
 
 
 class _Job:
-    """One job: its state, its thread, and the ``Report`` that its work calls."""
+    """One job: its state, its thread, and the ``JobProgress`` that its work calls."""
 
     def __init__(
         self,
@@ -168,7 +168,7 @@ class _Job:
         self._cancelled = threading.Event()
         self._stop: Callable[[], None] = lambda: None
 
-    def begin(self, work: Work, ended: Callable[[JobState], None]) -> None:
+    def begin(self, work: JobFunction, ended: Callable[[JobState], None]) -> None:
         """Run the work in a thread."""
         self._tell(self.state.message())
         self.thread = threading.Thread(
@@ -183,13 +183,13 @@ class _Job:
             self._stop()
 
     def on_cancel(self, stop: Callable[[], None]) -> None:
-        """See ``Report``."""
+        """See ``JobProgress``."""
         self._stop = stop
         if self._cancelled.is_set():
             stop()
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """See ``Report``."""
+        """See ``JobProgress``."""
         if self._cancelled.is_set():
             raise CancelledError
         now = self._clock()
@@ -198,11 +198,11 @@ class _Job:
         self.state = replace(
             self.state, stage=stage, done=done, total=total, note=note, share=share, left_s=left_s
         )
-        if fresh or now - self._told >= SOONEST_S:
+        if fresh or now - self._told >= MIN_INTERVAL_S:
             self._told = now
             self._tell(self.state.message())
 
-    def _run(self, work: Work, ended: Callable[[JobState], None]) -> None:
+    def _run(self, work: JobFunction, ended: Callable[[JobState], None]) -> None:
         try:
             result = work(self)
             last = replace(self.state, state="done", note="", share=1.0, left_s=0.0, result=result)
@@ -210,14 +210,14 @@ class _Job:
         except CancelledError:
             last = replace(self.state, state="cancelled", note="", left_s=None)
         except Exception as error:  # Whatever it is, the job says so and ends.
-            last = replace(self.state, state="failed", note=said(error), left_s=None)
+            last = replace(self.state, state="failed", note=describe_error(error), left_s=None)
         if self._cancelled.is_set() and last.state == "failed":
             last = replace(last, state="cancelled", note="")
         self.state = last
         self._tell(last.message())
 
 
-def said(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Return what went wrong as one line."""
     if isinstance(error, World2MinecraftError):
         return one_line(error)

@@ -18,7 +18,7 @@ from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.floorplans import read_roomplan
 from world2minecraft.reconstruction.opening import scene_name
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
-from world2minecraft.runs import make_from_plan, make_run
+from world2minecraft.runs import run_capture, run_plan
 
 SURVEY, PICTURE = "survey.json", "survey.png"
 DEMO_SEED, DEMO_FRAMES = 5, 40  # Those of ``w2m demo``.
@@ -89,7 +89,7 @@ def _rows(lines: list[str]) -> list[list[str]]:
     return [[name, text.strip()] for name, _, text in rows if name not in doubts]
 
 
-def parameters_of(choice: dict[str, Any]) -> Parameters:
+def parameters_of_choice(choice: dict[str, Any]) -> Parameters:
     """Return the parameters of what a person chose.
 
     Args:
@@ -113,12 +113,12 @@ def reconstruct(
     capture: str, out: str, choice: dict[str, Any], progress: Progress
 ) -> dict[str, Any]:
     """Turn a capture into a run's folder; return ``out`` and what came of it."""
-    source, target, chosen = Path(capture), Path(out), parameters_of(choice)
+    source, target, chosen = Path(capture), Path(out), parameters_of_choice(choice)
     plan = find_lone_roomplan(source)
     if plan is not None:
-        built = make_from_plan(plan, target, chosen, progress, scene_name(source))
+        built = run_plan(plan, target, chosen, progress, scene_name(source))
         return {"out": out, "objects": built.objects}
-    facts = make_run(source, target, chosen, progress=progress)
+    facts = run_capture(source, target, chosen, progress=progress)
     return {"out": out, "objects": len(facts["objects"]), "notes": facts["scan"]["notes"]}
 
 
@@ -133,5 +133,5 @@ def demo(
     capture = target / "capture"
     scan_room(room, capture, frames=frames or DEMO_FRAMES, seed=seed, progress=progress)
     chosen = Parameters(build=BuildParameters(plaque=f"A {kind} room"))
-    facts = make_run(capture, target, chosen, progress=progress)
+    facts = run_capture(capture, target, chosen, progress=progress)
     return {"out": out, "objects": len(facts["objects"])}

@@ -16,18 +16,18 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import WorkerError, World2MinecraftError
-from world2minecraft.sceneforge.jobs.jobs import Report, Work
+from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 
 WORKER = (sys.executable, "-m", "world2minecraft.sceneforge.jobs.worker")
-PATIENCE_S = 3.0  # A process that was asked to end has so long.
+GRACE_S = 3.0  # A process that was asked to end has so long.
 ON_WINDOWS = sys.platform == "win32"
 
 
-class ToldError(World2MinecraftError):
+class ReportedError(World2MinecraftError):
     """What a process said went wrong, as it said it."""
 
 
-def run_apart(task: str, within: Path | None = None, **needs: Any) -> Work:
+def run_in_subprocess(task: str, within: Path | None = None, **needs: Any) -> JobFunction:
     """Return the work of a job that does a task of ``worker.TASKS`` in a process.
 
     Args:
@@ -36,18 +36,18 @@ def run_apart(task: str, within: Path | None = None, **needs: Any) -> Work:
         needs: JSON values that the task is given.
     """
 
-    def work(report: Report) -> Any:
+    def work(report: JobProgress) -> Any:
         try:
-            return _follow(begin(task, needs), report)
-        except ToldError as error:
-            raise ToldError(
+            return _relay(start_worker(task, needs), report)
+        except ReportedError as error:
+            raise ReportedError(
                 str(error).replace(f"{within}{os.sep}", "") if within else error
             ) from None
 
     return work
 
 
-def begin(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes]":
+def start_worker(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes]":
     """Start a process that does a task."""
     process = subprocess.Popen(
         WORKER,
@@ -69,19 +69,19 @@ def _pipe(stream: Any) -> Any:
     return stream
 
 
-def _follow(process: "subprocess.Popen[bytes]", report: Report) -> Any:
+def _relay(process: "subprocess.Popen[bytes]", report: JobProgress) -> Any:
     """Relay what a process says to a job, and return its result."""
-    report.on_cancel(lambda: end(process))
+    report.on_cancel(lambda: stop_worker(process))
     try:
         for line in _pipe(process.stdout):
             said = json.loads(line)
             if "error" in said:
-                raise ToldError(said["error"])
+                raise ReportedError(said["error"])
             if "result" in said:
                 return said["result"]
             report(said["stage"], said["done"], said["total"], said["note"])
     finally:
-        end(process)
+        stop_worker(process)
     code = process.returncode
     if code == -signal.SIGTERM:
         raise WorkerError("the work was ended from outside")
@@ -89,14 +89,14 @@ def _follow(process: "subprocess.Popen[bytes]", report: Report) -> Any:
     raise WorkerError(f"the work ended without a result: {reason}; try a smaller scale")
 
 
-def end(process: "subprocess.Popen[bytes]") -> None:
+def stop_worker(process: "subprocess.Popen[bytes]") -> None:
     """End a process and what it began."""
     with suppress(OSError):
         _pipe(process.stdin).close()
     if process.poll() is None:
         _signal(process, signal.SIGTERM)
         try:
-            process.wait(PATIENCE_S)
+            process.wait(GRACE_S)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()

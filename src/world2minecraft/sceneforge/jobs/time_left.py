@@ -17,7 +17,7 @@ PICTURE_S = {"photos": 0.05, "poses": 0.7, "shrink": 0.05, "stereo": 0.65}
 DEMO_FRAMES = 40
 
 
-def reconstruct_s(survey: Mapping[str, Any] | None) -> dict[str, float]:
+def reconstruct_stage_seconds(survey: Mapping[str, Any] | None) -> dict[str, float]:
     """Return the stages of a capture's way to a room, each with its usual seconds.
 
     Args:
@@ -36,9 +36,9 @@ def reconstruct_s(survey: Mapping[str, Any] | None) -> dict[str, float]:
     return first | sensed | LATER_S
 
 
-def demo_s() -> dict[str, float]:
+def demo_stage_seconds() -> dict[str, float]:
     """Return the stages of the demo room, from nothing."""
-    return {"room": 0.3, "capture": 4.0} | reconstruct_s(None)
+    return {"room": 0.3, "capture": 4.0} | reconstruct_stage_seconds(None)
 
 
 PRIOR_S = 4.0  # For so long the usual lengths weigh as much as the clock.

@@ -13,7 +13,7 @@ from typing import IO, Any
 
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.registry import Registry
-from world2minecraft.sceneforge.jobs.jobs import said
+from world2minecraft.sceneforge.jobs.jobs import describe_error
 
 TASKS = Registry(
     "forge_task",
@@ -31,21 +31,21 @@ TASKS = Registry(
 
 def main() -> None:
     """Do the task that stdin names."""
-    answers = own_stdout()
+    answers = take_stdout()
     task, needs = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_stdin, daemon=True).start()
-    say(answers, outcome(task, needs, Steps(answers)))
+    write_line(answers, run_task(task, needs, LineProgress(answers)))
 
 
-def outcome(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, Any]:
+def run_task(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, Any]:
     """Do a task and return its last line."""
     try:
         return {"result": TASKS.load(task)(progress=progress, **needs)}
     except Exception as error:  # Whatever it is, it is said as one line.
-        return {"error": said(error)}
+        return {"error": describe_error(error)}
 
 
-class Steps:
+class LineProgress:
     """The ``Progress`` of a task: each step is a line."""
 
     def __init__(self, answers: IO[str]):
@@ -54,10 +54,10 @@ class Steps:
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
         """Say one step."""
         step = {"stage": stage, "done": int(done), "total": int(total), "note": note}
-        say(self._answers, step)
+        write_line(self._answers, step)
 
 
-def say(answers: IO[str], line: dict[str, Any]) -> None:
+def write_line(answers: IO[str], line: dict[str, Any]) -> None:
     """Write one line; when nobody reads it, the process ends."""
     try:
         answers.write(json.dumps(line) + "\n")
@@ -66,7 +66,7 @@ def say(answers: IO[str], line: dict[str, Any]) -> None:
         os._exit(1)
 
 
-def own_stdout() -> IO[str]:
+def take_stdout() -> IO[str]:
     """Return the stream of answers; what libraries print goes to stderr instead."""
     kept = os.dup(1)
     os.dup2(2, 1)

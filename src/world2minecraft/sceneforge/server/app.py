@@ -16,13 +16,13 @@ from world2minecraft.sceneforge.queries import QUERIES
 from world2minecraft.sceneforge.server import compare_routes, export_routes, photo_routes
 from world2minecraft.sceneforge.server import start_routes as start
 from world2minecraft.sceneforge.server.build_routes import build_routes
-from world2minecraft.sceneforge.server.failures import ANSWERS
+from world2minecraft.sceneforge.server.failures import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.guard import Guard
 from world2minecraft.sceneforge.server.limits import BodyLimit
-from world2minecraft.sceneforge.server.requests import object_of
+from world2minecraft.sceneforge.server.requests import read_json_object
 from world2minecraft.sceneforge.server.socket import live
 from world2minecraft.sceneforge.session import NO_ROOM, Session
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.workspace import Workspace
 
 STATIC = Path(__file__).parents[1] / "static"
 
@@ -30,7 +30,7 @@ STATIC = Path(__file__).parents[1] / "static"
 def build_app(
     session: Session,
     *,
-    workshop: Workshop | None = None,
+    workshop: Workspace | None = None,
     token: str,
     port: int,
     hosts: Iterable[str] = (),
@@ -48,7 +48,7 @@ def build_app(
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[guard, Middleware(BodyLimit)],
-        exception_handlers=ANSWERS,
+        exception_handlers=EXCEPTION_HANDLERS,
     )
     app.state.session, app.state.workshop = session, workshop
     return app
@@ -96,7 +96,7 @@ async def _volume(request: Request) -> Response:
 
 
 async def _do(request: Request) -> Response:
-    return JSONResponse(await session_of(request).do(await object_of(request), "script"))
+    return JSONResponse(await session_of(request).do(await read_json_object(request), "script"))
 
 
 async def _undo(request: Request) -> Response:
@@ -112,11 +112,11 @@ async def _save(request: Request) -> Response:
 
 
 async def _preview(request: Request) -> Response:
-    return JSONResponse(await session_of(request).preview(await object_of(request)))
+    return JSONResponse(await session_of(request).preview(await read_json_object(request)))
 
 
 async def _ask(request: Request) -> Response:
-    fields = await object_of(request)
+    fields = await read_json_object(request)
     return JSONResponse(await session_of(request).ask(request.path_params["name"], fields))
 
 

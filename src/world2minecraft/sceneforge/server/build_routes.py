@@ -20,10 +20,10 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
-from world2minecraft.sceneforge.array_messages import packed_arrays
-from world2minecraft.sceneforge.block_preview import Build, BuildOptions, HeldScene
+from world2minecraft.sceneforge.array_messages import pack_arrays
+from world2minecraft.sceneforge.block_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.jobs.jobs import JobState, said
+from world2minecraft.sceneforge.jobs.jobs import JobState, describe_error
 from world2minecraft.sceneforge.session import Session
 
 # What stops a person who walks in the page: the boxes of a build's blocks, or of voxels.
@@ -34,12 +34,12 @@ from world2minecraft.sceneforge.session import Session
 MAGIC = b"W2MC"
 
 
-def build_collision(build: Build) -> bytes:
+def build_collision(build: BlockBuild) -> bytes:
     """Return the collision boxes of a build, in cells of its volume."""
     return _bytes(BlockWorld.of_volume(build.volume), build.facts())
 
 
-def voxel_collision(scene: HeldScene) -> bytes:
+def voxel_collision(scene: SceneSnapshot) -> bytes:
     """Return the occupied cells of a scene as full cubes, a block a voxel, in block axes."""
     grid = scene.grid
     solid = np.moveaxis(grid.occupied[:, ::-1], 1, 2)  # Room -y is block z.
@@ -62,7 +62,7 @@ def _bytes(world: BlockWorld, told: dict[str, Any]) -> bytes:
         "boxes": np.concatenate(world.shapes).astype(np.float32),
         "starts": starts.astype(np.int32),
     }
-    return packed_arrays(MAGIC, told, arrays)
+    return pack_arrays(MAGIC, told, arrays)
 
 
 def _block_axes_to_room(grid: OccupancyGrid) -> np.ndarray:
@@ -95,18 +95,18 @@ def _middle(grid: OccupancyGrid, where: np.ndarray) -> np.ndarray:
     return grid.origin_m + middle * grid.voxel_m
 
 
-KEPT = 6  # Packed answers; a room has about a megabyte each.
-SOON_S = 1.0  # What is ready by then needs no word.
+MAX_CACHED = 6  # Packed answers; a room has about a megabyte each.
+NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
 Key = tuple[Any, ...]
 
 
-class Builds:
+class BuildCache:
     """The builds of one server: made one after another, the last ones kept."""
 
     def __init__(self, session: Session):
         self.session = session
         self._turn = asyncio.Lock()
-        self._volumes: OrderedDict[Key, Build] = OrderedDict()
+        self._volumes: OrderedDict[Key, BlockBuild] = OrderedDict()
         self._packed: OrderedDict[Key, bytes] = OrderedDict()
 
     async def build(self, options: BuildOptions) -> tuple[int, bytes]:
@@ -123,20 +123,20 @@ class Builds:
             ("boxes", options), lambda scene: build_collision(self._of(scene, options))
         )
 
-    def _held(self, editor: Editor) -> HeldScene:
+    def _held(self, editor: Editor) -> SceneSnapshot:
         """Copy the scene in its turn: while it is built another room may be opened."""
-        return replace(HeldScene.of(editor), shown=self.session.shown)
+        return replace(SceneSnapshot.of(editor), shown=self.session.shown)
 
-    def _of(self, scene: HeldScene, options: BuildOptions) -> Build:
+    def _of(self, scene: SceneSnapshot, options: BuildOptions) -> BlockBuild:
         """Return the build of a scene; called by one thread at a time."""
         key = (scene.shown, scene.rev, options)
         if key not in self._volumes:
-            self._volumes[key] = Build.of(scene, options)
+            self._volumes[key] = BlockBuild.of(scene, options)
             while len(self._volumes) > 2:
                 self._volumes.popitem(last=False)
         return self._volumes[key]
 
-    async def _made(self, what: Key, make: Callable[[HeldScene], bytes]) -> tuple[int, bytes]:
+    async def _made(self, what: Key, make: Callable[[SceneSnapshot], bytes]) -> tuple[int, bytes]:
         async with self._turn:
             document = self.session.document
             key = (*what, self.session.shown, document.rev)
@@ -145,14 +145,14 @@ class Builds:
             scene = await self.session.asked(self._held)
             packed = await self._told(asyncio.to_thread(lambda: _gzip(make(scene))))
             self._packed[(*what, scene.shown, scene.rev)] = packed
-            while len(self._packed) > KEPT:
+            while len(self._packed) > MAX_CACHED:
                 self._packed.popitem(last=False)
             return scene.rev, packed
 
     async def _told(self, work: Coroutine[Any, Any, bytes]) -> bytes:
         """Wait for a build; after a second tell the tabs of it."""
         task = asyncio.ensure_future(work)
-        done, _ = await asyncio.wait([task], timeout=SOON_S)
+        done, _ = await asyncio.wait([task], timeout=NOTIFY_AFTER_S)
         if done:
             return task.result()
         state = JobState("build", "Building the blocks", "build")
@@ -160,7 +160,9 @@ class Builds:
         try:
             packed = await task
         except Exception as error:
-            self.session.hub.tell(replace(state, state="failed", note=said(error)).message())
+            self.session.hub.tell(
+                replace(state, state="failed", note=describe_error(error)).message()
+            )
             raise
         self.session.hub.tell(replace(state, state="done").message())
         return packed
@@ -184,10 +186,10 @@ async def _collision(request: Request) -> Response:
     return _answer(request, *await _builds(request).collision(options))
 
 
-def _builds(request: Request) -> Builds:
+def _builds(request: Request) -> BuildCache:
     state = request.app.state
     if not hasattr(state, "builds"):
-        state.builds = Builds(state.session)
+        state.builds = BuildCache(state.session)
     return state.builds
 
 

@@ -21,19 +21,19 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.sceneforge.array_messages import labels_bytes
 from world2minecraft.sceneforge.comparison import (
-    beside_reached,
-    checked_name,
-    labels_of_file,
-    labels_of_truth,
+    check_suffix,
+    mask_unreached,
+    read_file_labels,
+    read_truth_labels,
 )
-from world2minecraft.sceneforge.server.requests import workshop_of
-from world2minecraft.sceneforge.workshop import Compared, Workshop
+from world2minecraft.sceneforge.server.requests import get_workspace
+from world2minecraft.sceneforge.workspace import Comparison, Workspace
 
 
 def routes() -> list[BaseRoute]:
     """All that comparing asks for."""
     return [
-        Route("/api/compare", _told),
+        Route("/api/compare", _status),
         Route("/api/compare", _end, methods=["DELETE"]),
         Route("/api/compare/truth", _truth, methods=["POST"]),
         Route("/api/compare/opened", _opened, methods=["POST"]),
@@ -42,40 +42,40 @@ def routes() -> list[BaseRoute]:
     ]
 
 
-async def _told(request: Request) -> Response:
-    return _answer(workshop_of(request))
+async def _status(request: Request) -> Response:
+    return _answer(get_workspace(request))
 
 
 async def _end(request: Request) -> Response:
-    shop = workshop_of(request)
+    shop = get_workspace(request)
     shop.compared = None
     return _answer(shop)
 
 
 async def _truth(request: Request) -> Response:
-    shop = workshop_of(request)
+    shop = get_workspace(request)
     folder = shop.truth_folder()
     if folder is None:
         raise UsageError("this room has no truth; only rooms that were generated have one")
     editor = shop.editor
     labels = await asyncio.to_thread(
-        labels_of_truth, folder, editor.draft, editor.opened.scan_to_room
+        read_truth_labels, folder, editor.draft, editor.opened.scan_to_room
     )
-    labels = beside_reached(labels, editor.opened.grid.source)
-    shop.compared = Compared("truth", labels, editor)
+    labels = mask_unreached(labels, editor.opened.grid.source)
+    shop.compared = Comparison("truth", labels, editor)
     return _answer(shop)
 
 
 async def _opened(request: Request) -> Response:
-    shop = workshop_of(request)
-    shop.compared = Compared("opened", shop.editor.opened.grid.labels, shop.editor)
+    shop = get_workspace(request)
+    shop.compared = Comparison("opened", shop.editor.opened.grid.labels, shop.editor)
     return _answer(shop)
 
 
 async def _file(request: Request) -> Response:
-    shop = workshop_of(request)
+    shop = get_workspace(request)
     editor, name = shop.editor, request.query_params.get("name", "")
-    suffix = checked_name(name)
+    suffix = check_suffix(name)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         # The file's own name tells ours from others: room.npz, occ.json.
         place = Path(scratch) / f"{'occ' if suffix == '.json' else 'compared'}{suffix}"
@@ -83,23 +83,23 @@ async def _file(request: Request) -> Response:
             async for chunk in request.stream():
                 stream.write(chunk)
         try:
-            labels = await asyncio.to_thread(labels_of_file, place, editor.draft)
+            labels = await asyncio.to_thread(read_file_labels, place, editor.draft)
         except World2MinecraftError as error:
             told = str(error).replace(str(place), Path(name).name[:80])
             raise UsageError(told) from error
-    shop.compared = Compared(Path(name).name[:80], labels, editor)
+    shop.compared = Comparison(Path(name).name[:80], labels, editor)
     return _answer(shop)
 
 
 async def _labels(request: Request) -> Response:
-    shop = workshop_of(request)
+    shop = get_workspace(request)
     if shop.compared is None or shop.compared.editor is not shop.session.editor:
         raise UsageError("nothing is compared with; choose a file or the truth first")
     data = labels_bytes(shop.editor.draft, shop.compared.labels)
     return Response(data, media_type="application/octet-stream", headers={"X-Rev": "0"})
 
 
-def _answer(shop: Workshop) -> Response:
+def _answer(shop: Workspace) -> Response:
     compared = shop.compared
     is_here = compared is not None and compared.editor is shop.session.editor
     return JSONResponse(

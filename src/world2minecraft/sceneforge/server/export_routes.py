@@ -25,21 +25,21 @@ from world2minecraft.editing.world_build import check_air
 from world2minecraft.minecraft.server.rcon import parse_address
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_versions
 from world2minecraft.sceneforge import exports
-from world2minecraft.sceneforge.jobs.jobs import Report, Work
-from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
-from world2minecraft.sceneforge.server.requests import object_of, workshop_of
-from world2minecraft.sceneforge.server.start_routes import SCALES, USUAL_SCALE, checked_choice
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
+from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
+from world2minecraft.sceneforge.server.requests import get_workspace, read_json_object
+from world2minecraft.sceneforge.server.start_routes import DEFAULT_SCALE, SCALES, check_choice
+from world2minecraft.sceneforge.workspace import Workspace
 
 CHOICES = ("blocks_per_metre", "style", "mc_version")
-MOST_BLOCKS = 30_000_000  # The game's own end of the world.
-USUAL_S = {"build": 3.0, "write": 1.0}
+MAX_COORDINATE = 30_000_000  # The game's own end of the world.
+STAGE_SECONDS = {"build": 3.0, "write": 1.0}
 
 
 def routes() -> list[BaseRoute]:
     """All that exporting asks for."""
     return [
-        Route("/api/exports", _told),
+        Route("/api/exports", _options),
         Route("/api/exports", _export, methods=["POST"]),
         Route("/api/exports/files/{id}", _file),
         Route("/api/install", _install, methods=["POST"]),
@@ -48,13 +48,13 @@ def routes() -> list[BaseRoute]:
     ]
 
 
-async def _told(request: Request) -> Response:
+async def _options(request: Request) -> Response:
     games, worlds = await asyncio.to_thread(lambda: (exports.games_here(), exports.worlds_here()))
     return JSONResponse(
         {
-            "forms": [vars(one) for one in exports.forms()],
+            "forms": [vars(one) for one in exports.export_forms()],
             "scales": list(SCALES),
-            "scale": USUAL_SCALE,
+            "scale": DEFAULT_SCALE,
             "styles": list(STYLES),
             "versions": [version.name for version in reversed(game_versions())],
             "version": DEFAULT_VERSION,
@@ -71,29 +71,29 @@ async def _told(request: Request) -> Response:
 
 
 async def _export(request: Request) -> Response:
-    shop, told = workshop_of(request), await object_of(request)
-    form = exports.form_of(str(told.pop("form", "")))
+    shop, told = get_workspace(request), await read_json_object(request)
+    form = exports.get_export_form(str(told.pop("form", "")))
     choice = _choice(told)
     editor, number = shop.editor, secrets.token_hex(8)
     target = shop.exports / number
 
-    def data(report: Report) -> dict[str, Any]:
+    def data(report: JobProgress) -> dict[str, Any]:
         target.mkdir(parents=True, exist_ok=True)
         path = exports.write_data(editor, form.id, target)
         return {"id": number, "file": path.name, "bytes": path.stat().st_size, "lost": []}
 
-    def built(report: Report) -> dict[str, Any]:
+    def built(report: JobProgress) -> dict[str, Any]:
         with shop.snapshot(editor) as folder:
             needs = {"form": form.id, "choice": choice, "target": str(target)}
-            made = run_apart("export", folder, folder=str(folder), **needs)(report)
+            made = run_in_subprocess("export", folder, folder=str(folder), **needs)(report)
         return {"id": number} | made
 
-    return _begun(shop, editor.name, built if form.built else data)
+    return _start_job(shop, editor.name, built if form.built else data)
 
 
 async def _file(request: Request) -> Response:
     number = request.path_params["id"]
-    folder = workshop_of(request).exports / number
+    folder = get_workspace(request).exports / number
     made = [one for one in folder.iterdir() if one.is_file()] if _is_export(folder, number) else []
     if not made:
         raise UsageError(f"no export is named {number[:40]!r}; export it again")
@@ -105,7 +105,7 @@ def _is_export(folder: Path, number: str) -> bool:
 
 
 async def _install(request: Request) -> Response:
-    shop, told = workshop_of(request), await object_of(request)
+    shop, told = get_workspace(request), await read_json_object(request)
     games = await asyncio.to_thread(exports.games_here)
     key, name = str(told.pop("game", "")), told.pop("name", "")
     if key not in games:
@@ -114,33 +114,35 @@ async def _install(request: Request) -> Response:
         raise UsageError("a world's name is a short text")
     choice, game = _choice(told), games[key]
     place = [game.name, str(game.saves), game.version]
-    return _begun_apart(shop, "install", choice=choice, game=place, name=name)
+    return _start_subprocess_job(shop, "install", choice=choice, game=place, name=name)
 
 
 async def _into_world(request: Request) -> Response:
-    shop, told = workshop_of(request), await object_of(request)
+    shop, told = get_workspace(request), await read_json_object(request)
     worlds = await asyncio.to_thread(exports.worlds_here)
     key = str(told.pop("world", ""))
     if key not in worlds:
         raise UsageError("choose one of the worlds that were found on this machine")
-    place = checked_place(told)
+    place = parse_place(told)
     choice = _choice(told)
-    return _begun_apart(shop, "into_world", choice=choice, world=str(worlds[key][1]), **place)
+    return _start_subprocess_job(
+        shop, "into_world", choice=choice, world=str(worlds[key][1]), **place
+    )
 
 
 async def _on_server(request: Request) -> Response:
-    shop, told = workshop_of(request), await object_of(request)
+    shop, told = get_workspace(request), await read_json_object(request)
     address, password = told.pop("address", ""), told.pop("password", "")
     if not isinstance(address, str) or not isinstance(password, str) or not password:
         raise UsageError("give the server's address and the password of its console")
     parse_address(address)
-    place = checked_place(told)
+    place = parse_place(told)
     choice = _choice(told)
     needs = {"address": address, "password": password}
-    return _begun_apart(shop, "on_server", choice=choice, **needs, **place)
+    return _start_subprocess_job(shop, "on_server", choice=choice, **needs, **place)
 
 
-def checked_place(told: dict[str, Any]) -> dict[str, Any]:
+def parse_place(told: dict[str, Any]) -> dict[str, Any]:
     """Take ``at``, ``turns`` and ``air`` out of what was told, and return them.
 
     Raises:
@@ -148,7 +150,7 @@ def checked_place(told: dict[str, Any]) -> dict[str, Any]:
     """
     at, turns, air = told.pop("at", None), told.pop("turns", 0), told.pop("air", "room")
     whole = isinstance(at, list) and len(at) == 3 and all(type(one) is int for one in at)
-    if not whole or any(abs(one) > MOST_BLOCKS for one in at):
+    if not whole or any(abs(one) > MAX_COORDINATE for one in at):
         raise UsageError("at must be three whole numbers, x, y and z, as the F3 screen shows")
     if type(turns) is not int or not -3 <= turns <= 3:
         raise UsageError(f"turns must be -3 to 3 quarter turns, not {str(turns)[:20]!r}")
@@ -159,18 +161,18 @@ def checked_place(told: dict[str, Any]) -> dict[str, Any]:
 def _choice(told: dict[str, Any]) -> dict[str, Any]:
     if strange := sorted(told.keys() - set(CHOICES)):
         raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(CHOICES)}")
-    return checked_choice(told)
+    return check_choice(told)
 
 
-def _begun_apart(shop: Workshop, task: str, **needs: Any) -> Response:
+def _start_subprocess_job(shop: Workspace, task: str, **needs: Any) -> Response:
     editor = shop.editor
 
-    def work(report: Report) -> Any:
+    def work(report: JobProgress) -> Any:
         with shop.snapshot(editor) as folder:
-            return run_apart(task, folder, folder=str(folder), **needs)(report)
+            return run_in_subprocess(task, folder, folder=str(folder), **needs)(report)
 
-    return _begun(shop, editor.name, work)
+    return _start_job(shop, editor.name, work)
 
 
-def _begun(shop: Workshop, title: str, work: Work) -> Response:
-    return JSONResponse({"job": shop.jobs.start(title, work, USUAL_S)})
+def _start_job(shop: Workspace, title: str, work: JobFunction) -> Response:
+    return JSONResponse({"job": shop.jobs.start(title, work, STAGE_SECONDS)})

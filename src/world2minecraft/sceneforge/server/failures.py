@@ -9,7 +9,7 @@ from starlette.responses import JSONResponse, Response
 from world2minecraft.core.errors import World2MinecraftError, one_line
 
 
-def explained(error: BaseException) -> str:
+def explain_error(error: BaseException) -> str:
     """Return one line: what was expected, or what to do."""
     if isinstance(error, World2MinecraftError):
         return one_line(error)
@@ -20,8 +20,8 @@ def explained(error: BaseException) -> str:
     return f"unexpected {type(error).__name__}; the terminal of w2m forge has the details"
 
 
-async def _refused(request: Request, error: Exception) -> Response:
-    return JSONResponse({"error": explained(error)}, 400)
+async def _usage_error(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explain_error(error)}, 400)
 
 
 async def _http(request: Request, error: Exception) -> Response:
@@ -29,9 +29,13 @@ async def _http(request: Request, error: Exception) -> Response:
     return JSONResponse({"error": detail}, status, getattr(error, "headers", None))
 
 
-async def _broke(request: Request, error: Exception) -> Response:
-    return JSONResponse({"error": explained(error)}, 500)
+async def _unexpected_error(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explain_error(error)}, 500)
 
 
 # How an application answers, whatever goes wrong: JSON with one line.
-ANSWERS = {World2MinecraftError: _refused, HTTPException: _http, Exception: _broke}
+EXCEPTION_HANDLERS = {
+    World2MinecraftError: _usage_error,
+    HTTPException: _http,
+    Exception: _unexpected_error,
+}

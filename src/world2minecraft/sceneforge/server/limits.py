@@ -79,7 +79,7 @@ class BodyLimit:
                 await _answer(send, 413, _too_large(most))
 
 
-def json_of(data: bytes | str) -> Any:
+def parse_json(data: bytes | str) -> Any:
     """Return what JSON text says.
 
     Raises:

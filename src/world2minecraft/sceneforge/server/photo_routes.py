@@ -15,8 +15,8 @@ from starlette.routing import BaseRoute, Route
 
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.sceneforge.photos import RunPhotos
-from world2minecraft.sceneforge.server.failures import explained
-from world2minecraft.sceneforge.server.requests import workshop_of
+from world2minecraft.sceneforge.server.failures import explain_error
+from world2minecraft.sceneforge.server.requests import get_workspace
 
 
 def routes() -> list[BaseRoute]:
@@ -33,7 +33,7 @@ async def _all(request: Request) -> Response:
     try:
         found = await asyncio.to_thread(_photos, request)
     except World2MinecraftError as error:
-        return JSONResponse({"frames": [], "why": explained(error)})
+        return JSONResponse({"frames": [], "why": explain_error(error)})
     return JSONResponse({"frames": found.told(), "why": ""})
 
 
@@ -52,4 +52,4 @@ async def _jpeg(request: Request, small: bool) -> Response:
 
 
 def _photos(request: Request) -> RunPhotos:
-    return workshop_of(request).photos()
+    return get_workspace(request).photos()

@@ -5,11 +5,11 @@ from typing import Any
 from starlette.requests import Request
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.sceneforge.server.limits import json_of
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.server.limits import parse_json
+from world2minecraft.sceneforge.workspace import Workspace
 
 
-def workshop_of(request: Request) -> Workshop:
+def get_workspace(request: Request) -> Workspace:
     """Return the workshop of the server.
 
     Raises:
@@ -21,14 +21,14 @@ def workshop_of(request: Request) -> Workshop:
     return shop
 
 
-async def object_of(request: Request) -> dict[str, Any]:
+async def read_json_object(request: Request) -> dict[str, Any]:
     """Return the JSON object of a request's body; an empty body is an empty object.
 
     Raises:
         UsageError: it is none.
     """
     body = await request.body()
-    value = json_of(body) if body else {}
+    value = parse_json(body) if body else {}
     if not isinstance(value, dict):
         raise UsageError("the body must be a JSON object")
     return value

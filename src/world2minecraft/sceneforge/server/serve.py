@@ -19,8 +19,8 @@ from world2minecraft.sceneforge.server.app import build_app
 from world2minecraft.sceneforge.server.guard import new_token
 from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES
 from world2minecraft.sceneforge.session import Session
-from world2minecraft.sceneforge.uploads import MOST_UPLOAD_BYTES, user_home
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.uploads import MAX_UPLOAD_BYTES, user_home
+from world2minecraft.sceneforge.workspace import Workspace
 
 LOOPBACK = "127.0.0.1"
 PORT = 8484  # The same each time, so that the page's own settings are found again.
@@ -144,11 +144,11 @@ class ForgeServer(PageServer):
         token: str | None = None,
         hosts: Iterable[str] = (),
         home: Path | None = None,
-        most_upload_bytes: int = MOST_UPLOAD_BYTES,
+        most_upload_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
     ):
         self.session = Session(editor)
-        self.workshop = Workshop(
+        self.workshop = Workspace(
             self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
         )
         is_open = not _is_loopback(host)

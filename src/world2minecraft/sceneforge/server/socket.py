@@ -11,9 +11,9 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from world2minecraft.core.errors import UsageError, World2MinecraftError
-from world2minecraft.sceneforge.broadcast import Tab, as_text
-from world2minecraft.sceneforge.server.failures import explained
-from world2minecraft.sceneforge.server.limits import json_of
+from world2minecraft.sceneforge.broadcast import Tab, to_json_text
+from world2minecraft.sceneforge.server.failures import explain_error
+from world2minecraft.sceneforge.server.limits import parse_json
 from world2minecraft.sceneforge.session import Session
 
 TOO_MANY = 1013  # The websocket code for "try again later".
@@ -31,7 +31,7 @@ async def live(socket: WebSocket) -> None:
         await socket.accept()
         running = [one for one in session.jobs.states() if one["state"] == "running"]
         for message in (session.hello(), *running):  # Of those that ended GET /api/jobs tells.
-            tab.put(as_text(message))
+            tab.put(to_json_text(message))
         sender = asyncio.create_task(_send(socket, tab, session))
         while True:
             await _answer(await socket.receive(), tab, session)
@@ -58,16 +58,16 @@ async def _answer(received: Mapping[str, Any], tab: Tab, session: Session) -> No
         raise WebSocketDisconnect(received.get("code", 1005))
     message: Any = None
     try:
-        message = json_of(received.get("text") or received.get("bytes") or b"")
+        message = parse_json(received.get("text") or received.get("bytes") or b"")
         if not isinstance(message, dict):
             raise UsageError('a message is an object with "type"')
         if await _do(message, tab, session):
-            tab.put(as_text({"type": "done", "seq": _seq(message), "rev": session.rev}))
+            tab.put(to_json_text({"type": "done", "seq": _seq(message), "rev": session.rev}))
     except Exception as error:
         if not isinstance(error, World2MinecraftError):
             session.report(error)
-        text = explained(error)
-        tab.put(as_text({"type": "refused", "seq": _seq(message), "error": text}))
+        text = explain_error(error)
+        tab.put(to_json_text({"type": "refused", "seq": _seq(message), "error": text}))
 
 
 async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:

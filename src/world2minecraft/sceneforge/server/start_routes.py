@@ -33,15 +33,15 @@ from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.procgen import BASE_KINDS
 from world2minecraft.sceneforge.document.identity import SUFFIX
 from world2minecraft.sceneforge.jobs.jobs import JobState
-from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of
-from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
-from world2minecraft.sceneforge.jobs.time_left import demo_s, reconstruct_s
-from world2minecraft.sceneforge.server.requests import object_of, workshop_of
+from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
+from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
+from world2minecraft.sceneforge.jobs.time_left import demo_stage_seconds, reconstruct_stage_seconds
+from world2minecraft.sceneforge.server.requests import get_workspace, read_json_object
 from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
-from world2minecraft.sceneforge.workshop import Workshop
+from world2minecraft.sceneforge.workspace import Workspace
 
 SCALES = (1, 2, 4, 12.5)
-USUAL_SCALE = 4
+DEFAULT_SCALE = 4
 CHUNK_BYTES = 4 << 20  # What a page sends at once; a lost connection costs at most so much.
 
 
@@ -49,10 +49,10 @@ def routes() -> list[BaseRoute]:
     """All that the start page asks for."""
     one = "/api/start/captures/{id}"
     return [
-        Route("/api/start", _all),
+        Route("/api/start", _overview),
         Route("/api/start/captures", _announce, methods=["POST"]),
         Route(one + "/files/{number:int}", _receive, methods=["PUT"]),
-        Route(one + "/look", _look, methods=["POST"]),
+        Route(one + "/look", _survey, methods=["POST"]),
         Route(one, _capture),
         Route(one, _forget, methods=["DELETE"]),
         Route(one + "/picture.png", _picture),
@@ -66,13 +66,13 @@ def routes() -> list[BaseRoute]:
     ]
 
 
-async def _all(request: Request) -> Response:
-    shop = workshop_of(request)
+async def _overview(request: Request) -> Response:
+    shop = get_workspace(request)
     known = {name: list(limits) for name, limits in LENGTHS_M.items() if name != "distance"}
     return JSONResponse(
         {
             "home": str(shop.home),
-            "captures": [_told(shop, one) for one in shop.captures.all()],
+            "captures": [_capture_json(shop, one) for one in shop.captures.all()],
             "recent": [
                 {
                     "id": f"recent-{n}",
@@ -85,7 +85,7 @@ async def _all(request: Request) -> Response:
             "most_bytes": shop.captures.most_bytes,
             "chunk_bytes": CHUNK_BYTES,
             "scales": list(SCALES),
-            "scale": USUAL_SCALE,
+            "scale": DEFAULT_SCALE,
             "styles": list(STYLES),
             "known": known,
             "wanted": shop.wanted,
@@ -93,7 +93,7 @@ async def _all(request: Request) -> Response:
     )
 
 
-def _told(shop: Workshop, one: CaptureFolder) -> dict[str, Any]:
+def _capture_json(shop: Workspace, one: CaptureFolder) -> dict[str, Any]:
     complete = one.complete
     return {
         "id": one.id,
@@ -109,9 +109,9 @@ def _told(shop: Workshop, one: CaptureFolder) -> dict[str, Any]:
 
 
 async def _announce(request: Request) -> Response:
-    told = await object_of(request)
+    told = await read_json_object(request)
     title = told.get("title") if isinstance(told.get("title"), str) else ""
-    made = workshop_of(request).captures.announce(str(title), told.get("files"))
+    made = get_workspace(request).captures.announce(str(title), told.get("files"))
     files = [{"path": one.path, "size": one.size} for one in made.files]
     return JSONResponse({"id": made.id, "title": made.title, "files": files})
 
@@ -135,21 +135,21 @@ async def _body(request: Request) -> AsyncIterator[bytes]:
 
 
 async def _capture(request: Request) -> Response:
-    shop, one = workshop_of(request), _named(request)
-    return JSONResponse(_told(shop, one) | {"held": one.held()})
+    shop, one = get_workspace(request), _named(request)
+    return JSONResponse(_capture_json(shop, one) | {"held": one.held()})
 
 
 async def _forget(request: Request) -> Response:
-    shop, one = workshop_of(request), _named(request)
+    shop, one = get_workspace(request), _named(request)
     opened = getattr(getattr(shop.session.editor, "opened", None), "folder", None)
     if opened is not None and Path(opened).resolve() == one.run.resolve():
         raise ConflictError(one.title, "its room is open; close it first")
     number = shop.job_of(one)
-    await asyncio.to_thread(_forgotten, shop, one.id, number)
+    await asyncio.to_thread(_delete_capture, shop, one.id, number)
     return JSONResponse({})
 
 
-def _forgotten(shop: Workshop, capture: str, job: str | None) -> None:
+def _delete_capture(shop: Workspace, capture: str, job: str | None) -> None:
     """End what is at work on a capture and delete it; in a thread, for both may take seconds."""
     if job is not None:
         shop.jobs.cancel(job)
@@ -157,27 +157,29 @@ def _forgotten(shop: Workshop, capture: str, job: str | None) -> None:
     shop.captures.forget(capture)
 
 
-async def _look(request: Request) -> Response:
-    shop, one = workshop_of(request), _named(request)
+async def _survey(request: Request) -> Response:
+    shop, one = get_workspace(request), _named(request)
     _check_ready(shop, one)
-    work = run_apart("survey", one.source.parent, capture=str(one.source), folder=str(one.folder))
+    work = run_in_subprocess(
+        "survey", one.source.parent, capture=str(one.source), folder=str(one.folder)
+    )
     shop.working[one.id] = number = shop.jobs.start(one.title, work, {"look": 4.0})
     return JSONResponse({"job": number})
 
 
 async def _reconstruct(request: Request) -> Response:
-    shop, one = workshop_of(request), _named(request)
-    choice = checked_choice(await object_of(request))
+    shop, one = get_workspace(request), _named(request)
+    choice = check_choice(await read_json_object(request))
     _check_ready(shop, one)
-    work = run_apart(
+    work = run_in_subprocess(
         "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
     )
-    number = shop.jobs.start(one.title, work, reconstruct_s(one.survey()))
+    number = shop.jobs.start(one.title, work, reconstruct_stage_seconds(one.survey()))
     shop.working[one.id] = number
     return JSONResponse({"job": number})
 
 
-def checked_choice(told: dict[str, Any]) -> dict[str, Any]:
+def check_choice(told: dict[str, Any]) -> dict[str, Any]:
     """Return what a person chose for a reconstruction.
 
     Raises:
@@ -187,13 +189,13 @@ def checked_choice(told: dict[str, Any]) -> dict[str, Any]:
     if strange := sorted(told.keys() - set(known)):
         raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(known)}")
     try:
-        parameters_of(told)
+        parameters_of_choice(told)
     except (TypeError, ValueError) as error:
         raise UsageError(f"a choice is of the wrong kind: {error}") from error
     return told
 
 
-def _check_ready(shop: Workshop, one: CaptureFolder) -> None:
+def _check_ready(shop: Workspace, one: CaptureFolder) -> None:
     if not one.complete:
         raise UsageError(f"{one.title!r} has not come whole; send its files first")
     if shop.job_of(one) is not None:
@@ -201,7 +203,7 @@ def _check_ready(shop: Workshop, one: CaptureFolder) -> None:
 
 
 async def _demo(request: Request) -> Response:
-    shop, told = workshop_of(request), await object_of(request)
+    shop, told = get_workspace(request), await read_json_object(request)
     kind, seed = told.get("kind", BASE_KINDS[0]), told.get("seed", 5)
     if kind not in BASE_KINDS:
         raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, not {str(kind)[:40]!r}")
@@ -213,12 +215,14 @@ async def _demo(request: Request) -> Response:
     name, title = f"demo/{kind}-{seed}", f"A {kind} room"
     if (running := shop.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
-    work = run_apart("demo", out=str(shop.home / name), kind=kind, seed=seed, frames=frames)
-    shop.working[name] = number = shop.jobs.start(title, work, demo_s(), _remember(shop))
+    work = run_in_subprocess("demo", out=str(shop.home / name), kind=kind, seed=seed, frames=frames)
+    shop.working[name] = number = shop.jobs.start(
+        title, work, demo_stage_seconds(), _remember(shop)
+    )
     return JSONResponse({"job": number})
 
 
-def _remember(shop: Workshop) -> Any:
+def _remember(shop: Workspace) -> Any:
     def ended(state: JobState) -> None:
         shop.remember(Path(state.result["out"]))
 
@@ -226,13 +230,13 @@ def _remember(shop: Workshop) -> Any:
 
 
 async def _open(request: Request) -> Response:
-    shop = workshop_of(request)
-    await shop.open(shop.room_named(str((await object_of(request)).get("id"))))
+    shop = get_workspace(request)
+    await shop.open(shop.room_named(str((await read_json_object(request)).get("id"))))
     return JSONResponse({"name": shop.editor.name})
 
 
 async def _close(request: Request) -> Response:
-    await workshop_of(request).session.show(None)
+    await get_workspace(request).session.show(None)
     return JSONResponse({})
 
 
@@ -251,14 +255,14 @@ def _file(path: Path) -> Response:
 
 
 async def _jobs(request: Request) -> Response:
-    return JSONResponse(workshop_of(request).jobs.states())
+    return JSONResponse(get_workspace(request).jobs.states())
 
 
 async def _cancel(request: Request) -> Response:
     number = request.path_params["id"]
-    await asyncio.to_thread(workshop_of(request).jobs.cancel, number)  # A process has its time.
+    await asyncio.to_thread(get_workspace(request).jobs.cancel, number)  # A process has its time.
     return JSONResponse({})
 
 
 def _named(request: Request) -> CaptureFolder:
-    return workshop_of(request).captures.named(request.path_params["id"])
+    return get_workspace(request).captures.named(request.path_params["id"])

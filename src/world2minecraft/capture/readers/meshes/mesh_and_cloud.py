@@ -102,7 +102,7 @@ class PointCloud:
         """Whether it has colours."""
         return self.colour is not None
 
-    def moved(self, transform: np.ndarray) -> "Cloud":
+    def moved(self, transform: np.ndarray) -> "PointCloud":
         """Return it carried by a 4x4 transform, which may scale."""
         return replace(self, points=_transform_points(self.points, transform))
 

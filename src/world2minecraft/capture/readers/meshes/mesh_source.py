@@ -125,7 +125,7 @@ class ViewRenderer:
     camera_to_world: np.ndarray
     blocks: Blocks
     by_class: bool = False  # Colours of the classes, for what has classes but no colours.
-    _kept: "OrderedDict[int, Seen]" = field(default_factory=OrderedDict)
+    _kept: "OrderedDict[int, RenderedView]" = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def seen(self, view: int) -> RenderedView:

@@ -22,11 +22,11 @@ from world2minecraft.navigation.values import Trajectory
 
 ANNOTATIONS = "annotations.jsonl"
 MAX_IMAGE_BYTES = 32 << 20
-MAX_WHO = 60
+MAX_ANNOTATOR = 60
 KINDS = {".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".png": "image/png"}
 
 
-class AnnotationDesk:
+class AnnotationStore:
     """A set to be told of.
 
     Args:
@@ -122,8 +122,8 @@ class AnnotationDesk:
         if wrong:
             raise UsageError(wrong[0])
         who = " ".join(annotator.split())
-        if not who or len(who) > MAX_WHO or not who.isprintable():
-            raise UsageError(f"say who writes: a name of up to {MAX_WHO} characters")
+        if not who or len(who) > MAX_ANNOTATOR or not who.isprintable():
+            raise UsageError(f"say who writes: a name of up to {MAX_ANNOTATOR} characters")
         if not (1 < len(language) <= 20 and language.isascii() and language.isprintable()):
             raise UsageError(f"a language is like en or de-AT, not {language[:20]!r}")
         line = {

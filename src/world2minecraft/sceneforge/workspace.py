@@ -13,9 +13,9 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.sceneforge.comparison import truth_folder
+from world2minecraft.sceneforge.comparison import find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.exports import snapshot
+from world2minecraft.sceneforge.exports import write_snapshot
 from world2minecraft.sceneforge.photos import (
     RunPhotos,
     count_photos,
@@ -23,14 +23,14 @@ from world2minecraft.sceneforge.photos import (
     read_photos,
 )
 from world2minecraft.sceneforge.session import NO_ROOM, Session
-from world2minecraft.sceneforge.uploads import MOST_UPLOAD_BYTES, CaptureFolder, Captures
+from world2minecraft.sceneforge.uploads import MAX_UPLOAD_BYTES, CaptureFolder, CaptureStore
 
-MOST_RECENT = 12
+MAX_RECENT = 12
 PLACES = "captures.json"  # Where the capture of each run lies, as the user said.
 
 
 @dataclass(frozen=True, eq=False)
-class Compared:
+class Comparison:
     """What the document is compared with: labels uint8 [X, Y, Z] in the cells of an editor."""
 
     name: str
@@ -38,7 +38,7 @@ class Compared:
     editor: Editor
 
 
-class Workshop:
+class Workspace:
     """The start page's state; one for each server.
 
     Args:
@@ -53,17 +53,17 @@ class Workshop:
         session: Session,
         home: Path,
         *,
-        most_bytes: int = MOST_UPLOAD_BYTES,
+        most_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
     ):
         self.session, self.home = session, home
-        self.compared: Compared | None = None
+        self.compared: Comparison | None = None
         self._capture = capture
         self._photos: tuple[Editor, RunPhotos] | None = None
         self._lock = threading.Lock()
         self._opening = asyncio.Lock()
         self._exports: tempfile.TemporaryDirectory[str] | None = None
-        self.captures = Captures(home, most_bytes)
+        self.captures = CaptureStore(home, most_bytes)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
         self.working: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.
@@ -103,7 +103,7 @@ class Workshop:
     def snapshot(self, editor: Editor) -> Iterator[Path]:
         """Give a folder with the scene as it is now; it is gone afterwards."""
         with tempfile.TemporaryDirectory(prefix="w2m-scene-") as scratch:
-            snapshot(editor, Path(scratch))
+            write_snapshot(editor, Path(scratch))
             yield Path(scratch)
 
     @property
@@ -114,7 +114,7 @@ class Workshop:
     def capture_of_run(self) -> Path | None:
         """Return where the capture of the open run lies, as far as anybody said so."""
         run = self.run.resolve()
-        noted = read_noted(self.home / PLACES)
+        noted = read_text_map(self.home / PLACES)
         if self._capture is not None:
             place = str(self._capture.resolve())
             if noted.get(str(run)) != place:
@@ -149,7 +149,7 @@ class Workshop:
 
     def truth_folder(self) -> Path | None:
         """Return where the truth of the open run lies, None where there is none."""
-        return truth_folder(self.run, self.capture_of_run()) if self.session.editor else None
+        return find_truth_folder(self.run, self.capture_of_run()) if self.session.editor else None
 
     def begin_with(self, source: Path, is_capture: bool) -> None:
         """Show a capture of this machine first, or note that a room was opened."""
@@ -166,7 +166,7 @@ class Workshop:
     def remember(self, source: Path) -> None:
         """Note that a room was opened; the newest come first."""
         place = str(source.resolve())
-        kept = [place, *(old for old in self._noted() if old != place)][:MOST_RECENT]
+        kept = [place, *(old for old in self._noted() if old != place)][:MAX_RECENT]
         write_json(self.home / "recent.json", kept)
 
     def recent(self) -> list[Path]:
@@ -216,7 +216,7 @@ class Workshop:
         return [text for text in noted if isinstance(text, str)] if isinstance(noted, list) else []
 
 
-def read_noted(path: Path) -> dict[str, str]:
+def read_text_map(path: Path) -> dict[str, str]:
     """Return the texts by text of a JSON object; none where the file is not there or not whole."""
     try:
         noted = read_json(path)
