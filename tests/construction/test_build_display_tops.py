@@ -10,6 +10,7 @@ from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.display.block_alignment import BlockAligner
 from world2minecraft.construction.display.boxes import DisplayBox, Frame
 from world2minecraft.construction.display.builder import (
+    MAX_COLOURS,
     boxes_of_cells,
     frame_of_cells,
     remove_small_parts,
@@ -20,6 +21,7 @@ from world2minecraft.construction.display.worktops import as_counter, deepened, 
 from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.surface_painting import BlockChoice
 from world2minecraft.construction.worktops import Worktop
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
@@ -204,8 +206,8 @@ def test_a_heap_of_two_colours_is_two_boxes_in_its_own_frame():
     grid = sketch.grid()
     cells = np.argwhere(grid.instance == 4)
     colours = srgb_to_oklab(grid.colour[tuple(cells.T)])
-    source = (grid, FURN, load_palette("vanilla"), BuildParameters())
-    pieces = boxes_of_cells(cells, colours, np.ones(len(cells), bool), *source)
+    choice = BlockChoice(FURN, load_palette("vanilla"), BuildParameters(), MAX_COLOURS)
+    pieces = boxes_of_cells(cells, colours, np.ones(len(cells), bool), grid, choice)
     frame = frame_of_cells(cells, grid)
     assert len(pieces) == 2
     assert len({piece.state for piece in pieces}) == 2

@@ -235,7 +235,8 @@ def test_an_object_seen_elsewhere_is_not_replaced_by_a_poor_box():
 def test_the_same_room_gives_the_same_blocks_whatever_the_hash_seed():
     code = (
         "import sys, hashlib; sys.path.insert(0, sys.argv[1]);"
-        "from build_samples import furnished; from world2minecraft.construction import build_volume;"
+        "from build_samples import furnished;"
+        "from world2minecraft.construction import build_volume;"
         "s = furnished(); v = build_volume(s.grid(), (), (), corner_m=s.corner_m);"
         "d = hashlib.sha256(v.states.tobytes() + repr(v.palette).encode());"
         "print(d.hexdigest())"

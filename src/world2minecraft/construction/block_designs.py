@@ -368,8 +368,8 @@ def _states(
 
 def _in_colour(state: str, colour: np.ndarray, thing: ObjectLabel, palette: Palette) -> str:
     own = recolour_state(state, colour)
-    distances = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
-    if distances <= OWN_COLOUR or not is_full_cube(own):
+    distance = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
+    if distance <= OWN_COLOUR or not is_full_cube(own):
         return own
     choices = palette.blocks[thing.class_id]
     return choices[int(nearest_oklab(colour[None], srgb_to_oklab(colours_of(choices)))[0])]

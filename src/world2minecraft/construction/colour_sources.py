@@ -1,4 +1,4 @@
-"""The grid, its colours and the palette that a room is built from, and the cells that colour objects."""
+"""What a room is built from, and the colours of its cells as objects take them."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

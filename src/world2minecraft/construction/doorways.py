@@ -92,7 +92,7 @@ def _leads_on(walled: np.ndarray, axis: int, start: np.ndarray, stop: np.ndarray
 
 
 def _between_walls(walled: np.ndarray, clear: np.ndarray, axis: int, most: int) -> np.ndarray:
-    """Return the runs of clear cells, bool [X, Y], between two walls that are ``most`` distances."""
+    """Return the runs of clear cells, bool [X, Y], between two walls that are ``most`` apart."""
     rows_walled, rows_clear = np.moveaxis(walled, axis, 1), np.moveaxis(clear, axis, 1)
     result = np.zeros_like(rows_clear)
     for row, (wall, open_cells) in enumerate(zip(rows_walled, rows_clear, strict=True)):

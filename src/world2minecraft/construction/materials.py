@@ -78,14 +78,14 @@ class Materials:
                 kinds.add(kind)
         return frozenset(kinds)
 
-    def _apart(self, kind: str, wanted: np.ndarray) -> np.ndarray:
+    def _distances_to(self, kind: str, wanted: np.ndarray) -> np.ndarray:
         """Return how far the blocks of a kind are from Oklab colours [N, 3], float64 [N, M]."""
         distances = np.linalg.norm((wanted[:, None] - self.colours[kind]) * WEIGHTS, axis=2)
-        return np.round(apart + self.handicaps[kind], 6)
+        return np.round(distances + self.handicaps[kind], 6)
 
     def existing(self, kind: str, full: tuple[str, ...]) -> tuple[str, ...]:
         """Return which of some full blocks exist as a kind of shape, or nearly in their colour."""
-        distances = self._apart(kind, srgb_to_oklab(colours_of(full))).min(1)
+        distances = self._distances_to(kind, srgb_to_oklab(colours_of(full))).min(1)
         near = {block for block, off in zip(full, distances.tolist(), strict=True) if off <= SAME}
         return tuple(block for block in full if block in near or block in self.own[kind])
 
@@ -98,13 +98,13 @@ class Materials:
                 return able
         return ()
 
-    def dressed(self, shape: Shape, block: str) -> str | None:
+    def shaped_state(self, shape: Shape, block: str) -> str | None:
         """Return the state of a shape in the colour of a full block; None where there is none."""
         if shape.kind == "full":
             return block
         if block in self.own[shape.kind]:
             return shape.of(self.own[shape.kind][block])
-        distances = self._apart(shape.kind, srgb_to_oklab(colours_of([block])))[0]
+        distances = self._distances_to(shape.kind, srgb_to_oklab(colours_of([block])))[0]
         best = int(distances.argmin())
         if shape.kind != "post" and distances[best] > MARGIN:
             return None

@@ -51,7 +51,7 @@ class BuildParameters:
     preference: the Oklab distance by which a block of the palette's preferred groups may lie
         farther off. 0.02: one barely visible step, so that a table is of wood.
     structure_lightness_weight: how much lightness counts in telling the parts of a wall or floor
-        distances. 0.05: light falls unevenly on them; the kitchen's one carpet came out grey and
+        apart. 0.05: light falls unevenly on them; the kitchen's one carpet came out grey and
         black at 0.15, while black and white tiles stay two.
     structure_noticed, object_noticed: the Oklab distance from which a part of a surface deserves
         a block of its own. 0.12 and 0.11: the former keeps the shade under the kitchen's table

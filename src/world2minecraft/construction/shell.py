@@ -17,6 +17,7 @@ from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.construction.surface_painting import (
+    BlockChoice,
     block_colours,
     paint_surface,
     place_painted,

@@ -227,7 +227,7 @@ def chair_paints(
     }
     sets: list[list[int]] = []
     for number, colour in own.items():
-        near = (s for s in sets if _apart(colour, own[s[0]], weight) <= SAME_SET)
+        near = (s for s in sets if _distance(colour, own[s[0]], weight) <= SAME_SET)
         found = next(near, None)
         if found is None:
             sets.append([number])
@@ -252,7 +252,7 @@ def lit_colour(colours: np.ndarray) -> np.ndarray:
     return np.median(lighter, axis=0).astype(np.float32)
 
 
-def _apart(one: np.ndarray, other: np.ndarray, weight: np.ndarray) -> float:
+def _distance(one: np.ndarray, other: np.ndarray, weight: np.ndarray) -> float:
     return float(np.linalg.norm((one - other) * weight))
 
 
@@ -338,8 +338,8 @@ def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]
         return choices
     offered = srgb_to_oklab(colours_of(choices))
     others = srgb_to_oklab(colours_of(sorted(beside)))
-    distances = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= DISTINGUISHABLE
-    return tuple(np.array(choices)[apart].tolist()) or choices
+    is_distinct = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= DISTINGUISHABLE
+    return tuple(np.array(choices)[is_distinct].tolist()) or choices
 
 
 def place_painted(

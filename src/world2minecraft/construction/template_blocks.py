@@ -97,7 +97,7 @@ class ShapePainter:
             shape = design.shapes.shapes[int(design.numbers[at]) - 1]
             first, second = str(own[at]), str(plain[at])
             near = self._is_near(first, second, colours[at])
-            state = self.materials.dressed(shape, first if near else second)
+            state = self.materials.shaped_state(shape, first if near else second)
             result[at] = state or plain[at]
         return result[design.filled]
 

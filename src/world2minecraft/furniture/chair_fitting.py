@@ -52,7 +52,7 @@ class SeatFit(NamedTuple):
 
 
 def ignore_adjacent_free_cells(code: np.ndarray) -> np.ndarray:
-    """Return the code, uint8 [X, Y, Z], in which no free cell next to the object counts against it."""
+    """Return the code, uint8 [X, Y, Z], without the free cells next to the object."""
     adjacent = ndimage.binary_dilation(code == OWN, FACE_NEIGHBOURS)
     return np.where(adjacent & (code == AGAINST), 0, code).astype(np.uint8)
 

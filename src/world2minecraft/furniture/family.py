@@ -1,7 +1,8 @@
 """A family: the shape that many designs share, as metric parts and as vanilla blocks.
 
 A design is a small data file that names its family and gives it sizes, parameters, options and
-materials (``design_files``); the family, one value in ``families/``, makes of them what stands there.
+materials (``design_files``); the family, one value in ``families/``, makes parts and blocks of
+them.
 """
 
 from collections.abc import Mapping

@@ -85,8 +85,8 @@ def overlapping_boxes(
 def overlap_depth_m(a: Any, b: Any) -> float:
     """Return how far two boxes must be moved, along one of their axes, to separate; 0 if disjoint.
 
-    Boxes are upright and turned about z: they are disjoint where a side of one separates them in plan,
-    or a height does (the separating axis theorem).
+    Boxes are upright and turned about z: they are disjoint where a side of one separates them in
+    plan, or a height does (the separating axis theorem).
     """
     gap_z = abs(a.center_m[2] - b.center_m[2])
     depths = [(a.size_m[2] + b.size_m[2]) / 2 - gap_z]

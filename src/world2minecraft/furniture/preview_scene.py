@@ -45,13 +45,13 @@ def preview_volume(
 
 
 def preview_design(
-    idiom: BlockDesign, template: Template, blocks_per_metre: float, quarter_turns: int, room: bool
+    design: BlockDesign, template: Template, blocks_per_metre: float, quarter_turns: int, room: bool
 ) -> BlockVolume:
     """Return a design as a volume, with what holds it where ``room`` says so."""
     margin = 1 if room else 0
-    states = np.zeros(np.array(idiom.size) + 2 * margin, np.uint16)
+    states = np.zeros(np.array(design.size) + 2 * margin, np.uint16)
     palette = ["minecraft:air"]
-    for offset, state, _role in idiom.blocks:
+    for offset, state, _role in design.blocks:
         if state not in palette:
             palette.append(state)
         states[tuple(np.array(offset) + margin)] = palette.index(state)

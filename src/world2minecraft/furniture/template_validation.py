@@ -84,7 +84,7 @@ def _check_turns(template: Template) -> Iterator[str]:
 
 
 def _check_design(template: Template) -> Iterator[str]:
-    from world2minecraft.furniture.block_designs import block_size  # noqa: PLC0415 - idiom loads blocks.
+    from world2minecraft.furniture.block_designs import block_size  # noqa: PLC0415 - loads blocks.
 
     for scale in DESIGN_SCALES:
         size = block_size(np.array(template.typical_m), scale)

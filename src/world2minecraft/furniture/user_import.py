@@ -132,7 +132,8 @@ def _trim(volume: BlockVolume) -> BlockVolume:
     if (size > MAX_SIDE).any() or int(np.prod(size)) > MAX_BLOCKS:
         given = " x ".join(str(side) for side in size.tolist())
         raise UsageError(
-            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {given}; "
+            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, "
+            f"not {given}; "
             "cut out the piece alone"
         )
     window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
@@ -141,7 +142,8 @@ def _trim(volume: BlockVolume) -> BlockVolume:
     used_states = [state for state in used.tolist() if state]
     if len(used_states) > MAX_KINDS:
         raise UsageError(
-            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(used_states)}; cut out it alone"
+            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(used_states)}; "
+            "cut out it alone"
         )
     numbers = numbers.reshape(states.shape) + (0 if used[0] == 0 else 1)
     return BlockVolume(

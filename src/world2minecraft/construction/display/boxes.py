@@ -134,7 +134,7 @@ def template_boxes(
         parts: the boxes of a template in its own frame.
         states: the block of each part.
         most: over so many pieces the shape is made coarser, to an IoU of ``MIN_IOU``.
-        blocks_per_metre: the scale, by which pieces that overlap are kept distances.
+        blocks_per_metre: the scale, by which pieces that overlap are kept apart.
     """
     names = sorted(set(states))
     numbers = [names.index(state) + 1 for state in states]

@@ -88,9 +88,7 @@ def boxes_of_cells(
     tinted[at] = colours
     has_colour = np.zeros(mask.shape, bool)
     has_colour[at] = known
-    states = paint_surface(mask, tinted, has_colour, class_id, palette, parameters, most).astype(
-        str
-    )
+    states = paint_surface(mask, tinted, has_colour, choice).astype(str)
     names, index = np.unique(states, return_inverse=True)
     labels = np.zeros(mask.shape, np.int32)
     labels[mask] = index + 1

@@ -95,10 +95,10 @@ def role_colours(
     result = {"": np.median(colours, axis=0)}
     local = apply(invert(frame.object_to_room), centres_m)
     boxes = np.array([part.box_m for part in parts]).reshape(-1, 2, 3)
-    apart = np.maximum(boxes[None, :, 0] - local[:, None], local[:, None] - boxes[None, :, 1])
-    away = np.linalg.norm(np.maximum(apart, 0), axis=2)
+    outside = np.maximum(boxes[None, :, 0] - local[:, None], local[:, None] - boxes[None, :, 1])
+    away = np.linalg.norm(np.maximum(outside, 0), axis=2)
     # Inside several parts the one whose surface is nearest says more: scans see surfaces.
-    away += np.where(away == 0, 1e-3 * np.abs(apart.max(axis=2)), 0)
+    away += np.where(away == 0, 1e-3 * np.abs(outside.max(axis=2)), 0)
     nearest = away.argmin(axis=1)
     near = away.min(axis=1) <= BESIDE * voxel_m
     roles = np.array([part.role for part in parts])[nearest]
@@ -151,8 +151,8 @@ def _state_of_role(
     best, away = nearest_state(colour, plain, parameters)
     if not allowed:
         return best
-    same, apart = nearest_state(colour, allowed, parameters)
-    if apart <= away + OWN_KIND:
+    same, distance = nearest_state(colour, allowed, parameters)
+    if distance <= away + OWN_KIND:
         return same
     return best if seen else own  # The wooden legs of a blue chair are not blue.
 

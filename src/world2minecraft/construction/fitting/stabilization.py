@@ -382,11 +382,11 @@ def stabilize(
     grid = mirror_shapes(grid, shapes, rules.even)
     scores = problem.gains.scores(lam)
     scores[barred] = -np.inf
-    distances = np.isin(shapes.kinds, ("carpet", "post"))
-    scores[:, apart] = -np.inf
+    placed_later = np.isin(shapes.kinds, ("carpet", "post"))
+    scores[:, placed_later] = -np.inf
     if rules.stands and rules.legs:
         _add_legs(grid, problem, shapes)
-    movable = np.flatnonzero(~distances[grid[problem.at]])
+    movable = np.flatnonzero(~placed_later[grid[problem.at]])
     grid = join_shapes(grid, movable, scores, problem, shapes)
     grid = make_stair_corners(mirror_shapes(grid, shapes, rules.even), shapes)
     if rules.stands:
