@@ -59,7 +59,7 @@ class SceneSnapshot:
     shown: int = 0
 
     @classmethod
-    def of(cls, editor: Editor) -> "HeldScene":
+    def of(cls, editor: Editor) -> "SceneSnapshot":
         """Copy the scene of an editor; to be called in the editor's turn."""
         objects = tuple(editor.draft.objects.values())
         grid = editor.draft.grid()
@@ -75,7 +75,7 @@ class BlockBuild:
     volume: BlockVolume
 
     @classmethod
-    def of(cls, scene: SceneSnapshot, options: BuildOptions) -> "Build":
+    def of(cls, scene: SceneSnapshot, options: BuildOptions) -> "BlockBuild":
         """Build a scene; takes a second for a room.
 
         Raises:

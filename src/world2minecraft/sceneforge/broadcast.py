@@ -57,7 +57,7 @@ class Tab:
 
 
 class Broadcaster:
-    """All tabs of a server. Its methods are called on the server's loop, but for ``tell_soon``."""
+    """All tabs of a server. Its methods are called on the server's loop, but for ``broadcast_threadsafe``."""
 
     def __init__(self):
         self._tabs: list[Tab] = []

@@ -110,8 +110,8 @@ class Session:
 
     def __init__(self, editor: Editor | None = None):
         self.editor: Editor | None = None
-        self.hub = Broadcaster()
-        self.jobs = Jobs(self.hub.tell_soon)
+        self.broadcaster = Broadcaster()
+        self.jobs = Jobs(self.broadcaster.broadcast_threadsafe)
         self.shown = 0
         self._count = 0
         self._turn = asyncio.Lock()
@@ -143,7 +143,7 @@ class Session:
             self._take(editor)
             if old is not None:
                 await asyncio.to_thread(old.close)
-        self.hub.restart()
+        self.broadcaster.restart()
 
     async def do(self, command: Any, actor: str = "") -> dict[str, Any]:
         """Do a command; every tab is told.
@@ -210,7 +210,7 @@ class Session:
         async with self._turn:
             document = self.document
             await asyncio.to_thread(document.save)
-        self.hub.tell({"type": "saved", "rev": document.saved_rev})
+        self.broadcaster.tell({"type": "saved", "rev": document.saved_rev})
         return document.saved_rev
 
     async def scene(self) -> dict[str, Any]:
@@ -262,7 +262,7 @@ class Session:
             self.shown = self._count
 
             def told(rev: int, step: str, operation: Operation) -> None:
-                self.hub.tell_soon(change_message(editor, rev, step, operation))
+                self.broadcaster.broadcast_threadsafe(change_message(editor, rev, step, operation))
 
             self._unlisten = editor.on_change(told)
 

@@ -1,11 +1,12 @@
-"""Solid boxes to cells: which cells they reach into, and what fills most of each.
+"""Rasterise solid boxes into cells: which cells they reach into, and what fills most of each.
 
 Coordinates are blocks, from the lattice's minimum corner on; cell (a, b, c) of the lattice spans
 ``(a, b, c) * step`` and one step more. A box counts in a cell where it meets the cell shrunk by
-``slack`` on all sides. ``amount`` holds how much of a cell, in blocks' volume, its owner fills;
-``owner`` who that is: a cell of the volume, or -2 - n for standing thing n. A later one wins where
-it fills more by a margin, so that rounding decides nothing.
+``slack`` on all sides. Of two owners the later one wins a cell where it fills more of it by a
+margin, so that rounding decides nothing.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,41 +14,46 @@ from world2minecraft.core.jit import inlined, njit
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, FULL, OWNER
 
 NO_OWNER = -1
-SEARCH_MARGIN = (
-    0.1  # Blocks: how far a block's cells are looked for around it; thin shapes stick out.
-)
+# Blocks: how far around a block its cells are searched; thin shapes stick out.
+SEARCH_MARGIN = 0.1
 _MARGIN = 1e-4  # Of a cell's volume.
-_SAMPLES = 4  # Points a side that tell how much of a cell a turned box fills.
+_SAMPLES = 4  # Points per side by which the volume of a rotated box in a cell is counted.
+
+
+class CellLattice(NamedTuple):
+    """The cells along the block axes."""
+
+    start: np.ndarray  # float64 [3], minimum corner in the scene's grid of blocks
+    step: float  # a cell's side, blocks
+    slack: float  # what a shape may reach into a cell without counting, blocks
+
+
+class Slab(NamedTuple):
+    """Layers of the lattice along its first axis, filled in place."""
+
+    first: int  # the first layer
+    amount: np.ndarray  # float32 [A, B, C], how much of a cell its owner fills, blocks' volume
+    owner: np.ndarray  # int32 [A, B, C]: a cell of the volume, -2 - n for standing thing n
 
 
 @njit
-def fill_slab(
-    space, looks, look_start, refs, traits, window, boxes, standing, start, step, slack, first,
-    amount, owner, scratch,
-):  # fmt: skip
-    """Fill the layers of the lattice from ``first`` on, as many as ``amount`` has.
+def fill_slab(tables, boxes, standing, lattice, slab, scratch):
+    """Fill the layers of a slab.
 
     Args:
-        space: of ``SceneTables``, as are the next five.
-        looks: the row of each cell.
-        look_start: where a row's elements begin.
-        refs: elements.
-        traits: of each element.
-        window: where the volume lies in the grid.
-        boxes: ``SolidBoxes``.
+        tables: ``SceneTables`` of the scene.
+        boxes: ``SolidBoxes`` of its elements.
         standing: int64 [N], the elements that are in the grid's coordinates.
-        start: float64 [3], the lattice's minimum corner in the grid.
-        step: a cell's side.
-        slack: see above.
-        first: the first layer along the first axis.
-        amount: float32 [A, B, C], 0 before.
-        owner: int32 [A, B, C], ``NO_OWNER`` before.
+        lattice: ``CellLattice``.
+        slab: ``Slab``; its amounts are 0 and its owners ``NO_OWNER`` before.
         scratch: float64 [S, S, S], all 0; a block's cells fit in.
     """
+    space, traits, window = tables.space, tables.traits, tables.window
+    start, step = lattice.start, lattice.step
     near, past = np.zeros(3, np.int64), np.zeros(3, np.int64)
     for axis in range(3):
-        skip = first if axis == 0 else 0
-        low, high = start[axis] + skip * step, start[axis] + (skip + amount.shape[axis]) * step
+        skip = slab.first if axis == 0 else 0
+        low, high = start[axis] + skip * step, start[axis] + (skip + slab.amount.shape[axis]) * step
         near[axis] = max(int(np.floor(low)) - 1, 0)
         past[axis] = min(int(np.ceil(high)) + 1, space.shape[axis])
     cube = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
@@ -61,22 +67,23 @@ def fill_slab(
                 for axis in range(3):
                     base[axis] = int(np.floor((at[axis] - SEARCH_MARGIN) / step))
                 if space[i, j, k] == FULL:
-                    _add_aligned_box(cube[:3], cube[3:], at, base, step, slack, scratch)
+                    _add_aligned_box(cube[:3], cube[3:], at, base, lattice, scratch)
                 else:
-                    look = looks[i, j, k]
-                    for n in refs[look_start[look] : look_start[look + 1]]:
+                    look = tables.looks[i, j, k]
+                    for n in tables.refs[tables.look_start[look] : tables.look_start[look + 1]]:
                         if boxes.there[n] and not traits[n, FLAGS] & ABSOLUTE:
-                            _add_box(boxes, n, at, base, step, slack, scratch)
+                            _add_box(boxes, n, at, base, lattice, scratch)
                 a, b, c = i - window[0, 0], j - window[0, 1], k - window[0, 2]
                 cell = (a * window[1, 1] + b) * window[1, 2] + c
-                _claim_block_cells(base, step, first, cell, amount, owner, scratch)
+                _claim_block_cells(base, cell, step, slab, scratch)
     for n in standing:
-        _fill_standing(boxes, n, -2 - traits[n, OWNER], start, step, slack, first, amount, owner)
+        _fill_standing(boxes, n, -2 - traits[n, OWNER], lattice, slab)
 
 
 @inlined
-def _overlaps(low, high, cell, step, slack):
-    """Tell whether a span meets a cell that is shrunk on both sides."""
+def _overlaps(low, high, cell, lattice):
+    """Return whether a span meets a cell that is shrunk on both sides."""
+    step, slack = lattice.step, lattice.slack
     return high > cell * step + slack and low < (cell + 1) * step - slack
 
 
@@ -87,43 +94,45 @@ def _overlap_length(low, high, cell, step):
 
 
 @njit
-def _add_aligned_box(low, high, at, base, step, slack, scratch):
-    """Add a straight box, told from ``at``, to a block's cells."""
+def _add_aligned_box(low, high, at, base, lattice, scratch):
+    """Add an aligned box, relative to ``at``, to a block's cells."""
+    step = lattice.step
     x0, x1 = at[0] + low[0], at[0] + high[0]
     y0, y1 = at[1] + low[1], at[1] + high[1]
     z0, z1 = at[2] + low[2], at[2] + high[2]
     size = scratch.shape[0]
     for a in range(size):
-        if not _overlaps(x0, x1, base[0] + a, step, slack):
+        if not _overlaps(x0, x1, base[0] + a, lattice):
             continue
         wide = _overlap_length(x0, x1, base[0] + a, step)
         for b in range(size):
-            if not _overlaps(y0, y1, base[1] + b, step, slack):
+            if not _overlaps(y0, y1, base[1] + b, lattice):
                 continue
             area = wide * _overlap_length(y0, y1, base[1] + b, step)
             for c in range(size):
-                if _overlaps(z0, z1, base[2] + c, step, slack):
+                if _overlaps(z0, z1, base[2] + c, lattice):
                     scratch[a, b, c] += area * _overlap_length(z0, z1, base[2] + c, step)
 
 
 @njit
-def _add_box(boxes, n, at, base, step, slack, scratch):
+def _add_box(boxes, n, at, base, lattice, scratch):
     """Add an element's box to a block's cells."""
     if boxes.straight[n]:
-        _add_aligned_box(boxes.low[n], boxes.high[n], at, base, step, slack, scratch)
+        _add_aligned_box(boxes.low[n], boxes.high[n], at, base, lattice, scratch)
         return
-    size = scratch.shape[0]
+    size, step = scratch.shape[0], lattice.step
     for a in range(size):
         for b in range(size):
             for c in range(size):
                 x, y, z = (base[0] + a) * step, (base[1] + b) * step, (base[2] + c) * step
                 x, y, z = x - at[0], y - at[1], z - at[2]
-                scratch[a, b, c] += rotated_box_volume(boxes.centre[n], boxes.half[n], x, y, z, step,
-                                                  slack)  # fmt: skip
+                scratch[a, b, c] += rotated_box_volume(
+                    boxes.centre[n], boxes.half[n], x, y, z, lattice
+                )
 
 
 @njit
-def _claim_block_cells(base, step, first, who, amount, owner, scratch):
+def _claim_block_cells(base, who, step, slab, scratch):
     """Let a block have the cells that it fills more than others so far, and empty ``scratch``."""
     size = scratch.shape[0]
     for a in range(size):
@@ -133,17 +142,18 @@ def _claim_block_cells(base, step, first, who, amount, owner, scratch):
                 if filled == 0:
                     continue
                 scratch[a, b, c] = 0.0
-                i, j, k = base[0] + a - first, base[1] + b, base[2] + c
+                i, j, k = base[0] + a - slab.first, base[1] + b, base[2] + c
                 if (
-                    0 <= i < amount.shape[0]
-                    and 0 <= j < amount.shape[1]
-                    and 0 <= k < amount.shape[2]
+                    0 <= i < slab.amount.shape[0]
+                    and 0 <= j < slab.amount.shape[1]
+                    and 0 <= k < slab.amount.shape[2]
                 ):
-                    _claim_cell(i, j, k, who, filled, step, amount, owner)
+                    _claim_cell(i, j, k, who, filled, step, slab)
 
 
 @inlined
-def _claim_cell(i, j, k, who, filled, step, amount, owner):
+def _claim_cell(i, j, k, who, filled, step, slab):
+    amount, owner = slab.amount, slab.owner
     if owner[i, j, k] == who:
         amount[i, j, k] += filled
     elif owner[i, j, k] == NO_OWNER or filled > amount[i, j, k] + _MARGIN * step**3:
@@ -151,14 +161,15 @@ def _claim_cell(i, j, k, who, filled, step, amount, owner):
 
 
 @njit
-def _fill_standing(boxes, n, who, start, step, slack, first, amount, owner):
+def _fill_standing(boxes, n, who, lattice, slab):
     """Let an element that stands anywhere have the cells that it fills most of so far."""
+    start, step = lattice.start, lattice.step
     near, past = np.zeros(3, np.int64), np.zeros(3, np.int64)
     for axis in range(3):
-        skip = first if axis == 0 else 0
+        skip = slab.first if axis == 0 else 0
         low, high = boxes.low[n, axis] - start[axis], boxes.high[n, axis] - start[axis]
         near[axis] = max(int(np.floor(low / step)), skip)
-        past[axis] = min(int(np.floor(high / step)) + 1, skip + amount.shape[axis])
+        past[axis] = min(int(np.floor(high / step)) + 1, skip + slab.amount.shape[axis])
     centre = boxes.centre[n] - start
     low, high = boxes.low[n] - start, boxes.high[n] - start
     for i in range(near[0], past[0]):
@@ -166,12 +177,12 @@ def _fill_standing(boxes, n, who, start, step, slack, first, amount, owner):
             for k in range(near[2], past[2]):
                 if not boxes.straight[n]:
                     filled = rotated_box_volume(
-                        centre, boxes.half[n], i * step, j * step, k * step, step, slack
+                        centre, boxes.half[n], i * step, j * step, k * step, lattice
                     )
                 elif (
-                    _overlaps(low[0], high[0], i, step, slack)
-                    and _overlaps(low[1], high[1], j, step, slack)
-                    and _overlaps(low[2], high[2], k, step, slack)
+                    _overlaps(low[0], high[0], i, lattice)
+                    and _overlaps(low[1], high[1], j, lattice)
+                    and _overlaps(low[2], high[2], k, lattice)
                 ):
                     filled = _overlap_length(low[0], high[0], i, step) * _overlap_length(
                         low[1], high[1], j, step
@@ -180,18 +191,19 @@ def _fill_standing(boxes, n, who, start, step, slack, first, amount, owner):
                 else:
                     filled = 0.0
                 if filled > 0:
-                    _claim_cell(i - first, j, k, who, filled, step, amount, owner)
+                    _claim_cell(i - slab.first, j, k, who, filled, step, slab)
 
 
 @njit
-def rotated_box_volume(centre, half, x, y, z, step, slack):
+def rotated_box_volume(centre, half, x, y, z, lattice):
     """Return how much of the cell at (x, y, z) a turned box fills; 0 where it does not reach in.
 
     Two convex bodies do not meet exactly where some axis parts them: one of the cell's, one of the
     box's, or one across an edge of each. What is filled is counted over a few points.
     """
+    step = lattice.step
     dx, dy, dz = centre[0] - x - step / 2, centre[1] - y - step / 2, centre[2] - z - step / 2
-    reach = step / 2 - slack
+    reach = step / 2 - lattice.slack
     for axis in range(15):
         ax, ay, az = _separating_axis(half, axis)
         own = abs(ax) + abs(ay) + abs(az)

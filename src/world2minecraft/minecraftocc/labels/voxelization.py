@@ -17,7 +17,13 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraftocc.labels.box_kernels import NO_OWNER, SEARCH_MARGIN, fill_slab
+from world2minecraft.minecraftocc.labels.box_kernels import (
+    NO_OWNER,
+    SEARCH_MARGIN,
+    CellLattice,
+    Slab,
+    fill_slab,
+)
 from world2minecraft.minecraftocc.labels.fine_classes import Designs, FineClassMap, map_fine_classes
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, SceneVoxels
 from world2minecraft.rendering import BlockScene, prepare_scene
@@ -205,16 +211,19 @@ def _slab_owners(
     first: int,
     shape: tuple[int, int, int],
 ) -> np.ndarray:
-    """Return who has each cell of a slab, int32, as ``solid_kernels`` numbers them."""
+    """Return who has each cell of a slab, int32, as ``Slab`` numbers them."""
     tables = scene.tables
     standing = np.flatnonzero((tables.traits[:, FLAGS] & ABSOLUTE > 0) & boxes.there)
     side = int(np.ceil((1 + 2 * SEARCH_MARGIN) / lattice.step)) + 1
     owner = np.full(shape, NO_OWNER, np.int32)
     fill_slab(
-        tables.space, tables.looks, tables.look_start, tables.refs, tables.traits, tables.window,
-        boxes, standing, lattice.start, lattice.step, TOLERANCE_M * scene.cells_per_metre, first,
-        np.zeros(shape, np.float32), owner, np.zeros((side, side, side)),
-    )  # fmt: skip
+        tables,
+        boxes,
+        standing,
+        CellLattice(lattice.start, lattice.step, TOLERANCE_M * scene.cells_per_metre),
+        Slab(first, np.zeros(shape, np.float32), owner),
+        np.zeros((side, side, side)),
+    )
     return owner
 
 
