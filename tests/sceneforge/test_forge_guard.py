@@ -175,11 +175,11 @@ def test_a_server_that_starts_again_knows_no_old_link(server, cookie):
 
 
 def test_a_refused_websocket_never_reaches_the_scene(server):
-    tabs = server.session.hub.count
+    tabs = server.session.broadcaster.count
     for headers in ({}, bearer(server) | {"Origin": "http://evil.example"}):
         with pytest.raises(InvalidStatus, match="403"):
             connect(f"ws://127.0.0.1:{server.port}/api/live", additional_headers=headers)
-    assert server.session.hub.count == tabs
+    assert server.session.broadcaster.count == tabs
 
 
 def open_guard(**options):

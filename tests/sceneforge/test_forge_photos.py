@@ -27,7 +27,7 @@ def photos(small_run):
 
 
 def test_all_frames_of_the_run_are_there(photos):
-    told = photos.told()
+    told = photos.as_json()
     assert [row["n"] for row in told] == list(range(FRAMES))
     assert len({row["name"] for row in told}) == FRAMES
     assert all(20 < row["vertical_fov_deg"] < 120 and not row["is_depth"] for row in told)
@@ -40,7 +40,7 @@ def test_what_a_photo_shows_stands_where_the_room_has_cells(photos, small_run):
     for shift in np.ndindex(3, 3, 3):
         near |= np.roll(grid.occupied, np.array(shift) - 1, (0, 1, 2))
     shares = []
-    for photo, told in zip(photos.photos, photos.told(), strict=True):
+    for photo, told in zip(photos.photos, photos.as_json(), strict=True):
         depth = read_depth(photo.frame.depth_path, photos.encoding)
         height, width = depth.shape
         focal = height / 2 / np.tan(np.radians(told["vertical_fov_deg"]) / 2)
@@ -99,7 +99,7 @@ def test_an_ideal_camera_sees_each_ray_where_it_says():
 def test_pictures_have_the_proportions_that_were_told(photos):
     for number in (0, FRAMES - 1):
         whole = Image.open(io.BytesIO(photos.jpeg(number, False)))
-        assert whole.width / whole.height == pytest.approx(photos.told()[number]["aspect"])
+        assert whole.width / whole.height == pytest.approx(photos.as_json()[number]["aspect"])
         assert max(Image.open(io.BytesIO(photos.jpeg(number, True))).size) <= 200
     with pytest.raises(UnknownNameError, match="no photo is named '99'"):
         photos.jpeg(99, True)

@@ -133,7 +133,7 @@ def test_a_tab_that_answers_no_ping_is_let_go_and_told_where_it_stands_when_it_c
     with server, client(server) as script:
         sleeper = Sleeper(server)
         sleeper.wake(lambda message: message["type"] == "hello")
-        assert soon(lambda: not server.session.hub.count)
+        assert soon(lambda: not server.session.broadcaster.count)
         script.post("/api/do", json=paint(100))
         again = Sleeper(server)
         assert again.wake(lambda message: message["type"] == "hello")[0]["rev"] == 1
@@ -155,7 +155,7 @@ def test_a_tab_that_went_without_a_word_is_forgotten():
         sleeper.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
         sleeper.socket.close()
         script.post("/api/do", json=paint(100))
-        assert soon(lambda: not server.session.hub.count)
+        assert soon(lambda: not server.session.broadcaster.count)
 
 
 def test_too_many_tabs_are_refused():
@@ -224,7 +224,7 @@ def test_a_mistake_of_ours_is_told_as_one_and_the_next_edit_works(monkeypatch):
 
 def test_another_document_makes_every_tab_begin_anew():
     with served() as server, client(server) as script, tab(server) as page:
-        loop = server.session.hub._loop
+        loop = server.session.broadcaster._loop
         for shown in (1, 2):
             opening = server.session.show(small_editor())
             asyncio.run_coroutine_threadsafe(opening, loop).result(20)
@@ -241,9 +241,9 @@ def test_a_queue_that_is_full_is_emptied_and_begins_with_hello():
         tab_ = tabs.open()
         assert tab_
         for number in range(MAX_QUEUED + 100):
-            tabs.tell({"n": number})
+            tabs.broadcast({"n": number})
         first = await tab_.get(lambda: {"type": "hello"})
-        tabs.tell({"n": "next"})
+        tabs.broadcast({"n": "next"})
         return [json.loads(text) for text in (first, await tab_.get(dict))]
 
     with ThreadPoolExecutor(1) as own_thread:  # A browser of other tests has a loop in this one.

@@ -34,9 +34,9 @@ class Tab:
         self._queue.append(text)
         self._bytes += len(text)
         if len(self._queue) > MAX_QUEUED or self._bytes > MAX_QUEUED_BYTES:
-            self.forget()
+            self.reset()
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Drop what waits; the tab is to begin anew."""
         self._queue.clear()
         self._bytes, self._lost = 0, True
@@ -83,21 +83,21 @@ class Broadcaster:
         """Forget a tab."""
         self._tabs.remove(tab)
 
-    def tell(self, message: dict[str, Any]) -> None:
+    def broadcast(self, message: dict[str, Any]) -> None:
         """Send a message of wire.ts to every tab."""
         text = to_json_text(message)
         for tab in self._tabs:
             tab.put(text)
 
-    def tell_soon(self, message: dict[str, Any]) -> None:
+    def broadcast_threadsafe(self, message: dict[str, Any]) -> None:
         """The same from any thread; nothing happens where no tab is open."""
         if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self.tell, message)
+            self._loop.call_soon_threadsafe(self.broadcast, message)
 
     def restart(self) -> None:
         """Let every tab begin anew: another document is open."""
         for tab in self._tabs:
-            tab.forget()
+            tab.reset()
 
 
 def to_json_text(message: dict[str, Any]) -> str:

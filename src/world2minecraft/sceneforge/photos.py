@@ -38,7 +38,7 @@ class PlacedPhoto:
     camera: Camera
     ideal: Camera
 
-    def told(self, number: int) -> dict[str, Any]:
+    def as_json(self, number: int) -> dict[str, Any]:
         """Return what the page is told of it."""
         height = self.ideal.height_px
         return {
@@ -60,9 +60,9 @@ class RunPhotos:
     _made: "OrderedDict[tuple[int, bool], bytes]" = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
-    def told(self) -> list[dict[str, Any]]:
+    def as_json(self) -> list[dict[str, Any]]:
         """Return what the page is told of all photos, in their order."""
-        return [photo.told(number) for number, photo in enumerate(self.photos)]
+        return [photo.as_json(number) for number, photo in enumerate(self.photos)]
 
     def jpeg(self, number: int, small: bool) -> bytes:
         """Return a photo as its ideal camera has it, or a small picture of it for the strip.

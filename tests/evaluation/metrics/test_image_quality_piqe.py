@@ -8,8 +8,8 @@ from world2minecraft.evaluation.metrics.image_quality import piqe, to_grey
 from world2minecraft.evaluation.metrics.image_quality.piqe import block_faults
 from world2minecraft.evaluation.metrics.image_quality.scene_statistics import normalise
 
-# pypiqe 1.2's scores, from version 0.1's check_image_quality.py. It stretches a picture to 255 first,
-# which MATLAB's and the paper's do not; these reach 255 as they are.
+# pypiqe 1.2's scores, from version 0.1's check_image_quality.py. It stretches a picture to 255
+# first, which MATLAB's and the paper's do not; these reach 255 as they are.
 PYPIQE = {
     ("astronaut", 0): 33.662,
     ("camera", 0): 40.137,

@@ -1,9 +1,9 @@
 """What draws the report's pictures, compiled by a second process beside the first stages.
 
 After an installation a third of a run would wait for these kernels, at its very end. The process is
-``python -m world2minecraft.evaluation.report.jit_warmup``: it draws a box of a few blocks as the report draws a
-room, and what numba then keeps in its folder is found there by the run. Where it fails, the run
-compiles for itself.
+``python -m world2minecraft.evaluation.report.jit_warmup``: it draws a box of a few blocks as the
+report draws a room, and what numba then keeps in its folder is found there by the run. Where it
+fails, the run compiles for itself.
 """
 
 import subprocess

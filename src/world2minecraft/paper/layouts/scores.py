@@ -40,9 +40,9 @@ ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 
 # Collisions of what is solid: a chair pushed under a table is in its box and meets nothing.
 #
-# A thing of a layout is as solid as the design that stands for it (``designs``), turned as the layout
-# says; what no design stands for is solid all through. So layouts of others are held to the rule
-# that our own furniture is held to (``metrics.layout.collisions``), with its 4 cm.
+# A thing of a layout is as solid as the design that stands for it (``designs``), turned as the
+# layout says; what no design stands for is solid all through. So layouts of others are held to the
+# rule that our own furniture is held to (``metrics.layout.collisions``), with its 4 cm.
 
 
 def solid_collisions(scene: ComparedScene) -> int:

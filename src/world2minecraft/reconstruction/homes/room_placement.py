@@ -15,9 +15,9 @@ from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shi
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved, moved_layout
 
 # Where one room may stand beside others: its doors against theirs.
-# Two runs have a door in common where openings of about one width and height meet from both sides of
-# a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one saw
-# there must agree with what the other saw of the same place, and tells the place to the cell.
+# Two runs have a door in common where openings of about one width and height meet from both sides
+# of a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one
+# saw there must agree with what the other saw of the same place, and tells the place to the cell.
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Between two rooms: the wall's face in each.
 ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # How far a door's place may be off.

@@ -17,8 +17,8 @@ from world2minecraft.core.types import Camera, PointEvidence, Scan, View
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 
 # Which way the surface at each pixel of a depth image faces.
-# Depth is averaged in squares of pixels; a square's normal is that of the plane through the means of
-# its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
+# Depth is averaged in squares of pixels; a square's normal is that of the plane through the means
+# of its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.
 JUMP_SHARE = 0.04  # Of the depth: neighbouring squares of one surface differ by less.

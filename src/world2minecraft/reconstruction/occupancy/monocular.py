@@ -1,9 +1,9 @@
 """The paper's F_mono: what a network says of the cells before the camera, from one picture.
 
 Each view's box of cells is the one by whose rule the labels of training pictures were cut
-(``geometry/view_region.py``), on the cells of the room and from its floor on. The network speaks for
-the cells that fall into the picture, up to the first wall; what it says of hidden ones is a guess
-as all of it, and fusion takes it softly.
+(``geometry/view_region.py``), on the cells of the room and from its floor on. The network speaks
+for the cells that fall into the picture, up to the first wall; what it says of hidden ones is a
+guess as all of it, and fusion takes it softly.
 """
 
 from collections.abc import Iterator

@@ -13,9 +13,9 @@ from world2minecraft.core.jit import njit
 
 # The sums of the joint solve, one pass over the observations each.
 # Every observation i is a patch of frame ``frame[i]`` on surfel ``surfel[i]``. Its residual is
-# ``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of the
-# frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes up the
-# weighted mean of its observations, so every sum is that of differences from the mean.
+# ``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of
+# the frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes
+# up the weighted mean of its observations, so every sum is that of differences from the mean.
 UNKNOWNS = 7
 
 REWEIGHTINGS = 4

@@ -156,15 +156,15 @@ class BuildCache:
         if done:
             return task.result()
         state = JobState("build", "Building the blocks", "build")
-        self.session.hub.tell(state.message())
+        self.session.broadcaster.broadcast(state.message())
         try:
             packed = await task
         except Exception as error:
-            self.session.hub.tell(
+            self.session.broadcaster.broadcast(
                 replace(state, state="failed", note=describe_error(error)).message()
             )
             raise
-        self.session.hub.tell(replace(state, state="done").message())
+        self.session.broadcaster.broadcast(replace(state, state="done").message())
         return packed
 
 

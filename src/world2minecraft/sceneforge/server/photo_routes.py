@@ -34,7 +34,7 @@ async def _all(request: Request) -> Response:
         found = await asyncio.to_thread(_photos, request)
     except World2MinecraftError as error:
         return JSONResponse({"frames": [], "why": explain_error(error)})
-    return JSONResponse({"frames": found.told(), "why": ""})
+    return JSONResponse({"frames": found.as_json(), "why": ""})
 
 
 async def _small(request: Request) -> Response:

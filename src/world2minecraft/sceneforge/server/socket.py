@@ -22,7 +22,7 @@ TOO_MANY = 1013  # The websocket code for "try again later".
 async def live(socket: WebSocket) -> None:
     """Serve one tab until it goes."""
     session: Session = socket.app.state.session
-    tab = session.hub.open()
+    tab = session.broadcaster.open()
     if tab is None:
         await socket.close(TOO_MANY, "too many tabs are open")
         return
@@ -38,7 +38,7 @@ async def live(socket: WebSocket) -> None:
     except WebSocketDisconnect:
         return
     finally:
-        session.hub.close(tab)
+        session.broadcaster.close(tab)
         if sender is not None:
             sender.cancel()
 

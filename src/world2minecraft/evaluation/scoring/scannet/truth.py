@@ -35,16 +35,16 @@ from world2minecraft.procgen.capture import stated_object
 # A labelled surface as fine voxels, each with the class and the object of most of it.
 # A triangle is cut into pieces smaller than a voxel. The middle of each, half a voxel deep in the
 # matter, says which voxel it fills: so a wall whose face lies between two voxels fills the one
-# behind it, as a solid wall does. Which way the matter lies, the order of a triangle's corners tells;
-# the floor, whose matter lies below, tells whether a file counts them the other way round.
+# behind it, as a solid wall does. Which way the matter lies, the order of a triangle's corners
+# tells; the floor, whose matter lies below, tells whether a file counts them the other way round.
 PIECE = 0.75  # Of a voxel: the longest side of a piece.
 MARGIN = 2  # Free voxels around it all.
 CHUNK_M2 = 4.0  # Of surface at a time, some 200,000 pieces.
 MOST_VALUES = 1 << 16
 
 # Which fine voxels a scene's cameras saw through: what is free, and not merely not surface.
-# A ray counts where the mesh and the depth image agree on where it ends. Where the sensor saw nothing
-# (a screen, a window), or the mesh has a hole, nobody knows what the ray passed.
+# A ray counts where the mesh and the depth image agree on where it ends. Where the sensor saw
+# nothing (a screen, a window), or the mesh has a hole, nobody knows what the ray passed.
 MOST_FRAMES = 200  # Evenly spread over the recording: seven a second of a walk of half a minute.
 APART_M, APART_SHARE = 0.08, 0.05  # A cell, or what such sensors err by at 2 m and beyond.
 
