@@ -7,9 +7,9 @@ import numpy as np
 
 from benchmarks.rows import Row
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.rules.light import block_light
-from world2minecraft.minecraft.rules.stability import unstable_cells
+from world2minecraft.minecraft.rules.stability import find_unstable_cells
 
 SHAPE = (120, 80, 80)  # A room of 30 x 20 x 20 m at 4 blocks a metre: far more than most.
 FILLED = 0.03
@@ -31,8 +31,8 @@ def run() -> list[Row]:
     labels = np.zeros(SHAPE, np.uint8)
     volume = BlockVolume(states, PALETTE, labels, labels.astype(np.uint16), (0, 0, 0), np.eye(4))
     return [
-        Row("connections of a room", best(lambda: connected(states, PALETTE)), "ms", 50.0),
-        Row("what of it would not stay", best(lambda: unstable_cells(states, PALETTE)), "ms"),
+        Row("connections of a room", best(lambda: update_connections(states, PALETTE)), "ms", 50.0),
+        Row("what of it would not stay", best(lambda: find_unstable_cells(states, PALETTE)), "ms"),
         Row("its block light", best(lambda: block_light(volume)), "ms"),
     ]
 

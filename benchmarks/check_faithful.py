@@ -32,7 +32,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.stage_ablation import AFTER, allowed_cells, stage_losses
 from world2minecraft.formats.run_arrays import read_evidence, write_evidence
-from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials, write_trial
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, list_trials, write_trial
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -231,9 +231,9 @@ def chosen_trials(split: str, difficulties: Sequence[str], count: int) -> list[T
     found = []
     for name in difficulties:
         if name == CLEAN:
-            found += [trial.clean() for trial in trials(split, "noise")[:count]]  # type: ignore[arg-type]
+            found += [trial.clean() for trial in list_trials(split, "noise")[:count]]  # type: ignore[arg-type]
         else:
-            found += trials(split, name)[:count]  # type: ignore[arg-type]
+            found += list_trials(split, name)[:count]  # type: ignore[arg-type]
     return found
 
 

@@ -37,8 +37,8 @@ from world2minecraft.construction.fitting.stabilization import label_parts
 from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.connections import update_connections
+from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.rooms.voxelization import SHELL
 
@@ -66,7 +66,7 @@ class Score(NamedTuple):
 
     iou: float
     thin: float
-    unstable: int
+    find_unstable: int
     loose: int
     seconds: float
 
@@ -210,10 +210,10 @@ def settled_states(
     whole = np.pad(grid, ((1, 1), (1, 1), (1, 1)))
     if stands:
         whole[:, :, 0] = len(palette) - 1
-    states, names = connected(grid_to_block_axes(whole.astype(np.uint16)), palette)
+    states, names = update_connections(grid_to_block_axes(whole.astype(np.uint16)), palette)
     zeros = np.zeros(states.shape, np.uint8)
     volume = BlockVolume(states, tuple(names), zeros, zeros.astype(np.uint16), (0, 0, 0), np.eye(4))
-    shaky = sum(not one.state.startswith(FLOOR) for one in unstable(volume))
+    shaky = sum(not one.state.startswith(FLOOR) for one in find_unstable(volume))
     return block_axes_to_grid(states)[1:-1, 1:-1, 1:-1], list(names), shaky
 
 

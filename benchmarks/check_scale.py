@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.capture.scale import collect_unscaled, estimate_scale, scale_points
 from world2minecraft.procgen import room_views
-from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, list_trials
 
 MOST_FRAMES = 60
 
@@ -38,7 +38,7 @@ def main(split: str = "test") -> None:
     """Print the table of a split."""
     print(f"{'difficulty':<12}{'median':>8}{'worst':>8}{'over 15 %':>11}{'error / sigma':>15}")
     for difficulty in DIFFICULTIES:
-        rows = [error_of(trial) for trial in trials(split, difficulty)]  # type: ignore[arg-type]
+        rows = [error_of(trial) for trial in list_trials(split, difficulty)]  # type: ignore[arg-type]
         errors = np.abs([error for error, _ in rows])
         ratio = np.sqrt(np.mean([(error / sigma) ** 2 for error, sigma in rows]))
         over = int((errors > 0.15).sum())

@@ -27,7 +27,7 @@ from world2minecraft.evaluation.scoring.score import TrueRoom, see_truth
 from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.run_arrays import read_evidence
-from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, list_trials, write_trial
 from world2minecraft.reconstruction.fusion import (
     CleanParameters,
     close_structure,
@@ -76,7 +76,7 @@ def _in_grid(values: np.ndarray, grid: OccupancyGrid, room: TrueRoom, fill: Any)
 def gather(each: int, base: Path) -> dict[str, list[Example]]:
     """Reconstruct the first tuning scans of each difficulty, and label them in both ways."""
     found: dict[str, list[Example]] = {name: [] for name in LABELLERS}
-    chosen = [trial for name in DIFFICULTIES for trial in trials("tune", name)[:each]]
+    chosen = [trial for name in DIFFICULTIES for trial in list_trials("tune", name)[:each]]
     for number, trial in enumerate(chosen):
         capture, out = base / trial.name, base / f"{trial.name}-out"
         if not (capture / "truth.json").is_file():

@@ -31,7 +31,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_bytes, read_json, write_text
 from world2minecraft.formats.occupancy_files import DEFAULT_VOXEL_M
-from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, list_trials
 
 INPUTS = ("depth", "depth+labels", "photos")
 FIGURES = ("precision", "recall", "iou", "miou", "f1", "fronts", "calibration")
@@ -294,7 +294,7 @@ def _means(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
 def _check_trials(path: Path, names: Sequence[str], way: str, ways: Sequence[str]) -> None:
     if not names:
         raise DamagedFileError(path, f"has no rows labelled {way!r}; it has {', '.join(ways)}")
-    wanted = [trial.name for trial in trials("test")]
+    wanted = [trial.name for trial in list_trials("test")]
     lacking = [name for name in wanted if name not in names]
     if lacking or len(set(names)) != len(names):
         held = len(wanted) - len(lacking)

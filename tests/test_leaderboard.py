@@ -11,7 +11,7 @@ from benchmarks.leaderboard import BEGIN, END, entry_text, read_entries, tables,
 from test_faithful_table import row as scores_row
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_json
-from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, list_trials
 
 ADD = ["--method", "Other", "--version", "2", "--link", "https://example.org/other",
        "--command", "other run"]  # fmt: skip
@@ -34,7 +34,7 @@ def scores(tmp_path):
         rows = [
             scores_row(trial.difficulty, iou=0.5 + 0.01 * n)
             | {"trial": trial.name, "labels": "given"}
-            for n, trial in enumerate(trials("test"))
+            for n, trial in enumerate(list_trials("test"))
         ]
         write_json(tmp_path / "scores.json", change(rows))
         return str(tmp_path / "scores.json")

@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import read_json
 from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.evaluation.scoring import read_truth
-from world2minecraft.procgen.benchmark_trials import trial_named
+from world2minecraft.procgen.benchmark_trials import find_trial
 
 NAME, VOXEL_M = "noise-500", 0.08
 
@@ -21,7 +21,7 @@ NAME, VOXEL_M = "noise-500", 0.08
 def folder(tmp_path_factory):
     """One tuning trial, with few frames, as ``write`` leaves it."""
     place = tmp_path_factory.mktemp("benchmark")
-    scan_benchmark.write_captures([replace(trial_named(NAME), frames=8)], place)
+    scan_benchmark.write_captures([replace(find_trial(NAME), frames=8)], place)
     return place
 
 
@@ -53,7 +53,7 @@ def test_a_capture_holds_nothing_of_its_truth(folder):
 
 def test_what_is_there_is_not_made_again(folder, monkeypatch):
     monkeypatch.setattr(scan_benchmark, "write_trial", lambda *words: pytest.fail("made again"))
-    scan_benchmark.write_captures([trial_named(NAME)], folder)
+    scan_benchmark.write_captures([find_trial(NAME)], folder)
 
 
 def test_the_truth_given_as_a_result_scores_about_one(folder, tmp_path, capsys):

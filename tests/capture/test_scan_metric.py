@@ -20,7 +20,7 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View
 from world2minecraft.procgen import room_views
-from world2minecraft.procgen.benchmark_trials import trial_named
+from world2minecraft.procgen.benchmark_trials import find_trial
 
 
 def shrunk(views, factor):
@@ -51,7 +51,7 @@ def test_a_box_room_is_measured_in_any_unit(box_room, factor):
 
 @pytest.mark.parametrize(("trial", "factor"), [("noise-501", 0.31), ("coverage-512", 4.7)])
 def test_generated_rooms_within_15_percent(trial, factor):
-    how = trial_named(trial)
+    how = find_trial(trial)
     views = room_views(
         how.room(),
         frames=24,

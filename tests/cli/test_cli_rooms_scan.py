@@ -7,7 +7,8 @@ import pytest
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.files import read_npz
 from world2minecraft.procgen import benchmark_trials as trials
-from world2minecraft.procgen import capture, generate_room, write_generated
+from world2minecraft.procgen import generate_room, write_generated
+from world2minecraft.procgen import virtual_scan as capture
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +64,7 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "write_trial", lambda trial, out, progress: asked.append(trial))
     out = str(tmp_path / "cap")
     assert w2m(["rooms", "scan", "--trial", "noise-503-clean", "--out", out]) == 0
-    assert asked == [trials.trial_named("noise-503").clean()]
+    assert asked == [trials.find_trial("noise-503").clean()]
 
 
 @pytest.mark.parametrize(

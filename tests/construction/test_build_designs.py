@@ -10,7 +10,7 @@ from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.block_designs import body_box, design_box
 from world2minecraft.construction.lattice import Lattice
 from world2minecraft.furniture import block_design, template
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.stability import find_unstable
 
 BARE = BuildParameters(ceiling=False, lights=False, expose=False)
 
@@ -83,7 +83,7 @@ def test_a_box_on_a_table_lies_over_its_top_and_both_are_whole(scale):
     own, under = np.argwhere(volume.instance == 2), np.argwhere(volume.instance == 1)
     assert len(own) == len(block_design(box, scale).blocks)
     assert own[:, 1].min() > under[:, 1].max()
-    assert unstable(volume) == []
+    assert find_unstable(volume) == []
 
 
 @pytest.mark.parametrize("turns", range(4))

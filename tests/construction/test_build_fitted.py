@@ -22,7 +22,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_states import check_state, parse_state
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.stability import find_unstable
 
 BARE = BuildParameters(lights="off", edge="none", ceiling="off", plaque="off")
 KINDS = frozenset(("full", "slab", "stairs", "trapdoor", "post"))
@@ -134,7 +134,7 @@ def test_nothing_that_is_built_falls(scale, style):
     sketch.put((37, 38), (17, 18), (0, 8), TABLE, WOOD, 2)
     sketch.put((0, 6), (0, 12), (0, 11), FURN, (120, 120, 122), 3)
     volume = build(sketch, scale, style=style)
-    assert unstable(volume) == []
+    assert find_unstable(volume) == []
 
 
 @pytest.mark.parametrize("whole", [True, False])

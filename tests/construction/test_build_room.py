@@ -20,7 +20,7 @@ from world2minecraft.geometry.connected_components import label_face_components
 from world2minecraft.geometry.morphology import dilate, dilate_faces
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.light import block_light
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.procgen import generate_house, generate_room
 
 SCALES = (1.0, 2.0, 4.0)
@@ -122,7 +122,7 @@ def test_lamps_hang_from_the_ceiling_over_a_player_s_head(scale):
     assert len(cells)
     ground = 64 - volume.corner[1]
     assert cells[:, 1].min() - ground >= WALK_BLOCKS
-    assert not unstable(volume)
+    assert not find_unstable(volume)
     shell = np.isin(plain.semantic, (FLOOR, WALL, CEILING))
     assert np.array_equal(volume.semantic[shell], plain.semantic[shell])
     assert (plain.states == 0).sum() > 0
@@ -164,7 +164,7 @@ def test_a_plaque_says_the_scene_s_name_where_one_sees_it(sketch, scale):
     assert entity.id == "minecraft:sign" and "_sign[" in state
     lines = [json.loads(line)["text"] for line in entity.nbt["front_text"]["messages"]]
     assert lines[:2] == ["Grandmother's", "kitchen"]
-    assert not unstable(named)
+    assert not find_unstable(named)
     spawn = find_spawn(named)
     assert spawn == find_spawn(plain)
     assert np.hypot(*(np.array(entity.block_pos) + 0.5 - spawn.position)[[0, 2]]) <= FAR
@@ -201,7 +201,7 @@ def test_nothing_of_a_furnished_room_would_fall_or_change(scale, style):
         parameters=BuildParameters(style=style, lights="lamps"),
         name="Study",
     )
-    assert unstable(volume) == []
+    assert find_unstable(volume) == []
     assert np.isin(volume.semantic, OBJECT_CLASSES).any()
 
 
@@ -209,7 +209,7 @@ def test_nothing_of_a_furnished_room_would_fall_or_change(scale, style):
 def test_nothing_of_a_room_built_from_its_cells_would_fall_or_change(seed):
     grid = true_grid(generate_room(seed))
     for scale in SCALES:
-        assert unstable(build_volume(grid, (), (), blocks_per_metre=scale)) == []
+        assert find_unstable(build_volume(grid, (), (), blocks_per_metre=scale)) == []
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.editing.cleanup.floating import floating_cells
 from world2minecraft.editing.cleanup.passes import RULES, repair_volume
 from world2minecraft.editing.volume_draft import Draft, apply_edits
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.stability import find_unstable
 
 FLOOR, WALL, PANE = "minecraft:oak_planks", "minecraft:white_concrete", "minecraft:glass"
 WOOD, RED = "minecraft:spruce_planks", "minecraft:red_concrete"
@@ -218,7 +218,7 @@ def test_what_would_pop_off_goes_and_connections_are_set():
     broken = replace(volume, states=states, semantic=semantic, palette=(*PALETTE, torch, pane))
     result, edits = repair_volume(broken, ("steady",))
     assert sorted(kinds(edits)) == ["connect", "drop"]
-    assert unstable(result) == []
+    assert find_unstable(result) == []
     assert not result.states[9, 3, 9]
     assert "north=true" in result.palette[result.states[0, 3, 9]]
 
@@ -265,4 +265,4 @@ def test_whatever_is_planted_nothing_floats_in_the_end(seed):
     result, edits = repair_volume(volume)
     assert seen(apply_edits(result, *[e.inverse() for e in reversed(edits)])) == seen(volume)
     assert not floating_cells(Draft(result)).any()
-    assert unstable(result) == []
+    assert find_unstable(result) == []

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.types import AIR
 from world2minecraft.editing.cleanup.floating import GAP, STEPS, touches, touching_parts
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 STONE = "minecraft:stone"
 LOWER, UPPER = (f"minecraft:oak_slab[type={kind},waterlogged=false]" for kind in ("bottom", "top"))
@@ -51,8 +51,8 @@ def slowly(states, mask):
         away = np.array(b) - a
         if np.abs(away).max() > 1:
             return False
-        for one in visual_boxes_of(PALETTE[states[a]]):
-            for two in visual_boxes_of(PALETTE[states[b]]):
+        for one in visual_boxes(PALETTE[states[a]]):
+            for two in visual_boxes(PALETTE[states[b]]):
                 gaps = [
                     max(two[n] + away[n] - one[n + 3], one[n] - two[n + 3] - away[n])
                     for n in range(3)

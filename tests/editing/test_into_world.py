@@ -176,7 +176,7 @@ def test_a_section_that_keeps_more_bits_than_it_needs_is_built_into(world):
         for section in root["sections"]:
             blocks = section["block_states"]
             cells = section_words._padded_cells(blocks["data"].view(np.uint64), 4)
-            blocks["data"] = section_words._padded(cells, 7).view(np.int64)
+            blocks["data"] = section_words._pack_padded(cells, 7).view(np.int64)
     path.write_bytes(pack_region({place: write_nbt(root) for place, root in chunks.items()})[0])
     volume = room()
     build_into_world(world, volume)
@@ -332,7 +332,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
 
 
 def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(tmp_path, monkeypatch):
-    monkeypatch.setattr(region_edit, "MOST_SECTORS", 3)
+    monkeypatch.setattr(region_edit, "MAX_SECTORS", 3)
     rng = np.random.default_rng(1)
     names = [f"mod:{rng.integers(1 << 60)}_{rng.integers(1 << 60)}_{n}" for n in range(2000)]
     states = np.arange(16 * 96 * 16).reshape(16, 96, 16) % 2000 + 1

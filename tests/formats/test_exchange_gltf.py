@@ -41,7 +41,7 @@ from world2minecraft.formats.volume_formats import (
 from world2minecraft.geometry.colour import linear_to_srgb
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.entities import block_display
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 PALETTE = (
     AIR,
@@ -132,7 +132,7 @@ def test_a_room_is_not_mirrored(scene):
 def test_bodies_are_closed_and_have_the_volume_of_their_boxes(scene):
     volume = furnished()
     boxes = {
-        name: visual_boxes_of(state)
+        name: visual_boxes(state)
         for name, state in (("chair_7", PALETTE[3]), ("table_9", PALETTE[2]))
     }
     for name, count in (("chair_7", 1), ("table_9", 4)):

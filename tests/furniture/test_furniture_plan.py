@@ -15,7 +15,7 @@ from world2minecraft.furniture.box_primitives import (
 )
 from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 WOOD = Look("thing", {}, {}, {"top": Material("wood", "oak"), "cloth": Material("cloth", "red")})
 # Where the panel of an open trapdoor lies: axis of block axes (x east, z south) and its low side.
@@ -31,7 +31,7 @@ def _plan(depth=2, width=3, height=2, scale=2.0):
 def test_a_panel_stands_at_the_side_that_is_said(side):
     plan = _plan()
     plan.panel("top", 0, 0, 0, side)
-    (box,) = visual_boxes_of(str(complete(parse_state(plan.blocks[0].state))))
+    (box,) = visual_boxes(str(complete(parse_state(plan.blocks[0].state))))
     axis, edge = PANELS[side]
     assert edge in (box[axis], box[axis + 3])
     assert box[axis + 3] - box[axis] < 0.2
@@ -41,7 +41,7 @@ def test_a_panel_stands_at_the_side_that_is_said(side):
 def test_stairs_are_high_at_the_side_that_is_said(side):
     plan = _plan()
     plan.stairs("top", 0, 0, 0, side)
-    boxes = visual_boxes_of(str(complete(parse_state(plan.blocks[0].state))))
+    boxes = visual_boxes(str(complete(parse_state(plan.blocks[0].state))))
     axis, edge = PANELS[side]
     high = [box for box in boxes if box[4] == 1.0 and box[1] > 0.0]
     assert high
@@ -64,7 +64,7 @@ def test_a_plate_lies_as_near_to_its_height_as_its_shapes_allow(height):
     plan = _plan(1, 1)
     layer = lay_plate(plan, "top", 0, 0, height)
     (block,) = plan.blocks
-    top = block.cell[2] + visual_boxes_of(str(complete(parse_state(block.state))))[:, 4].max()
+    top = block.cell[2] + visual_boxes(str(complete(parse_state(block.state))))[:, 4].max()
     heights = [k + rise for k in range(10) for name, rise in RISES.items() if name != "carpet"]
     best = min(abs(one - height) for one in heights if one > 0.4)
     assert abs(top - height) <= best + 1e-5

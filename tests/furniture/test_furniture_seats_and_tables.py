@@ -12,8 +12,8 @@ from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.preview_scene import preview_volume
 from world2minecraft.minecraft.block_states import check_state, parse_state
-from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.rules.stability import find_unstable
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 SCALES = (1.0, 2.0, 4.0)
 MINE = ("chairs", "sofas", "beds", "tables", "screens")
@@ -36,7 +36,7 @@ def blocks_of(name, scale, size_m=None, **parameters):
 def _top(name, scale, size_m=None):
     """Return how high a design reaches, in blocks, as it is seen."""
     return max(
-        block.cell[2] + visual_boxes_of(block.state)[:, 4].max()
+        block.cell[2] + visual_boxes(block.state)[:, 4].max()
         for block in blocks_of(name, scale, size_m)
     )
 
@@ -53,7 +53,7 @@ def test_every_block_stays_where_it_is(name):
     for scale in SCALES:
         for column in range(3):
             volume = preview_volume(one, scale, tuple(span[column] for span in one.size_m))
-            assert unstable(volume) == []
+            assert find_unstable(volume) == []
 
 
 @each_design

@@ -22,12 +22,12 @@ BACK = 0.05  # Blocks by which one draws back.
 def mineflayer_rules(world):
     """Within it, ``minecraft.physics.player_motion`` moves a player in a world as mineflayer does."""
     step = sys.modules["world2minecraft.minecraft.physics.player_motion"]
-    of_the_game = sweep.climbed
+    of_the_game = sweep.sweep_with_step
 
     def x_first(boxes, box, way, touch=1e-7):
         gone, here = [0.0, 0.0, 0.0], box.copy()
         for axis in (1, 0, 2):
-            gone[axis] = sweep.free_way(boxes, here, axis, float(way[axis]), touch)
+            gone[axis] = sweep.free_distance(boxes, here, axis, float(way[axis]), touch)
             here[[axis, 3 + axis]] += gone[axis]
         return tuple(gone)
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from world2minecraft.minecraft.rules.light import light_of
+from world2minecraft.minecraft.rules.light import emitted_light
 
 PUBLISHED = {  # The Minecraft Wiki's list of light sources.
     "lantern": 15,
@@ -30,4 +30,4 @@ PUBLISHED = {  # The Minecraft Wiki's list of light sources.
 
 @pytest.mark.parametrize("state", PUBLISHED)
 def test_a_block_gives_the_light_of_its_state(state):
-    assert light_of(f"minecraft:{state}") == PUBLISHED[state]
+    assert emitted_light(f"minecraft:{state}") == PUBLISHED[state]

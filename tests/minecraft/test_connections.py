@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.transforms import mirror_state, turn_state
 
 CASES = json.loads((Path(__file__).parent / "connection_cases.json").read_text())["cases"]
@@ -49,7 +49,7 @@ def test_the_published_rules(group, what, blocks, expected):
         if text not in palette:
             palette.append(text)
         states[tuple(2 + sum(STEPS[letter] for letter in place))] = palette.index(text)
-    found, names = connected(states, palette)
+    found, names = update_connections(states, palette)
     got = dict(complete(parse_state(names[found[2, 2, 2]])).properties)
     assert {key: got[key] for key in expected} == expected
 
@@ -62,7 +62,7 @@ def test_there_are_cases_enough():
 @pytest.mark.parametrize("seed", range(4))
 def test_the_fast_rules_are_the_slow_ones(seed):
     states = volume((6, 5, 6), seed)
-    found, names = connected(states, PALETTE)
+    found, names = update_connections(states, PALETTE)
     for cell, state in slowly_connected(states, PALETTE).items():
         if "leaves" not in state.name:
             assert texts(found[cell], names) == str(state), cell
@@ -71,8 +71,8 @@ def test_the_fast_rules_are_the_slow_ones(seed):
 @settings(deadline=None, max_examples=30)
 @given(st.integers(0, 10_000), st.tuples(*[st.integers(1, 5)] * 3))
 def test_twice_is_once(seed, size):
-    once, names = connected(volume(size, seed), PALETTE)
-    twice, more = connected(once, names)
+    once, names = update_connections(volume(size, seed), PALETTE)
+    twice, more = update_connections(once, names)
     assert more == names and np.array_equal(once, twice)
 
 
@@ -81,9 +81,9 @@ def test_twice_is_once(seed, size):
 def test_turning_and_connecting_go_in_any_order(seed, size):
     states = volume(size, seed)
     turned = np.rot90(states, 1, axes=(2, 0))
-    late, names = connected(states, PALETTE)
+    late, names = update_connections(states, PALETTE)
     late = np.rot90(texts(late, [turn_state(text, 1) for text in names]), 1, axes=(2, 0))
-    early = texts(*connected(turned, [turn_state(text, 1) for text in PALETTE]))
+    early = texts(*update_connections(turned, [turn_state(text, 1) for text in PALETTE]))
     assert np.array_equal(early, late)
 
 
@@ -91,9 +91,9 @@ def test_turning_and_connecting_go_in_any_order(seed, size):
 @given(st.integers(0, 10_000), st.tuples(*[st.integers(1, 5)] * 3))
 def test_mirroring_and_connecting_go_in_any_order(seed, size):
     states = volume(size, seed)
-    late, names = connected(states, PALETTE)
+    late, names = update_connections(states, PALETTE)
     late = texts(late, [mirror_state(text, "x") for text in names])[::-1]
-    early = texts(*connected(states[::-1], [mirror_state(text, "x") for text in PALETTE]))
+    early = texts(*update_connections(states[::-1], [mirror_state(text, "x") for text in PALETTE]))
     assert np.array_equal(early, late)
 
 
@@ -101,7 +101,7 @@ def test_mirroring_and_connecting_go_in_any_order(seed, size):
 @settings(deadline=None, max_examples=20)
 def test_nothing_but_the_computed_properties_changes(seed):
     states = volume((4, 4, 4), seed)
-    before, after = texts(states, PALETTE), texts(*connected(states, PALETTE))
+    before, after = texts(states, PALETTE), texts(*update_connections(states, PALETTE))
     kept = ("half", "type", "waterlogged", "persistent", "layers", "axis", "rotation")
     for one, other in zip(before.ravel(), after.ravel(), strict=True):
         first, second = parse_state(one), parse_state(other)
@@ -110,27 +110,27 @@ def test_nothing_but_the_computed_properties_changes(seed):
 
 
 def test_the_palette_keeps_its_order_and_an_empty_volume_is_one():
-    states, names = connected(volume((5, 5, 5), 1), PALETTE)
+    states, names = update_connections(volume((5, 5, 5), 1), PALETTE)
     assert names[: len(PALETTE)] == PALETTE
     assert states.dtype == np.uint16
-    empty, names = connected(np.zeros((0, 3, 2), np.uint16), ("minecraft:air",))
+    empty, names = update_connections(np.zeros((0, 3, 2), np.uint16), ("minecraft:air",))
     assert empty.shape == (0, 3, 2) and names == ("minecraft:air",)
 
 
 def test_equal_chests_of_a_row_stay_pairs():
     row = ("minecraft:air", "chest[facing=north,type=left]", "chest[facing=north,type=right]")
     states = np.array([1, 2, 1, 2], np.uint16).reshape(4, 1, 1)
-    found, names = connected(states, row)
+    found, names = update_connections(states, row)
     assert [parse_state(names[n]).get("type") for n in found.ravel()] == ["left", "right"] * 2
 
 
 def test_walls_of_old_games_keep_their_sides():
     """Before 1.16 a wall's side was true or false, with no height to compute."""
     old = "minecraft:cobblestone_wall[east=true,north=false,south=false,up=true,west=false]"
-    states, names = connected(np.ones((1, 1, 1), np.uint16), ("minecraft:air", old))
+    states, names = update_connections(np.ones((1, 1, 1), np.uint16), ("minecraft:air", old))
     assert names[states[0, 0, 0]] == old
 
 
 def test_a_text_that_is_no_state_is_refused():
     with pytest.raises(UsageError):
-        connected(np.zeros((1, 1, 1), np.uint16), ("minecraft:air", "No State"))
+        update_connections(np.zeros((1, 1, 1), np.uint16), ("minecraft:air", "No State"))

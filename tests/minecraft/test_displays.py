@@ -20,7 +20,7 @@ from world2minecraft.minecraft.entities import (
     check_displays,
     display_cubes,
     owner_of,
-    tags_of,
+    owner_tags,
 )
 from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
 from world2minecraft.minecraft.transforms import turn_volume
@@ -86,7 +86,7 @@ def test_the_owner_is_told_by_tags_where_a_file_forgot_it():
     odd = replace(bare, nbt={"Tags": ["w2m_class_dragon", "w2m_object_99999999", "w2m_object_x"]})
     assert owner_of(odd) == (0, 0)
     assert owner_of(replace(bare, nbt={"Tags": "w2m_object_3"})) == (0, 0)
-    assert tags_of(0, 0) == ["w2m"]
+    assert owner_tags(0, 0) == ["w2m"]
 
 
 def furnished():

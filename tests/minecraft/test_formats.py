@@ -10,8 +10,8 @@ from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import (
     FORMATS,
     LABELS,
+    default_spawn,
     read_blocks,
-    top_of_middle,
     write_blocks,
 )
 
@@ -78,13 +78,13 @@ def test_the_player_of_a_converted_world_stands_on_the_floor_of_the_middle():
     states[:, 0] = states[:, 4] = 1  # A floor and a ceiling.
     states[3, 1:3, 3] = 1  # On a pillar in the middle a head would be in the ceiling.
     room = volume_of(states, (AIR, "minecraft:stone"), (10, 63, 10))
-    x, y, z = top_of_middle(room)
+    x, y, z = default_spawn(room)
     assert y == 64.0
     assert max(abs(x - 13.5), abs(z - 13.5)) == 1.0
 
 
 def test_the_player_stands_on_a_slab_and_above_nothing():
     slab = volume_of(np.ones((1, 1, 1)), (AIR, "minecraft:oak_slab[type=bottom]"), (0, 63, 0))
-    assert top_of_middle(slab) == (0.5, 63.5, 0.5)
+    assert default_spawn(slab) == (0.5, 63.5, 0.5)
     air = volume_of(np.zeros((2, 3, 4)), (AIR,), (0, 63, 0))
-    assert top_of_middle(air) == (1.0, 66.0, 2.0)
+    assert default_spawn(air) == (1.0, 66.0, 2.0)

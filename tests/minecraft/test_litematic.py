@@ -11,10 +11,10 @@ from nbt_equality import same_block_entities, same_entities
 from world2minecraft.core.errors import InputError, LimitError, UsageError
 from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.bit_packing import (
-    bits_for,
+    bit_width,
     pack_straddled,
+    straddled_word_count,
     unpack_straddled,
-    words_for,
 )
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
@@ -74,7 +74,7 @@ def texts_slowly(path: Path) -> dict[tuple[int, int, int], str]:
 @given(st.integers(1, 16), st.lists(st.integers(0, 0xFFFF), min_size=1, max_size=200))
 def test_straddled_numbers_come_back(bits, values):
     cells = np.array(values, np.uint16) & np.uint16((1 << bits) - 1)
-    words = np.zeros(words_for(len(cells), bits), np.uint64)
+    words = np.zeros(straddled_word_count(len(cells), bits), np.uint64)
     pack_straddled(cells, bits, words)
     assert bits_slowly(words, bits, len(cells)) == cells.tolist()
     out = np.zeros((1, 1, len(cells)), np.uint16)
@@ -83,7 +83,7 @@ def test_straddled_numbers_come_back(bits, values):
 
 
 def test_the_bits_of_a_palette():
-    assert [bits_for(count, 2) for count in (1, 4, 5, 256, 257)] == [2, 2, 3, 8, 9]
+    assert [bit_width(count, 2) for count in (1, 4, 5, 256, 257)] == [2, 2, 3, 8, 9]
 
 
 @each_volume

@@ -11,10 +11,10 @@ from world2minecraft.minecraft.block_states import check_state, complete, parse_
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, write_nbt
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
 from world2minecraft.minecraft.schematics.pre_flattening import legacy_state
-from world2minecraft.minecraft.signs import sign_of_today
+from world2minecraft.minecraft.signs import upgrade_sign
 
 
 def schematic(
@@ -186,7 +186,7 @@ def test_two_chests_side_by_side_are_one(value, along_x, first, tmp_path):
     assert parse_state(str(texts[0, 0, 0])).get("type") == first
     assert parse_state(str(texts[other])).get("type") == second
     np.testing.assert_array_equal(
-        *(np.array(connected(found.states, found.palette)[0]), found.states)
+        *(np.array(update_connections(found.states, found.palette)[0]), found.states)
     )
 
 
@@ -258,9 +258,9 @@ def test_block_entities_and_entities_have_the_names_of_today(tmp_path):
 
 def test_signs_go_to_older_games_and_back():
     old = {"Text1": '{"text":"a"}', "Color": "red", "GlowingText": Byte(1)}
-    today = sign_of_today(old)
+    today = upgrade_sign(old)
     assert today["front_text"]["color"] == "red"
-    assert sign_of_today(today) == today
+    assert upgrade_sign(today) == today
     sign = BlockEntity((0, 0, 0), "minecraft:sign", today)
     volume = volume_of(
         np.ones((1, 1, 1)), (AIR, "minecraft:oak_sign"), (0, 0, 0), block_entities=(sign,)
@@ -268,7 +268,7 @@ def test_signs_go_to_older_games_and_back():
     assert in_game(volume, 3465) is volume
     (back,) = in_game(volume, 2586).block_entities
     assert back.nbt.items() >= {**old, "Text4": '{"text":""}'}.items()
-    assert sign_of_today(back.nbt) == today
+    assert upgrade_sign(back.nbt) == today
 
 
 # Damaged files.

@@ -12,10 +12,10 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.bit_packing import (
     pack_straddled,
+    repack_section_words,
+    straddle_section_words,
+    straddled_word_count,
     word_count,
-    words_before_1_16,
-    words_for,
-    words_of_today,
 )
 from world2minecraft.minecraft.block_names import (
     count_unknown,
@@ -165,11 +165,11 @@ def test_words_of_old_games_are_turned_and_back(states):
     rng = np.random.default_rng(states)
     cells = rng.integers(0, states, 4096).astype(np.uint16)
     for bits in range(max(4, (states - 1).bit_length()), 15):
-        old = np.zeros(words_for(4096, bits), np.uint64)
+        old = np.zeros(straddled_word_count(4096, bits), np.uint64)
         pack_straddled(cells, bits, old)
-        today = words_of_today(old, states, straddles=True)
+        today = repack_section_words(old, states, straddles=True)
         assert today is not None and len(today) == word_count(states)
-        again = words_of_today(words_before_1_16(today, states), states, straddles=True)
+        again = repack_section_words(straddle_section_words(today, states), states, straddles=True)
         np.testing.assert_array_equal(again, today)
 
 
@@ -179,17 +179,17 @@ def test_more_bits_than_needed_are_read():
     rows = np.zeros((-(-4096 // per_word), per_word), np.uint64)
     rows.ravel()[:4096] = cells
     wide = (rows << (np.arange(per_word, dtype=np.uint64) * np.uint64(bits))).sum(axis=1)
-    today = words_of_today(wide, 7, straddles=False)
+    today = repack_section_words(wide, 7, straddles=False)
     assert today is not None and len(today) == 256
     assert [int(today[0]) >> (4 * n) & 15 for n in range(16)] == cells[:16].tolist()
 
 
 def test_words_that_fit_no_count_of_bits_are_refused():
     for count in (0, 9, 255, 257, 5000):
-        assert words_of_today(np.zeros(count, np.uint64), 2, straddles=True) is None
-        assert words_of_today(np.zeros(count, np.uint64), 2, straddles=False) is None
+        assert repack_section_words(np.zeros(count, np.uint64), 2, straddles=True) is None
+        assert repack_section_words(np.zeros(count, np.uint64), 2, straddles=False) is None
     full = np.full(320, -1, np.int64).view(np.uint64)  # Five bits, all set: number 31.
-    assert words_of_today(full, 20, straddles=True) is None
+    assert repack_section_words(full, 20, straddles=True) is None
 
 
 # The names.

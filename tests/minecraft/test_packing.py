@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from world2minecraft.minecraft.bit_packing import (
     pack_section,
     read_varints,
-    skip_texts,
+    skip_text_compounds,
     unpack_section,
     write_varints,
 )
@@ -111,5 +111,5 @@ def test_broken_varints_are_told():
 def test_skipping_never_leaves_the_bytes(data, count):
     ends = np.zeros(count, np.int64)
     held = np.frombuffer(data, np.uint8)
-    if skip_texts(held, 0, ends):
+    if skip_text_compounds(held, 0, ends):
         assert (ends <= len(data)).all()

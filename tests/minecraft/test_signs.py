@@ -14,7 +14,7 @@ from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
 from world2minecraft.minecraft.server.building import plan_build
-from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, signs_of_today, wrapped
+from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, upgrade_signs, wrap_sign_text
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
 
 STATE = "minecraft:oak_wall_sign[facing=north,waterlogged=false]"
@@ -102,7 +102,7 @@ def test_lines_of_mixed_parts_become_nbt_of_one_kind_and_come_back():
     turns = {"action": "change_page", "page": 2}
     assert nbt["front_text"]["messages"][3] == {"click_event": turns}
     raw = read_nbt(write_nbt(dict(nbt)), "sign.nbt")[1]
-    (back,) = signs_of_today([BlockEntity((1, 2, 3), held.id, raw)], 4435)
+    (back,) = upgrade_signs([BlockEntity((1, 2, 3), held.id, raw)], 4435)
     first, second, _, last = map(json.loads, back.nbt["front_text"]["messages"])
     assert first["extra"][0] == {
         "text": "my ", "bold": True, "extra": [{"text": "red"}, {"text": " room"}]
@@ -114,7 +114,7 @@ def test_lines_of_mixed_parts_become_nbt_of_one_kind_and_come_back():
 def test_a_sign_of_1_21_5_is_read_as_1_20_has_it():
     lines = ["plain", {"": "in a mixed list"}, {"text": "b", "bold": Byte(1)}, [""]]
     new = BlockEntity((0, 0, 0), "minecraft:sign", {"front_text": {"messages": lines}})
-    (read,) = signs_of_today([new], 4325)
+    (read,) = upgrade_signs([new], 4325)
     assert read.nbt["front_text"]["messages"] == [
         '{"text":"plain"}', '"in a mixed list"', '{"text":"b","bold":true}', '[""]'
     ]  # fmt: skip
@@ -141,7 +141,7 @@ def test_other_block_entities_stay_as_they_are():
     ],
 )
 def test_names_fit_the_sign(text, lines, expected):
-    rows = wrapped(text, lines)
+    rows = wrap_sign_text(text, lines)
     assert rows == expected
     assert all(len(row) <= LINE_LETTERS for row in rows)
 

@@ -12,11 +12,11 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.formats import read_blocks
-from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.light import light_of
-from world2minecraft.minecraft.rules.stability import unstable, unstable_cells
+from world2minecraft.minecraft.rules.connections import update_connections
+from world2minecraft.minecraft.rules.light import emitted_light
+from world2minecraft.minecraft.rules.stability import find_unstable, find_unstable_cells
 from world2minecraft.minecraft.transforms import turn_volume
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]
 STEP = {"o": (0, 0, 0), "n": (0, 0, -1), "e": (1, 0, 0), "s": (0, 0, 1), "w": (-1, 0, 0),
@@ -39,7 +39,7 @@ def built(blocks: dict[str, str]) -> BlockVolume:
         if text not in palette:
             palette.append(text)
         states[tuple(2 + sum(np.array(STEP[letter]) for letter in place))] = palette.index(text)
-    renewed, names = connected(states, palette)
+    renewed, names = update_connections(states, palette)
     middle = states[2, 2, 2]
     states = renewed.copy()
     states[2, 2, 2] = middle  # The one in question keeps what it says.
@@ -51,7 +51,7 @@ def built(blocks: dict[str, str]) -> BlockVolume:
 
 @pytest.mark.parametrize(("what", "blocks", "expected"), CASES)
 def test_the_published_rules(what, blocks, expected):
-    reasons = [one.reason for one in unstable(built(blocks)) if one.block_pos == (0, 0, 0)]
+    reasons = [one.reason for one in find_unstable(built(blocks)) if one.block_pos == (0, 0, 0)]
     if not expected:
         assert reasons == []
     else:
@@ -59,12 +59,12 @@ def test_the_published_rules(what, blocks, expected):
 
 
 def test_an_empty_volume_and_a_plain_one_stay():
-    assert unstable(built({})) == []
-    assert unstable_cells(np.ones((3, 3, 3), np.uint16), ("minecraft:air", "stone")) == []
+    assert find_unstable(built({})) == []
+    assert find_unstable_cells(np.ones((3, 3, 3), np.uint16), ("minecraft:air", "stone")) == []
 
 
 def test_what_is_told():
-    (found,) = unstable(built({"o": "torch"}))
+    (found,) = find_unstable(built({"o": "torch"}))
     assert found == ((0, 0, 0), "torch", "pops off: nothing under its middle")
 
 
@@ -76,9 +76,9 @@ def test_turning_a_volume_turns_what_does_not_stay(seed):
     labels = np.zeros((4, 4, 4), np.uint8)
     volume = BlockVolume(states, PALETTE, labels, labels.astype(np.uint16), (0, 0, 0), np.eye(4))
     before = sorted((z, y, 3 - x, one.reason.split(":")[0].split(" to ")[0])
-                    for one in unstable(volume) for x, y, z in [one.block_pos])  # fmt: skip
+                    for one in find_unstable(volume) for x, y, z in [one.block_pos])  # fmt: skip
     after = sorted((*one.block_pos, one.reason.split(":")[0].split(" to ")[0])
-                   for one in unstable(turn_volume(volume, 1)))  # fmt: skip
+                   for one in find_unstable(turn_volume(volume, 1)))  # fmt: skip
     assert before == after
 
 
@@ -87,7 +87,7 @@ def test_turning_a_volume_turns_what_does_not_stay(seed):
 def test_what_is_connected_changes_no_more(seed):
     random = np.random.default_rng(seed)
     states = random.integers(0, len(PALETTE), (4, 4, 4)).astype(np.uint16)
-    reasons = [reason for _, _, reason in unstable_cells(*connected(states, PALETTE))]
+    reasons = [reason for _, _, reason in find_unstable_cells(*update_connections(states, PALETTE))]
     assert not [reason for reason in reasons if reason.startswith("changes to")]
 
 
@@ -95,7 +95,7 @@ def test_every_state_of_the_game_can_be_asked():
     names = [str(state) for name in known_blocks() for state in states_of(name)[:2]]
     states = np.zeros((len(names), 3, 1), np.uint16)
     states[:, 1, 0] = np.arange(1, len(names) + 1)
-    assert unstable_cells(states, ("minecraft:air", *names))
+    assert find_unstable_cells(states, ("minecraft:air", *names))
 
 
 def test_builds_that_the_game_itself_saved_keep_their_connections(shared_data):
@@ -106,7 +106,7 @@ def test_builds_that_the_game_itself_saved_keep_their_connections(shared_data):
     assert found
     for path in sorted(found):
         volume = read_blocks(path)
-        changes = [one for one in unstable(volume) if one.reason.startswith("changes to")]
+        changes = [one for one in find_unstable(volume) if one.reason.startswith("changes to")]
         assert not changes, (path.name, changes[:3])
 
 
@@ -122,8 +122,8 @@ def test_strange_values_of_properties_are_asked_as_well(name, words):
         state = f"{name}[{','.join(f'{k}={w}' for k, w in zip(keys, words, strict=False))}]"
         palette = ("minecraft:air", state, "minecraft:stone")
         states = np.array([[[1, 2], [1, 0]], [[2, 1], [0, 1]]], np.uint16)
-        unstable_cells(*connected(states, palette))
-        visual_boxes_of(state)
-        light_of(state)
+        find_unstable_cells(*update_connections(states, palette))
+        visual_boxes(state)
+        emitted_light(state)
     except UsageError:
         pass

@@ -31,9 +31,9 @@ from world2minecraft.minecraft.schematics import structure as our_structure
 from world2minecraft.minecraft.schematics import structure_pack
 from world2minecraft.minecraft.schematics.structure import (
     _SIZES,
+    parse_structure,
     read_structure,
     skip_value,
-    structure_of,
     write_structure,
 )
 from world2minecraft.minecraft.schematics.structure_pack import pieces, write_structure_pack
@@ -148,7 +148,7 @@ def test_the_list_may_be_the_last_of_the_file(tmp_path):
     }
     for block in ({"pos": [0, 0, 0], "state": 0}, {"pos": [0, 0, 0], "state": 0, "nbt": {}}):
         data = write_nbt({**tree, "blocks": [block]})
-        assert structure_of(data, tmp_path).palette == (AIR, STONE)
+        assert parse_structure(data, tmp_path).palette == (AIR, STONE)
 
 
 # The kernel that skips values.
@@ -229,7 +229,7 @@ def test_a_pack_of_pieces_places_each_where_it_belongs(tmp_path):
         name = title.partition(":")[2]
         data = files[f"data/my_room_/structures/{name}.nbt"]
         assert data == files[f"data/my_room_/structure/{name}.nbt"]
-        part = structure_of(data, Path(name))
+        part = parse_structure(data, Path(name))
         entities += part.entities
         low = np.subtract(list(map(int, place)), volume.corner)
         for cell, text in np.ndenumerate(state_texts(part)):

@@ -8,7 +8,11 @@ import pytest
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.transforms import turn_state
-from world2minecraft.minecraft.visual_shapes import family_of, visual_boxes_of, visual_families
+from world2minecraft.minecraft.visual_shapes import (
+    find_visual_family,
+    visual_boxes,
+    visual_families,
+)
 
 # They have six plates, which overlap at the edges of the cube.
 PLATES = ("vine", "glow_lichen", "sculk_vein")
@@ -21,7 +25,7 @@ def samples():
     """Every state of the blocks of each hand-made family (one block a pattern), and more."""
     found = {}
     for name in known_blocks():
-        family = family_of(complete(parse_state(name)))
+        family = find_visual_family(complete(parse_state(name)))
         if family is None:
             continue
         pattern = next(i for i, one in enumerate(visual_families()) if one is family)
@@ -33,7 +37,7 @@ STATES = samples()
 
 
 def sixteenths(state):
-    return (visual_boxes_of(state) * 16).round(3).tolist()
+    return (visual_boxes(state) * 16).round(3).tolist()
 
 
 def volume(boxes):
@@ -51,13 +55,13 @@ def solid(boxes, steps=32):
 def test_families_are_many_and_each_has_a_block_of_the_game():
     families = visual_families()
     assert len(families) >= 26
-    met = {family_of(complete(parse_state(name))) for name in known_blocks()} - {None}
+    met = {find_visual_family(complete(parse_state(name))) for name in known_blocks()} - {None}
     assert [family.name for family in families if family not in met] == []
 
 
 def test_boxes_lie_in_the_cube_and_share_no_volume():
     for state in STATES:
-        boxes = visual_boxes_of(state)
+        boxes = visual_boxes(state)
         assert boxes.dtype == np.float32
         assert (boxes >= 0).all() and (boxes <= 1).all(), state
         assert (boxes[:, 3:] > boxes[:, :3]).all(), state
@@ -72,7 +76,7 @@ def test_all_that_is_not_air_is_seen():
     empty = {
         name.partition(":")[2]
         for name in known_blocks()
-        if not len(visual_boxes_of(name)) and len(states_of(name)) < 20_000
+        if not len(visual_boxes(name)) and len(states_of(name)) < 20_000
     }
     # Vines without a side and plants that have not come up yet have nothing to show by default.
     assert empty <= UNSEEN | {"vine", "glow_lichen", "sculk_vein"}
@@ -82,14 +86,14 @@ def test_a_quarter_turn_turns_what_is_seen():
     for state in STATES:
         if any(name in state for name in LOPSIDED):
             continue
-        turned = solid(visual_boxes_of(turn_state(state, 1)))
-        assert np.array_equal(turned, np.rot90(solid(visual_boxes_of(state)), 1, (2, 0))), state
+        turned = solid(visual_boxes(turn_state(state, 1)))
+        assert np.array_equal(turned, np.rot90(solid(visual_boxes(state)), 1, (2, 0))), state
 
 
 def test_what_is_not_written_by_hand_looks_as_it_collides():
     for name in ("stone", "oak_stairs", "oak_slab", "oak_trapdoor", "glass_pane", "hopper"):
-        assert family_of(complete(parse_state(name))) is None
-        assert np.array_equal(visual_boxes_of(name), np.clip(boxes_of(name), 0, 1))
+        assert find_visual_family(complete(parse_state(name))) is None
+        assert np.array_equal(visual_boxes(name), np.clip(boxes_of(name), 0, 1))
 
 
 @pytest.mark.parametrize(
@@ -119,16 +123,16 @@ def test_known_looks(state, expected):
 
 
 def test_walls_are_one_block_high_and_low_differs_from_tall():
-    low = visual_boxes_of("cobblestone_wall[up=false,north=low,south=low]")
-    tall = visual_boxes_of("cobblestone_wall[up=false,north=tall,south=tall]")
-    post = visual_boxes_of("cobblestone_wall")
+    low = visual_boxes("cobblestone_wall[up=false,north=low,south=low]")
+    tall = visual_boxes("cobblestone_wall[up=false,north=tall,south=tall]")
+    post = visual_boxes("cobblestone_wall")
     assert (low[:, 4].max(), tall[:, 4].max(), post[:, 4].max()) == (0.875, 1, 1)
     assert volume(low).sum() < volume(tall).sum()
-    assert not visual_boxes_of("cobblestone_wall[up=false,north=low,south=low]")[:, 0].min() < 0.3
+    assert not visual_boxes("cobblestone_wall[up=false,north=low,south=low]")[:, 0].min() < 0.3
 
 
 def test_fences_join_with_two_rails():
-    alone, joined = visual_boxes_of("oak_fence"), visual_boxes_of("oak_fence[east=true]")
+    alone, joined = visual_boxes("oak_fence"), visual_boxes("oak_fence[east=true]")
     assert len(joined) == len(alone) + 2
     assert joined[:, 3].max() == 1
 
@@ -148,6 +152,6 @@ def test_unknown_blocks_look_like_those_with_like_names():
 
 def test_boxes_cannot_be_changed():
     with pytest.raises(ValueError, match="read-only"):
-        visual_boxes_of("torch")[0] = 2
+        visual_boxes("torch")[0] = 2
     with pytest.raises(ValueError, match="read-only"):
-        visual_boxes_of("stone")[0] = 2
+        visual_boxes("stone")[0] = 2

@@ -9,7 +9,7 @@ from label_worlds import poses_in, room_of_things
 from world2minecraft.core.coordinates import apply, invert, look_at, rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraftocc.labels.image_labels import gather_region, is_on_cells
-from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, region_of
+from world2minecraft.minecraftocc.labels.region import RegionRule, floor_under, region_in, label_region
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import FineClass, SceneVoxels
 
@@ -24,7 +24,7 @@ def looking(yaw_deg: float, pitch_deg: float = -10.0, eye=EYE) -> np.ndarray:
 
 @pytest.mark.parametrize("yaw_deg", range(0, 360, 90))
 def test_an_axis_view_has_its_player_in_the_middle_of_the_back_face(yaw_deg):
-    region = region_of(looking(yaw_deg + 3.0), PLAIN)
+    region = label_region(looking(yaw_deg + 3.0), PLAIN)
     assert region.kind == "axis"
     at = apply(invert(region.region_to_room), EYE) / region.voxel_m
     assert np.abs(at[:2] - [30, 0]).max() <= 0.5 + 1e-6
@@ -34,7 +34,7 @@ def test_an_axis_view_has_its_player_in_the_middle_of_the_back_face(yaw_deg):
 
 @pytest.mark.parametrize("yaw_deg", range(45, 360, 90))
 def test_a_diagonal_view_has_its_player_at_the_minimum_corner(yaw_deg):
-    region = region_of(looking(yaw_deg - 4.0), PLAIN)
+    region = label_region(looking(yaw_deg - 4.0), PLAIN)
     assert region.kind == "diagonal"
     at = apply(invert(region.region_to_room), EYE) / region.voxel_m
     assert np.abs(at[:2]).max() <= 0.5 + 1e-6
@@ -47,26 +47,26 @@ def test_a_diagonal_view_has_its_player_at_the_minimum_corner(yaw_deg):
     [(22.4, "axis"), (22.6, "diagonal"), (67.4, "diagonal"), (67.6, "axis")],
 )
 def test_the_nearest_of_eight_yaws_tells_the_case(yaw_deg, kind):
-    assert region_of(looking(yaw_deg), PLAIN).kind == kind
+    assert label_region(looking(yaw_deg), PLAIN).kind == kind
 
 
 @given(yaw_deg=st.floats(-360, 360), floor_cells=st.integers(-40, 40))
 def test_the_floor_is_the_bottom_layer(yaw_deg, floor_cells):
     for kind in ("paper", "free"):
-        region = region_of(looking(yaw_deg), RegionRule(kind), floor_m=floor_cells * 0.08)
+        region = label_region(looking(yaw_deg), RegionRule(kind), floor_m=floor_cells * 0.08)
         assert np.isclose(region.region_to_room[2, 3], (floor_cells - 1) * 0.08)
 
 
 @given(yaw_deg=st.floats(-360, 360))
 def test_four_quarter_turns_of_a_view_are_the_identity(yaw_deg):
-    one, four = (region_of(looking(yaw_deg + turn)).region_to_room for turn in (0, 360))
+    one, four = (label_region(looking(yaw_deg + turn)).region_to_room for turn in (0, 360))
     assert np.allclose(one, four)
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 45.0, 90.0, 135.0])
 def test_regions_of_opposite_views_lie_back_to_back(yaw_deg):
     eye = np.array([0.4, 0.8, 1.6])  # On the cells' borders, so that no rounding is between.
-    here, there = (region_of(looking(yaw_deg + turn, eye=eye), PLAIN) for turn in (0, 180))
+    here, there = (label_region(looking(yaw_deg + turn, eye=eye), PLAIN) for turn in (0, 180))
     half_turn = rotation_about_z(180.0)
     half_turn[:2, 3] = 2 * eye[:2]
     assert np.allclose(half_turn @ here.region_to_room, there.region_to_room)
@@ -75,7 +75,7 @@ def test_regions_of_opposite_views_lie_back_to_back(yaw_deg):
 @pytest.mark.parametrize(("yaw_deg", "back"), [(0.0, [0, 5]), (45.0, [3, 3])])
 def test_the_fallback_offset_moves_the_box_back(yaw_deg, back):
     rule = RegionRule(axis_offset_cells=5, diagonal_offset_cells=3)
-    plain, moved = (region_of(looking(yaw_deg), one) for one in (PLAIN, rule))
+    plain, moved = (label_region(looking(yaw_deg), one) for one in (PLAIN, rule))
     shift = invert(plain.region_to_room) @ moved.region_to_room
     assert np.allclose(shift[:3, 3], [-back[0] * 0.08, -back[1] * 0.08, 0])
 
@@ -84,7 +84,7 @@ def test_the_fallback_offset_moves_the_box_back(yaw_deg, back):
 def test_a_paper_region_falls_on_the_cells_of_its_scene(yaw_deg, x, y):
     origin = np.array([0.03, -0.01, 0.02])
     pose = looking(yaw_deg, eye=np.array([x, y, 1.5]))
-    region = region_of(pose, RegionRule(shape=(7, 9, 5)), grid_origin_m=origin)
+    region = label_region(pose, RegionRule(shape=(7, 9, 5)), grid_origin_m=origin)
     cells = (region.centers_m() - origin) / 0.08 - 0.5
     assert np.abs(cells - np.round(cells)).max() < 1e-6
 
@@ -105,7 +105,7 @@ def test_a_copy_is_what_slices_and_quarter_turns_give(yaw_deg):
 
 
 def test_a_free_region_turns_with_the_view():
-    region = region_of(looking(33.3), RegionRule("free"))
+    region = label_region(looking(33.3), RegionRule("free"))
     ahead = invert(region.region_to_room)[:3, :3] @ rotation_about_z(33.3)[:3, 0]
     assert np.allclose(ahead, [0, 1, 0])
     assert np.allclose((invert(region.region_to_room) @ [*EYE, 1])[:2] / 0.08, [30, 0])
@@ -133,7 +133,7 @@ def test_a_rug_is_no_floor_and_a_gallery_is(x, height):
 
 def test_a_camera_may_look_straight_down():
     down = look_at(EYE, EYE - [0, 0, 1.0])
-    assert region_of(down).kind in ("axis", "diagonal")
+    assert label_region(down).kind in ("axis", "diagonal")
 
 
 def test_errors_teach():

@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume, Camera, Layout
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
-from world2minecraft.minecraft.physics.walk_graph import solid_of, walk_graph
+from world2minecraft.minecraft.physics.walk_graph import collision_grid, walk_graph
 from world2minecraft.minecraftocc.tours import (
     TourRule,
     kind_of_yaw,
@@ -108,7 +108,7 @@ def test_yaws_are_exact_in_the_asked_shares(volume, scene):
 
 
 def test_bodies_fit_under_every_eye_and_no_eye_is_on_the_roof(volume, views):
-    solid, eyes = solid_of(volume), eyes_of(views)
+    solid, eyes = collision_grid(volume), eyes_of(views)
     scale = volume.blocks_per_metre
     for eye_m in (1.1, 0.7):  # Above what one steps on, and nobody's eye is lower than 1.2.
         feet = eyes - [0, eye_m * scale, 0]
@@ -156,7 +156,7 @@ def test_the_rooms_of_a_house_are_told_apart(seed):
     house = generate_world(seed, rooms=5, storeys=1)
     volume = house.volume
     graph = walk_graph(volume)
-    rooms = find_rooms(volume, graph, solid_of(volume), TourRule())
+    rooms = find_rooms(volume, graph, collision_grid(volume), TourRule())
     at = np.full(len(graph), -1)
     for room in rooms:
         at[room.places] = room.number
@@ -175,7 +175,7 @@ def test_the_rooms_of_a_house_are_told_apart(seed):
 
 def test_views_are_shared_by_worth(volume):
     graph = walk_graph(volume)
-    rooms = find_rooms(volume, graph, solid_of(volume), TourRule())
+    rooms = find_rooms(volume, graph, collision_grid(volume), TourRule())
     parts = share_views(rooms, 100)
     assert sum(parts) == 100
     order = np.argsort([room.worth for room in rooms], kind="stable")
@@ -189,7 +189,7 @@ def test_layouts_say_the_rooms_where_they_are_known(volume):
     half = Layout(np.array([low, [high[0], 0], [high[0], high[1] / 2], [0, high[1] / 2]]), 2.5)
     rule = TourRule(layouts=(half,))
     graph = walk_graph(volume)
-    (room,) = find_rooms(volume, graph, solid_of(volume), rule)
+    (room,) = find_rooms(volume, graph, collision_grid(volume), rule)
     z = graph.feet[room.places][:, 2]
     assert (volume.block_to_room[1, 2] * z + volume.block_to_room[1, 3] < high[1] / 2).all()
 

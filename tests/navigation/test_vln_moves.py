@@ -11,8 +11,8 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics import BlockWorld, body_box
-from world2minecraft.minecraft.physics.collisions import overlapping
-from world2minecraft.minecraft.physics.walk_graph import solid_of
+from world2minecraft.minecraft.physics.collisions import find_overlaps
+from world2minecraft.minecraft.physics.walk_graph import collision_grid
 from world2minecraft.navigation.moves import (
     BodySize,
     apply_move,
@@ -55,7 +55,7 @@ def floor_with(*blocks, holes=(), semantic=None):
 def walk(volume, begin, way, sliding=False):
     corner = np.array(volume.corner, np.int64)
     feet = tuple(float(a + b) for a, b in zip(begin, volume.corner, strict=True))
-    x, y, z, stopped = move_body(solid_of(volume), corner, *feet, *way, SIZE, sliding)
+    x, y, z, stopped = move_body(collision_grid(volume), corner, *feet, *way, SIZE, sliding)
     return tuple(
         round(float(a - b), 6) for a, b in zip((x, y, z), volume.corner, strict=True)
     ), stopped
@@ -108,14 +108,14 @@ def test_a_body_never_ends_in_a_block_nor_in_the_air(blocks, angle, length, slid
     world = BlockWorld.of_volume(volume)
     begin = np.add((4.5, 1.0, 4.5), volume.corner)
     boxes = world.near(begin - 6, begin + 6)
-    if overlapping(boxes, body_box(tuple(begin))).any():
+    if find_overlaps(boxes, body_box(tuple(begin))).any():
         return
     way = (length * math.cos(angle), length * math.sin(angle))
     end, stopped = walk(volume, (4.5, 1.0, 4.5), way, sliding)
     box = body_box(tuple(np.add(end, volume.corner)))
-    assert not overlapping(boxes, box, 1e-5).any()
+    assert not find_overlaps(boxes, box, 1e-5).any()
     below = box - np.array([0, 1e-3, 0, 0, 1e-3, 0])
-    assert overlapping(boxes, below, 1e-5).any()
+    assert find_overlaps(boxes, below, 1e-5).any()
     gone = math.hypot(end[0] - 4.5, end[2] - 4.5)
     assert gone == pytest.approx(length, abs=1e-5) if not stopped else gone <= length + 1e-6
     if stopped and not sliding:

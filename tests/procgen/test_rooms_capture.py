@@ -12,7 +12,7 @@ from world2minecraft.core.files import read_npz
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.procgen import generate_room, room_views, scan_room
 from world2minecraft.procgen.sensors.depth_camera import scale_factor
-from world2minecraft.procgen.sensors.shots import Shooting, room_shots, room_to_scan
+from world2minecraft.procgen.sensors.shots import ScanSettings, room_shots, room_to_scan
 from world2minecraft.rendering import cast_voxels, prepare_voxels
 
 NAMES = (
@@ -89,7 +89,9 @@ def test_true_poses_are_the_stated_ones_without_jitter_and_in_the_room_s_frame(t
 
 
 def test_true_scales_turn_the_stated_depth_into_that_of_a_true_cast():
-    how = Shooting(sensor="clean", frames=5, seed=3, depth_scale_sigma=0.03, width=64, height=48)
+    how = ScanSettings(
+        sensor="clean", frames=5, seed=3, depth_scale_sigma=0.03, width=64, height=48
+    )
     scene = prepare_voxels(room().labels, room().voxel_m, room().origin_m)
     scales = []
     for shot in room_shots(room(), how):
@@ -111,7 +113,7 @@ def test_scales_spread_by_their_sigma_and_are_one_without():
 
 def test_a_scale_changes_neither_the_walk_nor_the_holes():
     plain, scaled = (
-        list(room_shots(room(), Shooting(frames=3, depth_scale_sigma=s, width=64, height=48)))
+        list(room_shots(room(), ScanSettings(frames=3, depth_scale_sigma=s, width=64, height=48)))
         for s in (0.0, 0.05)
     )
     for a, b in zip(plain, scaled, strict=True):
@@ -201,7 +203,7 @@ def test_progress_ends_with_all_frames(tmp_path):
 
 
 def test_a_long_scan_keeps_no_picture():
-    shots = room_shots(room(), Shooting(frames=6, width=32, height=24))
+    shots = room_shots(room(), ScanSettings(frames=6, width=32, height=24))
     kept = []
     for shot in shots:
         kept.append(weakref.ref(shot.view))

@@ -12,8 +12,8 @@ import pytest
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.procgen import BASE_KINDS, KINDS, generate_room
-from world2minecraft.procgen.rooms.room import kind_of_seed
-from world2minecraft.procgen.sensors.navmesh import find_stands
+from world2minecraft.procgen.rooms.room import draw_kind
+from world2minecraft.procgen.sensors.navmesh import build_navmesh
 
 ROOMS = [(kind, seed) for kind in KINDS for seed in (0, 1, 7)]
 each_room = pytest.mark.parametrize(("kind", "seed"), ROOMS)
@@ -70,8 +70,8 @@ def test_seeds_differ():
 
 
 def test_a_seed_alone_draws_its_kind():
-    assert {kind_of_seed(seed) for seed in range(40)} == set(BASE_KINDS)
-    assert generate_room(3).kind == kind_of_seed(3)
+    assert {draw_kind(seed) for seed in range(40)} == set(BASE_KINDS)
+    assert generate_room(3).kind == draw_kind(3)
 
 
 def test_an_unknown_kind_is_refused_by_name():
@@ -145,7 +145,7 @@ def test_there_is_a_door_and_a_window(kind, seed):
 
 @each_room
 def test_ways_are_clear(kind, seed):
-    stands = find_stands(room_of(kind, seed))
+    stands = build_navmesh(room_of(kind, seed))
     parts = np.bincount(stands.part[stands.easy])
     assert parts.max() * 0.01 > 1.0
     assert parts.max() >= 0.75 * parts.sum()

@@ -15,7 +15,7 @@ from world2minecraft.procgen.houses.plan import (
     plan_house,
     stairwell,
 )
-from world2minecraft.procgen.sensors.navmesh import find_stands
+from world2minecraft.procgen.sensors.navmesh import build_navmesh
 
 HOUSES = [(0, 3, 1, 0.0), (1, 5, 1, 0.7), (2, 5, 2, 0.0)]
 each_house = pytest.mark.parametrize("which", HOUSES, ids=str)
@@ -147,7 +147,7 @@ def test_stairs_have_steps_and_headroom_for_people(seed):
 @each_house
 def test_every_room_is_reached_from_the_front_door(which):
     room = house(which)
-    stands = find_stands(room)
+    stands = build_navmesh(room)
     door = room.layouts[0].openings[0]
     assert door.kind == "door"
     step_in = (door.start_m + door.end_m) / 2

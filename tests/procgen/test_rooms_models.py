@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from world2minecraft.procgen.houses.plan import railing
+from world2minecraft.procgen.houses.plan import railing_model
 from world2minecraft.procgen.rooms import bathroom as washing
+from world2minecraft.procgen.rooms import children_and_hall as playing
 from world2minecraft.procgen.rooms import decor, seating, storage
-from world2minecraft.procgen.rooms import play_and_hall as playing
-from world2minecraft.procgen.rooms.clutter_models import ODD, ON_BEDS, ON_FLOORS, ON_TABLES
-from world2minecraft.procgen.rooms.furniture_model import Part, shade, whole
+from world2minecraft.procgen.rooms.clutter_models import IRREGULAR, ON_BEDS, ON_FLOORS, ON_TABLES
+from world2minecraft.procgen.rooms.furniture_model import Part, round_to_step, shade
 
 WOOD, CLOTH = (180, 140, 90), (70, 90, 130)
 
@@ -66,9 +66,9 @@ MODELS = [
     playing.bench(WOOD),
     playing.whiteboard(),
     playing.printer(),
-    railing(1.77, WOOD),
+    railing_model(1.77, WOOD),
 ]
-MAKERS = sorted({*ODD, *ON_BEDS, *ON_FLOORS, *ON_TABLES}, key=lambda maker: maker.__name__)
+MAKERS = sorted({*IRREGULAR, *ON_BEDS, *ON_FLOORS, *ON_TABLES}, key=lambda maker: maker.__name__)
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
@@ -84,8 +84,8 @@ def test_the_parts_of_a_model_fill_its_size(model):
 
 
 def test_lengths_are_rounded_to_two_centimetres():
-    assert whole(1.013) == pytest.approx(1.02)
-    assert whole(0.5) == pytest.approx(0.5)
+    assert round_to_step(1.013) == pytest.approx(1.02)
+    assert round_to_step(0.5) == pytest.approx(0.5)
 
 
 def test_shades_stay_colours():

@@ -8,10 +8,10 @@ import pytest
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.procgen.sensors.phone import TURN, plan_film
+from world2minecraft.procgen.sensors.phone import TURN, plan_camera_track
 from world2minecraft.procgen.sensors.photo import prepare_photos
-from world2minecraft.procgen.sensors.shots import Shooting
-from world2minecraft.procgen.sensors.surface_textures import mixed
+from world2minecraft.procgen.sensors.shots import ScanSettings
+from world2minecraft.procgen.sensors.surface_textures import hash_to_unit
 
 SMALL = {"width": 160, "height": 120, "seed": 3}
 
@@ -60,10 +60,10 @@ def test_the_same_seed_gives_the_same_bytes(tmp_path, room, sensor):
 
 
 def test_a_person_who_films_turns_evenly(room):
-    camera = Shooting("photo").camera
+    camera = ScanSettings("photo").camera
     scene = prepare_photos(room).scene
     for smooth in (False, True):
-        film = plan_film(room, scene, camera, 40, np.random.default_rng(0), smooth=smooth)
+        film = plan_camera_track(room, scene, camera, 40, np.random.default_rng(0), smooth=smooth)
         turns = np.abs(np.diff(film.angles, axis=0)).max(axis=0)
         assert (turns <= TURN * 1.001).all()
         middle = film.pose(10.5)[:3, 3]
@@ -82,8 +82,8 @@ def slow_mixed(a, b, c, d):
 def test_the_hash_of_a_place_equals_its_slow_reading():
     rng = np.random.default_rng(1)
     for row in rng.integers(-5000, 5000, (200, 4)).tolist():
-        assert mixed(*row) == slow_mixed(*row)
-        assert 0 <= mixed(*row) <= 1
+        assert hash_to_unit(*row) == slow_mixed(*row)
+        assert 0 <= hash_to_unit(*row) <= 1
 
 
 @pytest.mark.parametrize(
@@ -95,23 +95,23 @@ def test_the_hash_of_a_place_equals_its_slow_reading():
 )
 def test_a_phone_has_no_labels_and_no_depth(words, text):
     with pytest.raises(ValueError, match=text):
-        Shooting("photos", **words)
+        ScanSettings("photos", **words)
 
 
 def test_a_video_has_even_sides():
     with pytest.raises(ValueError, match="a video's sides must be even, not 161x120"):
-        Shooting("video", width=161, height=120)
-    Shooting("photos", width=161, height=120)
+        ScanSettings("video", width=161, height=120)
+    ScanSettings("photos", width=161, height=120)
 
 
 def test_phones_take_more_pictures_unless_told():
-    assert [Shooting(s).planned for s in ("rgbd", "photo", "photos", "video")] == [
+    assert [ScanSettings(s).planned for s in ("rgbd", "photo", "photos", "video")] == [
         40,
         100,
         100,
         240,
     ]
-    assert Shooting("video", 7).planned == 7
+    assert ScanSettings("video", 7).planned == 7
 
 
 def test_what_is_stated_of_posed_photos(tmp_path, room):

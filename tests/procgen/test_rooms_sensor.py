@@ -8,12 +8,12 @@ from world2minecraft.procgen.sensors.depth_camera import (
     BASELINE_M,
     CLEAN,
     Sensor,
-    disparity_steps,
-    edges,
-    jittered_pose,
+    depth_edges,
+    find_sensor,
+    jitter_pose,
+    quantize_disparity,
     rotation_of_vector,
     sense_depth,
-    sensor,
 )
 
 SIZE = (240, 320)
@@ -38,7 +38,7 @@ def test_axial_noise_has_the_stated_sigma(depth_m):
 
 
 def test_depth_comes_in_steps_of_an_eighth_of_a_pixel_of_disparity():
-    sensed = sense(sensor("rgbd"), flat(2.0))
+    sensed = sense(find_sensor("rgbd"), flat(2.0))
     disparity = 525 * BASELINE_M / np.unique(sensed[sensed > 0]).astype(np.float64)
     steps = disparity * 8
     assert np.abs(steps - np.round(steps)).max() < 1e-3
@@ -48,14 +48,14 @@ def test_depth_comes_in_steps_of_an_eighth_of_a_pixel_of_disparity():
 def test_steps_do_not_depend_on_the_size_of_the_picture():
     depth = np.linspace(0.5, 5, 500, dtype=np.float32)
     assert np.array_equal(
-        disparity_steps(Sensor(), depth, 525.0), disparity_steps(Sensor(), depth, 525.0)
+        quantize_disparity(Sensor(), depth, 525.0), quantize_disparity(Sensor(), depth, 525.0)
     )
     coarse = sense(Sensor(sigma_m=0, sigma_growth=0, hole_share=0), flat(3.1), fx_px=262.5)
-    assert coarse.max() == pytest.approx(disparity_steps(Sensor(), flat(3.1), 525.0).max())
+    assert coarse.max() == pytest.approx(quantize_disparity(Sensor(), flat(3.1), 525.0).max())
 
 
 def test_two_in_a_hundred_pixels_are_holes():
-    shares = [(sense(sensor("rgbd"), flat(1.5), seed=n) == 0).mean() for n in range(8)]
+    shares = [(sense(find_sensor("rgbd"), flat(1.5), seed=n) == 0).mean() for n in range(8)]
     assert np.mean(shares) == pytest.approx(0.02, abs=0.002)
 
 
@@ -66,7 +66,7 @@ def test_one_pixel_on_each_side_of_an_edge_is_lost():
     assert lost[:, 159:161].all()
     assert not lost[:, :159].any()
     assert not lost[:, 161:].any()
-    assert not edges(np.linspace(1, 2, 320, dtype=np.float32)[None].repeat(4, axis=0)).any()
+    assert not depth_edges(np.linspace(1, 2, 320, dtype=np.float32)[None].repeat(4, axis=0)).any()
 
 
 def test_dark_and_grazing_surfaces_are_lost():
@@ -80,7 +80,7 @@ def test_dark_and_grazing_surfaces_are_lost():
 
 @pytest.mark.parametrize("depth_m", [0.0, 0.3, 5.4])
 def test_nothing_is_seen_out_of_range(depth_m):
-    assert not sense(sensor("rgbd"), flat(depth_m)).any()
+    assert not sense(find_sensor("rgbd"), flat(depth_m)).any()
 
 
 def test_clean_is_exact():
@@ -88,12 +88,12 @@ def test_clean_is_exact():
     black, grazing = np.zeros(SIZE, np.float32), np.zeros(SIZE, np.float32)
     assert np.array_equal(sense(CLEAN, depth, black, grazing), depth)
     pose = np.eye(4)
-    assert np.array_equal(jittered_pose(CLEAN, pose, np.random.default_rng(0)), pose)
+    assert np.array_equal(jitter_pose(CLEAN, pose, np.random.default_rng(0)), pose)
 
 
 def test_stated_poses_are_off_by_five_millimetres_and_a_fifth_of_a_degree():
     rng = np.random.default_rng(0)
-    stated = np.array([jittered_pose(sensor("rgbd"), np.eye(4), rng) for _ in range(4000)])
+    stated = np.array([jitter_pose(find_sensor("rgbd"), np.eye(4), rng) for _ in range(4000)])
     assert stated[:, :3, 3].std() == pytest.approx(0.005, rel=0.05)
     angles = np.degrees(stated[:, [2, 0, 1], [1, 2, 0]])
     assert angles.std() == pytest.approx(0.2, rel=0.05)
@@ -111,4 +111,4 @@ def test_a_rotation_vector_turns_about_itself_by_its_length():
 
 def test_an_unknown_sensor_is_refused_by_name():
     with pytest.raises(UnknownNameError, match="no sensor is named 'rgb'; did you mean 'rgbd'"):
-        sensor("rgb")
+        find_sensor("rgb")

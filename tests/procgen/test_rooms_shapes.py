@@ -11,7 +11,7 @@ from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen import KINDS, SHAPES, generate_room
 from world2minecraft.procgen.rooms.clutter import MAX_ASKEW_DEG
 from world2minecraft.procgen.rooms.floor_shapes import Cut, Ground, Roof
-from world2minecraft.procgen.sensors.navmesh import find_stands
+from world2minecraft.procgen.sensors.navmesh import build_navmesh
 
 SHAPED = [(kind, shape, 0.0) for kind in ("living", "bed") for shape in SHAPES if shape != "box"]
 CLUTTERED = [("dining", "box", 1.0), ("kitchen", "ell", 0.8), ("children", "sloped", 1.0),
@@ -59,7 +59,7 @@ def test_things_stand_in_air_where_the_shell_leaves_it(which):
 @each_room
 def test_a_person_walks_from_the_door_through_the_room(which):
     room = room_of(which)
-    stands = find_stands(room)
+    stands = build_navmesh(room)
     door = next(o for o in room.layout.openings if o.kind == "door")
     far = np.linalg.norm(stands.places_m[:, :2] - (door.start_m + door.end_m) / 2, axis=1)
     part = stands.part[far.argmin()]
@@ -88,7 +88,7 @@ def test_the_shell_is_closed_so_that_no_ray_leaves(shape, seed):
         parts[[0, -1]].ravel(), parts[:, [0, -1]].ravel(), parts[:, :, [0, -1]].ravel()
     ])  # fmt: skip
     door = next(o for o in room.layout.openings if o.kind == "door")
-    spots = find_stands(room).places_m
+    spots = build_navmesh(room).places_m
     step = spots[np.linalg.norm(spots[:, :2] - door.start_m, axis=1).argmin()] + [0, 0, 1.0]
     inside = parts[tuple(((step - room.origin_m) / room.voxel_m).astype(int))]
     assert inside > 0 and inside not in rim

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.furniture_model import Bar, Model, Part
 from world2minecraft.procgen.rooms.placement import Item
-from world2minecraft.procgen.rooms.solid_voxels import is_plain, modelled, solid_cells
+from world2minecraft.procgen.rooms.solid_voxels import is_plain, make_model, solid_cells
 
 WOOD = (180, 140, 90)
 
@@ -73,7 +73,7 @@ def test_the_front_turns_with_the_yaw():
 def test_a_model_fills_its_size_wherever_its_parts_were_drawn():
     parts = [Part((3.0, 1.0, 0.5, 3.3, 1.2, 0.9), WOOD, form="ball"),
              Bar((3.1, 1.1, 0.5), (3.6, 1.4, 0.7), 0.02, WOOD)]  # fmt: skip
-    model = modelled("thing", 11, parts)
+    model = make_model("thing", 11, parts)
     placed = Item(model, model.size_m[0] / 2, model.size_m[1] / 2, 0.0, 0.0)
     cells = [np.argwhere(f) + first for first, f in (solid_cells(placed, p) for p in model.parts)]
     held = np.concatenate(cells)

@@ -8,14 +8,9 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_npz, write_json, write_npz
-from world2minecraft.procgen import (
-    generate_room,
-    read_generated,
-    room_picture,
-    stored,
-    write_generated,
-)
-from world2minecraft.procgen.stored import ARRAYS
+from world2minecraft.procgen import generate_room, read_generated, room_picture, write_generated
+from world2minecraft.procgen import room_files as stored
+from world2minecraft.procgen.room_files import ARRAYS
 
 room = cache(lambda: generate_room(2, kind="hall", clutter=0.5))
 

@@ -8,9 +8,9 @@ import pytest
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Layout, Opening
 from world2minecraft.procgen import Room, generate_room
-from world2minecraft.procgen.sensors.navmesh import BODY_M, HEAD_M, find_stands, is_inside
-from world2minecraft.procgen.sensors.shots import Shooting, room_shots
-from world2minecraft.procgen.sensors.trajectory import plan_tour, plan_walk
+from world2minecraft.procgen.sensors.navmesh import BODY_M, HEAD_M, build_navmesh, is_inside
+from world2minecraft.procgen.sensors.shots import ScanSettings, room_shots
+from world2minecraft.procgen.sensors.trajectory import plan_trajectory, plan_walk
 from world2minecraft.rendering import cast_voxels, prepare_voxels
 
 CAMERA = Camera(160, 120, 131.2, 131.2, 80.0, 60.0)
@@ -25,7 +25,7 @@ def scene_of(room):
 
 @cache
 def tour_of(room, frames=FRAMES, seed=0):
-    return plan_tour(room, scene_of(room), CAMERA, frames, np.random.default_rng(seed))
+    return plan_trajectory(room, scene_of(room), CAMERA, frames, np.random.default_rng(seed))
 
 
 living = cache(lambda: generate_room(1, kind="living"))
@@ -88,7 +88,7 @@ def inside_of(room, points_m):
 
 def test_a_place_to_stand_is_solid_below_and_free_around_the_body():
     room = living()
-    stands = find_stands(room)
+    stands = build_navmesh(room)
     solid = room.labels != 0
     spread = np.stack(np.meshgrid(*[np.arange(-0.24, 0.25, 0.06)] * 2), axis=-1).reshape(-1, 2)
     spread = spread[np.hypot(*spread.T) < BODY_M - 0.01]
@@ -107,7 +107,7 @@ def test_a_place_to_stand_is_solid_below_and_free_around_the_body():
 def test_nobody_stands_on_a_table_or_under_it():
     shell = Shell((4.4, 4.4, 2.8)).room(0.2, 0.2, 4.2, 4.2)
     shell.box((1.6, 1.6, 0.88), (2.8, 2.8, 0.92), OBJS)
-    stands = find_stands(shell.made())
+    stands = build_navmesh(shell.made())
     over = (np.abs(stands.places_m[:, :2] - 2.2) < 0.6 + BODY_M - 0.06).all(axis=1)
     walked = stands.part == stands.part[np.abs(stands.places_m[:, 2] - 0.2) < 0.01][0]
     assert stands.easy.any()
@@ -117,13 +117,13 @@ def test_nobody_stands_on_a_table_or_under_it():
 
 def test_a_doorway_links_two_rooms_and_a_wall_parts_them():
     for doorway, parts in ((True, 1), (False, 2)):
-        stands = find_stands(two_rooms(doorway))
+        stands = build_navmesh(two_rooms(doorway))
         assert len(set(stands.part[stands.easy].tolist())) == parts
         assert set(stands.storey_room.tolist()) == ({-1, 0, 1} if doorway else {0, 1})
 
 
 def test_stairs_link_two_storeys():
-    stands = find_stands(two_storeys())
+    stands = build_navmesh(two_storeys())
     floors = [stands.easy & (stands.storey_room == n) for n in (0, 1)]
     assert all(floor.any() for floor in floors)
     assert len(set(stands.part[floors[0] | floors[1]].tolist())) == 1
@@ -188,7 +188,7 @@ def seen_by(room, poses, label=None):
 
 def around(room, count=12):
     """Looks in all directions from places spread over the floor."""
-    stands = find_stands(room)
+    stands = build_navmesh(room)
     places = stands.places_m[stands.easy]
     for place in places[:: max(1, len(places) // count)]:
         eye = place + np.array([0, 0, 1.45])
@@ -240,7 +240,7 @@ def test_a_room_without_a_place_to_stand_is_scanned_from_its_middle():
 
 
 def test_the_same_seed_walks_the_same_way_and_another_does_not():
-    again = plan_tour(living(), scene_of(living()), CAMERA, FRAMES, np.random.default_rng(0))
+    again = plan_trajectory(living(), scene_of(living()), CAMERA, FRAMES, np.random.default_rng(0))
     assert np.array_equal(tour(), again)
     assert not np.array_equal(tour(), tour_of(living(), seed=1))
 
@@ -263,5 +263,5 @@ def test_a_room_from_a_stranger_s_file_is_scanned_without_a_crash(voxel_m):
         "odd", 0, layouts, labels, np.zeros(labels.shape, np.uint16),
         np.zeros((*labels.shape, 3), np.uint8), voxel_m, np.zeros(3),
     )  # fmt: skip
-    shots = list(room_shots(room, Shooting(frames=3, width=32, height=24)))
+    shots = list(room_shots(room, ScanSettings(frames=3, width=32, height=24)))
     assert len(shots) == 3

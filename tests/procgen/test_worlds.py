@@ -13,12 +13,12 @@ from world2minecraft.formats.scene import read_scene
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.minecraft.physics.shortest_paths import shortest_path
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.procgen.worlds import generate_world, write_worlds
-from world2minecraft.procgen.worlds.stored import house_layouts
-from world2minecraft.procgen.worlds.world import LEVEL, reached_floors
+from world2minecraft.procgen.worlds.world import LEVEL, count_reachable_floor
+from world2minecraft.procgen.worlds.world_files import house_layouts
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
 
@@ -70,7 +70,7 @@ def test_a_house_has_structure_and_furniture(house):
 @pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
 def test_every_room_is_reached_on_foot_from_the_spawn(which, request):
     made = request.getfixturevalue(which)
-    counts = reached_floors(made.volume, made.house, made.spawn.position)
+    counts = count_reachable_floor(made.volume, made.house, made.spawn.position)
     assert len(counts) == len(made.house.rooms)
     for there, places in counts:
         assert there >= 0.7 * places > 0
@@ -89,8 +89,8 @@ def test_a_room_whose_door_is_walled_up_is_not_reached(tall):
             y = slice(gap.bottom + 64 - corner[1], gap.top + 64 - corner[1])
             states[x, y, z] = stone
     shut = replace(tall.volume, states=states)
-    counts = reached_floors(shut, tall.house, tall.spawn.position)
-    before = reached_floors(tall.volume, tall.house, tall.spawn.position)
+    counts = count_reachable_floor(shut, tall.house, tall.spawn.position)
+    before = count_reachable_floor(tall.volume, tall.house, tall.spawn.position)
     assert counts[room.number][0] == 0 < before[room.number][0]
     assert counts[0][0] > 0.9 * before[0][0]
 
@@ -116,7 +116,7 @@ def test_one_begins_on_the_lowest_storey_where_a_person_fits(tall):
 
 
 def test_nothing_falls_or_breaks(tall):
-    assert not [one for one in unstable(tall.volume) if one.reason.startswith(GONE)]
+    assert not [one for one in find_unstable(tall.volume) if one.reason.startswith(GONE)]
 
 
 def test_other_scales_are_made(house):

@@ -10,11 +10,17 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
-from world2minecraft.procgen.worlds.clear_paths import Ways
-from world2minecraft.procgen.worlds.display_stands import HOME, MOUNTS, Deck, table, wares
+from world2minecraft.procgen.worlds.clear_paths import ClearPaths
+from world2minecraft.procgen.worlds.display_stands import (
+    HOME,
+    MOUNTS,
+    WareDeck,
+    load_wares,
+    mount_table,
+)
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
-from world2minecraft.procgen.worlds.house import person_blocks, plan_block_house
-from world2minecraft.procgen.worlds.recipes import BOARDS, OWN, PILLARS, RIMS
+from world2minecraft.procgen.worlds.house import person_size_blocks, plan_block_house
+from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
 from world2minecraft.procgen.worlds.shell import rails
 from world2minecraft.procgen.worlds.styles import draw_look, styles
 
@@ -62,7 +68,7 @@ def test_gaps_lie_in_walls_between_their_rooms(seed, rooms, storeys):
 
 def test_ways_refuse_what_shuts_a_door():
     house = plan_block_house((1,), 5, 1, 4.0)
-    ways, room = Ways(house), house.rooms[1]
+    ways, room = ClearPaths(house), house.rooms[1]
     x, y = ways.ends[1][0]
     before = {(x + dx, y + dy) for dx in range(ways.body) for dy in range(ways.body)}
     assert all(room.floor(house.size)[column] for column in before)
@@ -82,7 +88,7 @@ def test_ways_refuse_what_shuts_a_door():
 
 def test_ways_refuse_what_parts_a_room():
     house = plan_block_house((1,), 5, 1, 4.0)
-    ways, room = Ways(house), house.rooms[0]  # The hall, with doors on all of its length.
+    ways, room = ClearPaths(house), house.rooms[0]  # The hall, with doors on all of its length.
     middle = (room.low[0] + room.high[0]) // 2
     across = np.array([(middle, y) for y in range(room.low[1], room.high[1])])
     assert not ways.stay(room, across)
@@ -93,7 +99,7 @@ def test_ways_refuse_what_parts_a_room():
 
 @pytest.mark.parametrize("scale", [2.0, 2.5, 3.0, 4.0, 25 / 6, 4.5, 5.0, 5.9])
 def test_a_person_covers_as_many_blocks_as_the_walkable_graph_asks_for(scale):
-    wide, high = person_blocks(scale)
+    wide, high = person_size_blocks(scale)
     free = []
     for width in range(1, wide + 2):  # A passage between walls, as high as a person.
         states = np.ones((8, high + 2, width + 2), np.uint16)
@@ -112,7 +118,7 @@ def test_a_person_covers_as_many_blocks_as_the_walkable_graph_asks_for(scale):
 @pytest.mark.parametrize("seed", range(6))
 def test_stairs_leave_room_for_a_person(seed, scale):
     house = plan_block_house((seed, 2), 8, 2, scale)
-    flight, (wide, _) = house.flight, person_blocks(scale)
+    flight, (wide, _) = house.flight, person_size_blocks(scale)
     assert flight is not None
     upper = next(room for room in house.rooms if room.storey == 1)
     bay, corridor_end = upper.blocked[0][:2]
@@ -126,19 +132,19 @@ def test_stairs_leave_room_for_a_person(seed, scale):
 
 
 def test_every_ware_is_of_blocks_and_named_once():
-    names = [ware.name for ware in wares()]
+    names = [ware.name for ware in load_wares()]
     assert len(set(names)) == len(names) > 900
-    for ware in wares():
+    for ware in load_wares():
         assert ware.mount in MOUNTS
         for state in ware.turned("west"):
             complete(parse_state(state))
-    skipped = {name for group in table()["skipped"].values() for name in group}
+    skipped = {name for group in mount_table()["skipped"].values() for name in group}
     known = {block.removeprefix("minecraft:") for block in known_blocks()}
     assert skipped | set(names) == known
 
 
 def test_a_deck_deals_all_before_it_begins_again():
-    deck, other = Deck(3, 10), Deck(3, 10)
+    deck, other = WareDeck(3, 10), WareDeck(3, 10)
     for mount in (*MOUNTS, HOME):
         first = deck.deal(mount)
         dealt = [first]
@@ -146,7 +152,7 @@ def test_a_deck_deals_all_before_it_begins_again():
             dealt.append(ware)
         assert len({one.name for one in dealt}) == len(dealt)
         assert other.deal(mount) == first
-    assert {one.name for one in wares() if one.mount == "water"} >= {"kelp", "fire_coral"}
+    assert {one.name for one in load_wares() if one.mount == "water"} >= {"kelp", "fire_coral"}
 
 
 def test_styles_are_of_blocks_and_of_materials_of_the_library():
@@ -172,7 +178,7 @@ def test_racks_pillars_and_rims_are_blocks():
         is_block(f"{board}_slab")
     for state in (*PILLARS, *RIMS):
         is_block(state)
-    assert len(OWN) == 10
+    assert len(BLOCK_RECIPES) == 10
 
 
 def test_things_of_layouts_have_designs_of_the_library():

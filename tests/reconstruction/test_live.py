@@ -12,7 +12,7 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.procgen import generate_room
-from world2minecraft.procgen.capture import room_views
+from world2minecraft.procgen.virtual_scan import room_views
 from world2minecraft.reconstruction import online as live_module
 from world2minecraft.reconstruction.online import Follower, LiveRoom, follow
 from world2minecraft.reconstruction.parameters import Parameters

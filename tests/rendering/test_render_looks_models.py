@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.minecraft.block_states import known_blocks, states_of
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 from world2minecraft.rendering.block_elements import BlockModel, Element
 from world2minecraft.rendering.block_models import BuiltinModels, stand_in_share, stand_ins
 from world2minecraft.rendering.block_models.models import (
@@ -80,7 +80,7 @@ def test_all_faces_lie_somewhere():
 
 def test_models_fill_about_the_boxes_that_are_seen():
     for state in every_state():
-        boxes, model = visual_boxes_of(state), model_of(state)
+        boxes, model = visual_boxes(state), model_of(state)
         if not len(boxes) or not model.elements or any(word in state for word in FREE_BOUNDS):
             continue
         points = np.concatenate([corners(element) for element in model.elements])

@@ -40,11 +40,11 @@ class Boxes:
     """Looks that are the boxes which are drawn of each state."""
 
     def model(self, state: str) -> BlockModel | None:
-        from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+        from world2minecraft.minecraft.visual_shapes import visual_boxes
 
         if state == "minecraft:air":
             return None
-        rows = visual_boxes_of(state).tolist()
+        rows = visual_boxes(state).tolist()
         return BlockModel(tuple(box(tuple(row[:3]), tuple(row[3:])) for row in rows))
 
     def texture(self, name: str) -> Texture | None:

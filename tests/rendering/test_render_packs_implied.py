@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pack_making import PICTURE, folder_pack, plain
 
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 from world2minecraft.rendering.block_elements import FACE_NAMES, BlockModel
 from world2minecraft.rendering.resource_packs import ResourcePackModels
 
@@ -50,7 +50,7 @@ def test_the_boxes_of_a_state_wear_the_texture_of_its_name(tmp_path, state, pict
     assert set(sides_of(model).values()) == {picture}
     assert model is not None
     boxes = [[*element.low, *element.high] for element in model.elements]
-    np.testing.assert_allclose(boxes, visual_boxes_of(state), atol=1e-6)
+    np.testing.assert_allclose(boxes, visual_boxes(state), atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, step
-from world2minecraft.minecraft.physics.collisions import overlapping
+from world2minecraft.minecraft.physics.collisions import find_overlaps
 from world2minecraft.rendering.mesh import mesh_of
 from world2minecraft.sceneforge import block_preview as blocks
 from world2minecraft.sceneforge.array_messages import pack_arrays
@@ -153,7 +153,7 @@ def test_a_person_stands_and_walks_in_what_is_sent(script, asked):
     world, scale = world_of(got), got["blocks_per_metre"]
     body = Body(tuple(got["feet"]))
     box = body_box(body.position, scale)
-    assert not overlapping(world.near(box[:3], box[3:]), box, 1e-6).any()
+    assert not find_overlaps(world.near(box[:3], box[3:]), box, 1e-6).any()
     for _ in range(10):
         body = step(world, body, Keys(), scale)
     assert body.on_ground

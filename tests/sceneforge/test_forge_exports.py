@@ -38,7 +38,7 @@ def apart(editor, tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path / "user"))
     (tmp_path / "user" / ".minecraft" / "saves").mkdir(parents=True)
     with served(editor, home=tmp_path / "home") as server, client(server) as script:
-        script.jobs, script.workshop = server.session.jobs, server.workshop
+        script.jobs, script.workspace = server.session.jobs, server.workspace
         yield script
 
 
@@ -49,7 +49,7 @@ def script(apart, monkeypatch):
     def here(task, within=None, **needs):
         return lambda report: TASKS.load(task)(progress=report, **needs)
 
-    monkeypatch.setattr(export_routes, "run_apart", here)
+    monkeypatch.setattr(export_routes, "run_in_subprocess", here)
     return apart
 
 
@@ -181,7 +181,7 @@ def test_files_that_are_not_there_are_no_files(script, number):
 
 
 def test_a_file_that_is_being_made_is_no_mistake_of_ours(script):
-    (script.workshop.exports / "abc").mkdir()
+    (script.workspace.exports / "abc").mkdir()
     answer = script.get("/api/exports/files/abc")
     assert (answer.status_code, answer.json()["error"]) == (
         400,

@@ -64,7 +64,7 @@ def busy(report):
 
 def ended(server, answer):
     assert answer.status_code == 200, answer.text
-    return server.workshop.jobs.wait(answer.json()["job"], 300)
+    return server.workspace.jobs.wait(answer.json()["job"], 300)
 
 
 def photo(size=(64, 48), seed=0) -> bytes:
@@ -122,7 +122,7 @@ def test_a_capture_becomes_a_room_that_opens(server, script, scanned):
 
 def test_a_dropped_folder_is_named_by_itself(script, server):
     number = sent(script, {"kitchen/a.jpg": photo(), "kitchen/b/c.jpg": photo(seed=1)}, "kitchen")
-    found = server.workshop.captures.named(number)
+    found = server.workspace.captures.named(number)
     assert found.source.name == "kitchen"
     assert sorted(p.name for p in found.source.rglob("*.jpg")) == ["a.jpg", "c.jpg"]
 
@@ -130,7 +130,7 @@ def test_a_dropped_folder_is_named_by_itself(script, server):
 @pytest.mark.parametrize("name", ["capture.json", "survey.json", "run", "upload"])
 def test_an_upload_never_meets_our_own_files(script, server, name):
     number = sent(script, {name: b"{}"})
-    found = server.workshop.captures.named(number)
+    found = server.workspace.captures.named(number)
     assert found.source.read_bytes() == b"{}" and found.title == "den"
     assert script.get(f"/api/start/captures/{number}").json()["survey"] is None
 
@@ -151,7 +151,7 @@ def test_what_was_cut_off_goes_on_where_it_stopped(server, script):
         "held": len(data),
         "size": len(data),
     }
-    assert server.workshop.captures.named(number).source.read_bytes() == data
+    assert server.workspace.captures.named(number).source.read_bytes() == data
 
 
 def put_head(server, number, length) -> str:
@@ -177,7 +177,7 @@ def test_more_than_was_said_is_not_taken(server, script):
     answer = send(script, number, 0, b"12345")
     assert answer.status_code == 400
     assert answer.json()["error"] == "a.mp4: has more than its 4 bytes"
-    assert server.workshop.captures.named(number).place_of(0).stat().st_size <= 4
+    assert server.workspace.captures.named(number).place_of(0).stat().st_size <= 4
 
 
 def test_a_gigabyte_is_refused_before_a_byte_comes(server, script):
@@ -185,7 +185,7 @@ def test_a_gigabyte_is_refused_before_a_byte_comes(server, script):
     answer = script.post("/api/start/captures", json={"title": "a", "files": files})
     assert answer.status_code == 400
     assert "has 1,024 MB; at most 64 MB are taken by the page" in answer.json()["error"]
-    assert list(server.workshop.home.rglob("*.mp4")) == []
+    assert list(server.workspace.home.rglob("*.mp4")) == []
 
 
 def test_a_chunk_that_says_it_is_a_gigabyte_is_refused_unread(server, script):
@@ -199,7 +199,7 @@ def test_hostile_names_never_reach_the_disk(server, script, path):
     files = [{"path": path, "size": 3}]
     answer = script.post("/api/start/captures", json={"title": "a", "files": files})
     assert answer.status_code == 400 and "cannot be a file" in answer.json()["error"]
-    assert not server.workshop.captures.folder.exists()
+    assert not server.workspace.captures.folder.exists()
 
 
 @pytest.mark.parametrize("number", ["..", "%2e%2e", "x" * 65, "..%2f..%2fetc", "A"])
@@ -211,8 +211,8 @@ def test_hostile_ids_name_nothing(script, number):
 @pytest.mark.parametrize("title", ["", "..", "/", "con", "\0\1", "x" * 500, "Küche <3"])
 def test_any_title_makes_a_folder(server, script, title):
     number = sent(script, {"a.jpg": photo(), "b.jpg": photo(seed=1)}, title)
-    found = server.workshop.captures.named(number)
-    assert found.source.resolve().is_relative_to(server.workshop.captures.folder.resolve())
+    found = server.workspace.captures.named(number)
+    assert found.source.resolve().is_relative_to(server.workspace.captures.folder.resolve())
     assert found.complete
 
 
@@ -225,7 +225,7 @@ def test_a_bomb_is_seen_when_it_is_looked_at(server, script):
     state = ended(server, script.post(f"/api/start/captures/{number}/look"))
     assert state.state == "failed"
     assert "would unpack to" in state.note or "is no" in state.note
-    assert sum(p.stat().st_size for p in server.workshop.home.rglob("*")) < 1 << 20
+    assert sum(p.stat().st_size for p in server.workspace.home.rglob("*")) < 1 << 20
 
 
 def test_what_is_no_capture_says_what_is(server, script):
@@ -252,15 +252,15 @@ def test_a_wrong_choice_begins_nothing(server, script, choice, words):
     number = sent(script, {"a.jpg": photo()})
     answer = script.post(f"/api/start/captures/{number}/reconstruct", json=choice)
     assert answer.status_code == 400 and words in answer.json()["error"]
-    assert server.workshop.jobs.states() == []
+    assert server.workspace.jobs.states() == []
 
 
 def test_a_job_is_cancelled_over_http(server, script):
-    number = server.workshop.jobs.start(
-        "Demo", run_in_subprocess("demo", out=str(server.workshop.home / "x"), frames=200)
+    number = server.workspace.jobs.start(
+        "Demo", run_in_subprocess("demo", out=str(server.workspace.home / "x"), frames=200)
     )
     assert script.post(f"/api/jobs/{number}/cancel").status_code == 200
-    assert server.workshop.jobs.wait(number, 30).state == "cancelled"
+    assert server.workspace.jobs.wait(number, 30).state == "cancelled"
     assert script.get("/api/jobs").json()[0]["state"] == "cancelled"
 
 
@@ -268,25 +268,25 @@ def test_a_capture_elsewhere_is_read_where_it_is(tmp_path):
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "a.jpg").write_bytes(photo())
     captures = CaptureStore(tmp_path / "home")
-    one = captures.adopt(tmp_path / "photos")
-    assert captures.adopt(tmp_path / "photos") == one and one.complete
-    captures.forget(one.id)
+    one = captures.register(tmp_path / "photos")
+    assert captures.register(tmp_path / "photos") == one and one.complete
+    captures.delete(one.id)
     assert (tmp_path / "photos" / "a.jpg").is_file() and captures.all() == []
 
 
 def test_rooms_that_were_open_come_again(tmp_path):
     with served(small_editor(), home=tmp_path / "home") as server, client(server) as script:
         (tmp_path / "OUT").mkdir()
-        server.workshop.remember(tmp_path / "OUT")
-        server.workshop.remember(tmp_path / "gone")
+        server.workspace.add_recent(tmp_path / "OUT")
+        server.workspace.add_recent(tmp_path / "gone")
         recent = script.get("/api/start").json()["recent"]
     assert [row["name"] for row in recent] == ["OUT"] and recent[0]["id"] == "recent-0"
 
 
 def test_a_file_of_a_broken_capture_leaves_the_others(tmp_path):
     captures = CaptureStore(tmp_path)
-    one = captures.announce("a", [{"path": "a.jpg", "size": 1}])
-    other = captures.announce("b", [{"path": "b.jpg", "size": 1}])
+    one = captures.create("a", [{"path": "a.jpg", "size": 1}])
+    other = captures.create("b", [{"path": "b.jpg", "size": 1}])
     (one.folder / "capture.json").write_text("{")
     assert [found.id for found in captures.all()] == [other.id]
 
@@ -298,7 +298,7 @@ def test_a_capture_on_the_command_line_is_shown_first(tmp_path, scanned):
         (tmp_path / name).write_bytes(data)
     assert is_capture(place) and not is_capture(tmp_path / "room.npz")
     with served(home=tmp_path / "home") as server, client(server) as script:
-        server.workshop.begin_with(place, True)
+        server.workspace.begin_with(place, True)
         told = script.get("/api/start").json()
     assert told["wanted"] == told["captures"][0]["id"]
     assert told["captures"][0]["elsewhere"] == str(place)
@@ -313,7 +313,7 @@ def test_a_run_and_an_occupancy_file_are_no_captures(small_run, tmp_path):
 def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
     home = tmp_path / "home"
     with served(Editor.open(None, out=home / "demo-room"), home=home) as server:
-        server.workshop.begin_with(document_folder(None, home / "demo-room"), False)
+        server.workspace.begin_with(document_folder(None, home / "demo-room"), False)
         with client(server) as script:
             box = {"op": "fill_box", "low": [20, 20, 9], "high": [22, 22, 11], "class_id": 11}
             assert script.post("/api/do", json=box).json()["rev"] == 1
@@ -330,7 +330,7 @@ def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
 
 def test_bytes_that_two_connections_bring_never_mix(tmp_path):
     captures = CaptureStore(tmp_path)
-    one = captures.announce("den", [{"path": "a.mp4", "size": 8}])
+    one = captures.create("den", [{"path": "a.mp4", "size": 8}])
 
     async def scenario():
         on_its_way = asyncio.Event()
@@ -360,8 +360,8 @@ def test_a_room_that_is_clicked_twice_can_be_edited(tmp_path):
 
     async def scenario():
         session = Session()
-        shop = Workspace(session, tmp_path / "home")
-        await asyncio.gather(shop.open(run), shop.open(run))
+        workspace = Workspace(session, tmp_path / "home")
+        await asyncio.gather(workspace.open(run), workspace.open(run))
         assert session.document.read_only == ""
         assert session.shown == 1
         await session.close()
@@ -376,17 +376,17 @@ def test_a_home_that_cannot_be_written_keeps_nobody_from_opening(tmp_path):
 
     async def scenario():
         session = Session()
-        shop = Workspace(session, home, capture=tmp_path)
-        await shop.open(run)
-        shop._capture = tmp_path  # As ``w2m forge den --capture`` has it.
-        assert shop.beside()["truth"] is False
+        workspace = Workspace(session, home, capture=tmp_path)
+        await workspace.open(run)
+        workspace._capture = tmp_path  # As ``w2m forge den --capture`` has it.
+        assert workspace.extras()["truth"] is False
         await session.close()
 
     asyncio.run(scenario())
 
 
 def test_a_demo_room_is_made_once_at_a_time(server, script):
-    server.workshop.working["demo/study-9"] = number = server.workshop.jobs.start("busy", busy)
+    server.workspace.running_jobs["demo/study-9"] = number = server.workspace.jobs.start("busy", busy)
     answer = script.post("/api/start/demo", json={"kind": "study", "seed": 9})
     assert answer.json() == {"job": number}
-    assert len(server.workshop.jobs.states()) == 1
+    assert len(server.workspace.jobs.states()) == 1

@@ -1,9 +1,9 @@
-"""The colour camera of captures that state one matrix for depth and colour.
+"""Calibration of the colour camera of captures that state one matrix for depth and colour.
 
 Depth sensors of the Kinect kind see depth and colour through two lenses, yet many captures state
 one matrix. Where depth jumps, colour mostly changes too: the scale of the focal length and the
-shift of the principal point that lay depth edges on colour edges are the colour camera's. They
-are sought on one half of the frames and used only if the other half gains clearly from them.
+shift of the principal point that align depth edges with colour edges are the colour camera's. They
+are estimated on one half of the frames and used only if the other half gains clearly from them.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,7 @@
-"""Depth images to metres.
+"""Depth images in metres, and detection of their unit.
 
-``DEPTH_UNITS`` names the encodings that depth cameras write. Where a capture does not say which
-is meant, the values tell: their range, and the steps that an encoding leaves in them.
+``DEPTH_UNITS`` names the encodings that depth cameras write. Where a capture does not state which
+is meant, it is inferred from the values: their range, and the steps that an encoding leaves.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,7 +1,7 @@
-"""What a source reads from a folder: where the frames lie and what is stated of their cameras.
+"""Types of an unread capture: its frames' files, stated cameras and poses, and ``Source``.
 
-Nothing is decoded here. Paths, matrices and units are as the capture states them; ``checking``
-judges them afterwards, the same way for every source.
+Nothing is decoded here. Paths, matrices and units are as the capture states them; ``validation``
+checks them afterwards, in the same way for every source.
 """
 
 from dataclasses import dataclass, field
@@ -13,8 +13,6 @@ from world2minecraft.capture.images import ImagePlace
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.types import Camera
-
-# Numbers that a capture's JSON states, which may be anything.
 
 
 def as_floats(values: object) -> np.ndarray:

@@ -1,9 +1,9 @@
-"""Images of a capture: hostile until checked.
+"""Reading images of a capture, which are untrusted until checked.
 
-The size is read from the header and held against ``MAX_PIXELS`` before anything is decoded, only
-the formats that captures use are tried, and a file cut short is found without decoding it. An
+The size is read from the header and compared with ``MAX_PIXELS`` before anything is decoded, only
+the formats that captures use are tried, and a truncated file is found without decoding it. An
 image lies in a file, in a member of a zip, or wherever an ``ImageSource`` takes it from: a video,
-a ``.sens``, a mesh that is looked at.
+a ``.sens`` file, a rendered mesh.
 """
 
 import warnings
@@ -25,7 +25,13 @@ from world2minecraft.core.errors import (
     reason_of,
 )
 
-# How images are called that an ``ImageSource`` takes from a file or from a place within one.
+MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
+FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
+HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # What phones write; read by an extra.
+HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")
+HEAD_BYTES = 12  # A HEIF file's first box: its length, "ftyp" and the brand.
+SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")
+_FILES = (Path, ArchivePath)
 
 
 class NamedByFile:
@@ -67,14 +73,6 @@ class NamedByFrame:
     def name(self) -> str:
         """A short name for messages."""
         return self.frame
-
-
-MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
-FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
-HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # What phones write; read by an extra.
-HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")
-HEAD_BYTES = 12  # A HEIF file's first box: its length, "ftyp" and the brand.
-SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")
 
 
 @dataclass(frozen=True)
@@ -126,7 +124,6 @@ class ImageSource(Protocol):
 
 
 ImagePlace = AnyPath | ImageSource
-_FILES = (Path, ArchivePath)
 
 
 def read_header(path: ImagePlace) -> ImageHeader:

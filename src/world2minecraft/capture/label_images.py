@@ -1,4 +1,4 @@
-"""Label images given beside a capture: ``FOLDER/NAME.png``, one 8-bit class id a pixel."""
+"""Label images from a separate folder: ``FOLDER/NAME.png``, one 8-bit class id per pixel."""
 
 from collections.abc import Sequence
 from dataclasses import replace

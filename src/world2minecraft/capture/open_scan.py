@@ -1,4 +1,4 @@
-"""``open_scan``: a capture on disk becomes a Scan that later stages read view by view."""
+"""``open_scan``: open a capture on disk as an aligned Scan that is read view by view."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What a user can set of this stage, as ``--set key=value``."""
+"""Options of the capture stage, set with ``--set capture.KEY=VALUE``."""
 
 import math
 from collections.abc import Mapping

@@ -1,8 +1,7 @@
-"""The pictures of a capture as photos, at the size that poses and depth are computed at.
+"""The photos of a capture as a stream, at the size that poses and depth are computed at.
 
-What comes in are frames whose outside was checked; what goes out is a ``PhotoStream``. Each
-photo is decoded when its turn comes and again the next time, so that a capture never lies in
-memory whole.
+Input are validated frames, output is a ``PhotoStream``. Each photo is decoded when its turn comes
+and again the next time, so that a capture is never in memory as a whole.
 """
 
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Poses: mended where they are slightly off, skipped where lost, refused where they are wrong."""
+"""Camera poses: read, repaired where slightly off, skipped where lost, refused where wrong."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""How the page that ``w2m scan`` draws is known again, so that it is taken for no photo."""
+"""Recognition of the page that ``w2m scan`` draws, so that it is not read as a photo."""
 
 from PIL import Image
 

@@ -1,4 +1,4 @@
-"""What kind of capture lies somewhere.
+"""Detection of the kind of a capture.
 
 A new kind is one file with a ``Source``, one line here and one test; other packages add theirs
 through the entry point group ``world2minecraft.source``.

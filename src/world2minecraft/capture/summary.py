@@ -1,4 +1,4 @@
-"""``describe_capture``: what a capture holds, told before any long work."""
+"""``describe_capture``: a summary of a capture, as text and as JSON values."""
 
 import dataclasses
 import shlex
@@ -23,7 +23,6 @@ from world2minecraft.core.types import Camera
 if TYPE_CHECKING:
     from world2minecraft.formats.roomplan import CapturedPlan
 
-# What a capture holds, in words for people and as values for programs.
 
 MAX_SKIPPED_LINES = 8
 

@@ -1,6 +1,8 @@
-"""A capture judged: its usable frames, the depth's unit and what was found on the way.
+"""Validation of a capture: its usable frames, the depth's unit and notes.
 
-This is the part that ``open_scan`` and ``describe_capture`` share; it decodes only a few images.
+``open_scan`` and ``describe_capture`` share this part; it decodes only a few images. One bad frame
+among many is skipped and listed with the reason. What concerns all frames (no poses, sizes that
+contradict the intrinsics, images of mixed sizes) is refused at once.
 """
 
 from collections import Counter
@@ -43,14 +45,11 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.types import Camera
 
-# Which frames of a capture can be used, and why the others cannot.
-#
-# One bad frame among many is left out and listed. What concerns all frames (no poses, sizes that
-# contradict the intrinsics, a stream of mixed sizes) is refused at once.
-
 MAX_DAMAGED_SHARE = 0.25  # More than one image in four cut short is a broken copy, not a slip.
 MAX_WRONG_POSES_SHARE = 0.1  # More is how the capture was exported, not a slip of tracking.
 SkippedFrames = tuple[tuple[str, str], ...]
+DEPTH_SAMPLE_FRAMES = 12
+T = TypeVar("T")
 
 
 def check_frames(
@@ -214,10 +213,6 @@ def _repair_poses(
     if len(wrong) > MAX_WRONG_POSES_SHARE * len(frames):
         raise wrong[0]
     return tuple(mended), tuple(skipped)
-
-
-DEPTH_SAMPLE_FRAMES = 12
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)

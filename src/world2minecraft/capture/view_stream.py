@@ -1,4 +1,4 @@
-"""The views of a capture as a stream: each is decoded when its turn comes, and again next time."""
+"""The views of a capture as a stream: each is decoded when it is read, and again next time."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace

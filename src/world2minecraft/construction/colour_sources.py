@@ -61,7 +61,7 @@ class ColourSource:
 
     def stretched(
         self, cells: np.ndarray, placement: Placement, low: np.ndarray, shape: Sequence[int]
-    ) -> "Hues":
+    ) -> "ColourSamples":
         """Return what colours a design when the placement's box is stretched over it.
 
         The snapped design stands up to half a block off the object; its front must take the

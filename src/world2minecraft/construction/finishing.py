@@ -24,9 +24,9 @@ from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.entities import BLOCK_DISPLAY
-from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.stability import unmet_cells
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.rules.connections import update_connections
+from world2minecraft.minecraft.rules.stability import find_unmet_cells
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 ROUNDS = 8  # A lantern at a chain at a fence: what falls seldom carries more than a few others.
 _LEAVES = ("falls", "pops off", "breaks", "flows")
@@ -42,7 +42,7 @@ MIN_FULL_SHARE = (
 
 def connect_neighbours(canvas: Canvas) -> None:
     """Give all that joins its neighbours its connections and shape, in place."""
-    states, palette = connected(grid_to_block_axes(canvas.states), canvas.palette)
+    states, palette = update_connections(grid_to_block_axes(canvas.states), canvas.palette)
     known = len(canvas.palette)
     numbers = np.concatenate([np.arange(known, dtype=np.uint16), canvas.ids_of([*palette[known:]])])
     canvas.states[:] = block_axes_to_grid(numbers[states])
@@ -60,7 +60,7 @@ def apply_block_updates(canvas: Canvas) -> int:
         blocks = grid_to_block_axes(canvas.states)
         loose = [
             cell
-            for cell, _, reason in unmet_cells(blocks, canvas.palette)
+            for cell, _, reason in find_unmet_cells(blocks, canvas.palette)
             if reason.startswith(_LEAVES)
         ]
         if not loose:
@@ -105,7 +105,7 @@ def _replacement(state: str, only: frozenset[str]) -> str:
         known = dict(complete(parse_state(best)).properties)
         kept = {key: value for key, value in properties.items() if key in known}
         return str(complete(parse_state(best)).having(**kept))
-    boxes = np.asarray(visual_boxes_of(state), np.float64).reshape(-1, 6)
+    boxes = np.asarray(visual_boxes(state), np.float64).reshape(-1, 6)
     filled = float(np.prod(boxes[:, 3:] - boxes[:, :3], axis=1).sum())
     whole = [str(complete(parse_state(one))) for one in sorted(only)]
     whole = [one for one in whole if is_full_cube(one)]

@@ -16,8 +16,8 @@ from world2minecraft.geometry.connected_components import label_face_components
 from world2minecraft.geometry.morphology import nearest_set_cells
 from world2minecraft.minecraft.rules.light import (
     BRIGHTEST,
+    emitted_light,
     lets_light_through,
-    light_of,
     spread_light,
 )
 
@@ -165,7 +165,7 @@ def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
         canvas: its finished blocks.
         footprints: bool [X, Y] for each storey, the columns within its rooms.
     """
-    gives = np.array([light_of(state) for state in canvas.palette], np.uint8)[canvas.states]
+    gives = np.array([emitted_light(state) for state in canvas.palette], np.uint8)[canvas.states]
     clear = passes_light(canvas.palette)[canvas.states]
     air = canvas.mask_of(AIR)
     for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):

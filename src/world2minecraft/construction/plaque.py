@@ -14,7 +14,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.rules.supports import STEPS, UP, faces_of, is_solid
-from world2minecraft.minecraft.signs import sign_entity, wrapped
+from world2minecraft.minecraft.signs import sign_entity, wrap_sign_text
 
 WALL_SIGN = "minecraft:oak_wall_sign[facing={},waterlogged=false]"
 SIGN = "minecraft:oak_sign[rotation={},waterlogged=false]"
@@ -56,8 +56,8 @@ def add_plaque(volume: BlockVolume, name: str) -> BlockVolume:
 def _text(volume: BlockVolume, name: str) -> tuple[list[str], str]:
     """Return the lines of the sign, and what a click on it does."""
     if volume.blocks_per_metre < LARGER:
-        return wrapped(name, 4), ""
-    lines = wrapped(name, 2)
+        return wrap_sign_text(name, 4), ""
+    lines = wrap_sign_text(name, 2)
     return [*lines, *[""] * (2 - len(lines)), "Click: your size", "and back"], TOGGLE
 
 

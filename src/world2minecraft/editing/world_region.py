@@ -20,13 +20,13 @@ from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.in_place_editing import (
     RegionFile,
     StateNumbers,
-    data_of,
-    forget_light,
+    clear_light,
     new_chunk,
-    open_chunk,
+    parse_chunk,
+    read_block_entities,
     read_region_file,
     read_sections,
-    set_data,
+    set_block_entities,
     set_section,
 )
 from world2minecraft.minecraft.worlds.world_reader import read_level
@@ -114,10 +114,10 @@ class WorldBox:
             new[here] = states[there]
             if not np.array_equal(new, cells):
                 set_section(root, section, new, self.numbers)
-        others = [e for e in data_of(root, path) if not self._holds(e.block_pos)]
+        others = [e for e in read_block_entities(root, path) if not self._holds(e.block_pos)]
         mine = [e for e in data if (e.block_pos[0] >> 4, e.block_pos[2] >> 4) == place]
-        set_data(root, [*others, *sorted(mine, key=lambda entity: entity.block_pos)])
-        forget_light(root)
+        set_block_entities(root, [*others, *sorted(mine, key=lambda entity: entity.block_pos)])
+        clear_light(root)
         return write_nbt(root)
 
     def _part(self, place: Place) -> tuple[slice, ...]:
@@ -173,7 +173,7 @@ def read_world_box(world: Path, low: Corner, size: Sequence[int]) -> WorldBox:
 
 def _read_chunk(box: WorldBox, place: Place, region: RegionFile) -> list[BlockEntity]:
     raw = region.chunk(place)
-    root = None if raw is None else open_chunk(raw, place, region.path)
+    root = None if raw is None else parse_chunk(raw, place, region.path)
     if root is None:
         box.missing.append(place)
         return []
@@ -182,7 +182,7 @@ def _read_chunk(box: WorldBox, place: Place, region: RegionFile) -> list[BlockEn
         corner = (place[0] * 16, section * 16, place[1] * 16)
         here, there = _overlap(corner, box.low, box.states)
         box.states[there] = cells[here]
-    return data_of(root, region.path)
+    return read_block_entities(root, region.path)
 
 
 def overworld_folder(world: Path) -> Path:

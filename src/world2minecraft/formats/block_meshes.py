@@ -25,7 +25,7 @@ from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE
 from world2minecraft.minecraft.commands.fill_boxes import merge_boxes
 from world2minecraft.minecraft.entities import display_cubes, owner_of
-from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes
 
 # Which ends of u and v the four corners take, counter-clockwise for a face along its axis.
 _U_ENDS, _V_ENDS = np.array([0, 1, 1, 0]), np.array([0, 0, 1, 1])
@@ -313,7 +313,7 @@ def _block_faces(volume: BlockVolume, owners: np.ndarray, looks: _Looks) -> tupl
     full, found = [], []
     for number in np.unique(volume.states).tolist():
         state = volume.palette[number]
-        boxes = visual_boxes_of(state)
+        boxes = visual_boxes(state)
         if np.array_equal(boxes, FULL_CUBE):
             full.append(number)
         elif len(boxes):
@@ -355,7 +355,7 @@ def _cube_boxes(
 def _display_faces(volume: BlockVolume, looks: _Looks) -> Iterable[tuple[np.ndarray, ...]]:
     """Yield as ``_block_faces`` what each block display draws."""
     for cube in display_cubes(volume.entities):
-        boxes = visual_boxes_of(cube.state).astype(np.float64)
+        boxes = visual_boxes(cube.state).astype(np.float64)
         if not len(boxes):
             continue
         look = looks.of(cube.state)

@@ -94,12 +94,12 @@ def _turn_design(local: list[LocalBlock], quarter_turns: int) -> BlockDesign:
 
 def _connect_blocks(blocks: list[DesignBlock], size: tuple[int, int, int]) -> list[DesignBlock]:
     """Give fences, panes and stairs the connections and shapes that the game would compute."""
-    from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415
+    from world2minecraft.minecraft.rules.connections import update_connections  # noqa: PLC0415
 
     palette = ["minecraft:air", *sorted({block.state for block in blocks})]
     number = {state: index for index, state in enumerate(palette)}
     states = np.zeros(size, np.uint16)
     for block in blocks:
         states[block.offset] = number[block.state]
-    states, states_of = connected(states, palette)
+    states, states_of = update_connections(states, palette)
     return [block._replace(state=states_of[states[block.offset]]) for block in blocks]

@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.block_designs import BlockDesign, block_size, lay_template
 from world2minecraft.furniture.template import Parameters, Template
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 
 ROOM = "minecraft:smooth_stone"
 
@@ -59,7 +59,7 @@ def preview_design(
     if room:
         palette.append(ROOM)
         _put_room(states, len(palette) - 1, template.mount, quarter_turns)
-    states, palette = connected(states, palette)
+    states, palette = update_connections(states, palette)
     semantic = np.where(own, template.class_id, 0).astype(np.uint8)
     semantic[(states > 0) & ~own] = SemanticClass.FLOOR
     corner_m = np.zeros(3)

@@ -158,9 +158,9 @@ def _trim(volume: BlockVolume) -> BlockVolume:
 
 def _join_connections(volume: BlockVolume) -> BlockVolume:
     """Return a volume with the connections and stair shapes that the game would compute."""
-    from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415  # It needs numba.
+    from world2minecraft.minecraft.rules.connections import update_connections  # noqa: PLC0415  # It needs numba.
 
-    states, palette = connected(volume.states, volume.palette)
+    states, palette = update_connections(volume.states, volume.palette)
     used = sorted({0, *np.unique(states).tolist()})
     numbers = np.zeros(len(palette), np.uint16)
     numbers[used] = np.arange(len(used))
@@ -210,14 +210,14 @@ def _parts(volume: BlockVolume) -> list[tuple]:
 
 def _fine_grid(volume: BlockVolume, roles: list[str]) -> np.ndarray:
     """Return the role, from 1, that is seen in each eighth of a block, int16 in block axes."""
-    from world2minecraft.minecraft.visual_shapes import visual_boxes_of  # noqa: PLC0415
+    from world2minecraft.minecraft.visual_shapes import visual_boxes  # noqa: PLC0415
 
     count = PARTS_PER_BLOCK
     fine = np.zeros(np.array(volume.states.shape) * count, np.int16)
     shapes = []
     for state in volume.palette:
         mask = np.zeros((count,) * 3, bool)
-        for box in visual_boxes_of(state):
+        for box in visual_boxes(state):
             low = np.clip(np.floor(box[:3] * count + 0.25), 0, count - 1).astype(int)
             high = np.clip(np.floor(box[3:] * count + 0.75), low + 1, count).astype(int)
             mask[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] = True
@@ -268,12 +268,12 @@ def _pack(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
 def _notes(volume: BlockVolume) -> list[str]:
     """Return what is to be said of the blocks: those that would not stay, and mods'."""
     from world2minecraft.minecraft.block_states import known_blocks  # noqa: PLC0415
-    from world2minecraft.minecraft.rules.stability import unstable_cells  # noqa: PLC0415
+    from world2minecraft.minecraft.rules.stability import find_unstable_cells  # noqa: PLC0415
 
     floored = np.pad(volume.states, ((1, 1), (1, 1), (1, 1)))
     floored[:, 0] = len(volume.palette)
     palette = (*volume.palette, "minecraft:stone")
-    loose = [reason for _, _, reason in unstable_cells(floored.astype(np.uint16), palette)]
+    loose = [reason for _, _, reason in find_unstable_cells(floored.astype(np.uint16), palette)]
     notes = []
     if loose:
         notes.append(f"{len(loose)} blocks would not stay by themselves: {loose[0]}")

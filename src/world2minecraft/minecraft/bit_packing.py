@@ -1,18 +1,18 @@
-"""A section's packed numbers in the layouts that they have had.
+"""Kernels that pack and unpack block numbers: chunk sections, gapless arrays, varints and old blocks.
 
-Today (since 1.16) no number goes over from one word to the next, and there are as few bits as the
-palette needs, four at least. Before 1.16 numbers lay without gaps; and both before and since, a
-file may keep more bits than it needs.
+A section of 16 x 16 x 16 blocks is packed in 64-bit words. Since 1.16 no number goes over from one
+word to the next, and there are as few bits as the palette needs, four at least. Before 1.16, and in
+Litematica, numbers lie without gaps ("straddled"): number i takes the bits from i * bits on, lowest
+first. Both before and since, a file may keep more bits than it needs.
 """
 
 import numpy as np
 
 from world2minecraft.core.jit import njit
 
-# Kernels that pack and unpack block numbers: chunk sections of 16 x 16 x 16, and varints.
-
 SECTION = 4096
 BAND_ROWS = 64
+MIN_BITS, MAX_BITS = 4, 16
 
 
 @njit
@@ -161,7 +161,7 @@ def read_varints(data, lookup, out):  # pragma: no cover
 
 
 @njit
-def read_keys(numbers, values, more, out, counts):  # pragma: no cover
+def read_legacy_keys(numbers, values, more, out, counts):  # pragma: no cover
     """Read the blocks of a schematic from before 1.13 as number * 16 + data value.
 
     Args:
@@ -185,7 +185,7 @@ def read_keys(numbers, values, more, out, counts):  # pragma: no cover
 
 
 @njit
-def skip_texts(data, at, ends):  # pragma: no cover
+def skip_text_compounds(data, at, ends):  # pragma: no cover
     """Find where each of ``len(ends)`` compounds of texts and of compounds of texts ends.
 
     Args:
@@ -220,17 +220,12 @@ def skip_texts(data, at, ends):  # pragma: no cover
     return at <= len(data)
 
 
-# Kernels for numbers packed without gaps: Litematica, and chunks of games before 1.16.
-#
-# Number i takes the bits from i * bits on, lowest first, and may go over from one word to the next.
-
-
-def bits_for(count: int, least: int) -> int:
+def bit_width(count: int, least: int) -> int:
     """Return how many bits the numbers 0 to ``count`` - 1 take, ``least`` at the least."""
     return max(least, (count - 1).bit_length())
 
 
-def words_for(count: int, bits: int) -> int:
+def straddled_word_count(count: int, bits: int) -> int:
     """Return how many words of 64 bits ``count`` numbers of ``bits`` bits take."""
     return -(-count * bits // 64)
 
@@ -278,15 +273,12 @@ def unpack_straddled(words, bits, lookup, out):  # pragma: no cover
     return -1
 
 
-LEAST_BITS, MOST_BITS = 4, 16
-
-
 def word_count(states: int) -> int:
     """Return how many words a section of so many states has today: none where it is all one."""
-    return 0 if states == 1 else _padded_count(bits_for(states, LEAST_BITS))
+    return 0 if states == 1 else _padded_count(bit_width(states, MIN_BITS))
 
 
-def words_of_today(words: np.ndarray, states: int, *, straddles: bool) -> np.ndarray | None:
+def repack_section_words(words: np.ndarray, states: int, *, straddles: bool) -> np.ndarray | None:
     """Return a section's words as they are packed today.
 
     Args:
@@ -301,31 +293,31 @@ def words_of_today(words: np.ndarray, states: int, *, straddles: bool) -> np.nda
         return np.zeros(0, np.uint64)
     if not straddles and len(words) == word_count(states):
         return words
-    bits = _bits_of(len(words), bits_for(states, LEAST_BITS), straddles)
+    bits = _find_bit_width(len(words), bit_width(states, MIN_BITS), straddles)
     if bits is None:
         return None
-    if straddles and bits == bits_for(states, LEAST_BITS) and not 64 % bits:
+    if straddles and bits == bit_width(states, MIN_BITS) and not 64 % bits:
         return words
     cells = _straddled_cells(words, bits) if straddles else _padded_cells(words, bits)
-    return None if cells.max() >= states else _padded(cells, bits_for(states, LEAST_BITS))
+    return None if cells.max() >= states else _pack_padded(cells, bit_width(states, MIN_BITS))
 
 
-def words_before_1_16(words: np.ndarray, states: int) -> np.ndarray:
+def straddle_section_words(words: np.ndarray, states: int) -> np.ndarray:
     """Return today's words of a section as games before 1.16 packed them; all of one are 0."""
-    bits = bits_for(states, LEAST_BITS)
+    bits = bit_width(states, MIN_BITS)
     if states == 1:
-        return np.zeros(words_for(SECTION, bits), np.uint64)
+        return np.zeros(straddled_word_count(SECTION, bits), np.uint64)
     if not 64 % bits:
         return words
-    packed = np.zeros(words_for(SECTION, bits), np.uint64)
+    packed = np.zeros(straddled_word_count(SECTION, bits), np.uint64)
     pack_straddled(_padded_cells(words, bits), bits, packed)
     return packed
 
 
-def _bits_of(words: int, needed: int, straddles: bool) -> int | None:
+def _find_bit_width(words: int, needed: int, straddles: bool) -> int | None:
     """Return the bits of a number, at least those needed, that make so many words."""
-    count = (lambda bits: words_for(SECTION, bits)) if straddles else _padded_count
-    fitting = (bits for bits in range(needed, MOST_BITS + 1) if count(bits) == words)
+    count = (lambda bits: straddled_word_count(SECTION, bits)) if straddles else _padded_count
+    fitting = (bits for bits in range(needed, MAX_BITS + 1) if count(bits) == words)
     return next(fitting, None)
 
 
@@ -345,7 +337,7 @@ def _padded_cells(words: np.ndarray, bits: int) -> np.ndarray:
     return cells.ravel()[:SECTION].astype(np.uint16)
 
 
-def _padded(cells: np.ndarray, bits: int) -> np.ndarray:
+def _pack_padded(cells: np.ndarray, bits: int) -> np.ndarray:
     per_word = 64 // bits
     rows = np.zeros((_padded_count(bits), per_word), np.uint64)
     rows.ravel()[:SECTION] = cells

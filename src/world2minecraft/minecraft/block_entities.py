@@ -14,7 +14,7 @@ from typing import Any
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.minecraft.signs import sign_for
+from world2minecraft.minecraft.signs import convert_sign
 
 FIRST_COMPONENTS = 3837  # 1.20.5.
 OLD, NEW = ("Count", "tag"), ("count", "components")
@@ -35,7 +35,7 @@ def in_game(volume: BlockVolume, data_version: int) -> BlockVolume:
 
 def block_entity_in_game(entity: BlockEntity, data_version: int) -> BlockEntity:
     """Return a block entity as a game keeps it."""
-    entity = sign_for(entity, data_version)
+    entity = convert_sign(entity, data_version)
     if not any(_stacks(entity.nbt, data_version)):
         return entity
     return replace(entity, nbt=_converted(entity.nbt, data_version))

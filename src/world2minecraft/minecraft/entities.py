@@ -1,4 +1,13 @@
-"""Entities as NBT."""
+"""Entities as NBT, and display entities: blocks of any size and turn, drawn by games since 1.19.4.
+
+A ``block_display`` draws one block state. Its ``transformation`` carries the unit cube of the
+block: turned by ``right_rotation``, stretched by ``scale``, turned by ``left_rotation``, moved by
+``translation``; then the entity's own ``Rotation`` turns it and its position moves it. All that is
+in block axes: x east, y up, z south.
+
+Entities have no collision. What they belong to stands in their tags, so that it lasts through
+files: ``w2m``, ``w2m_object_7`` and ``w2m_class_chair``.
+"""
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,6 +22,12 @@ from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.nbt import Float
 from world2minecraft.minecraft.versions import GameVersion
+
+BLOCK_DISPLAY = "minecraft:block_display"
+FIRST_VERSION = 3337  # 1.19.4, the first game with display entities.
+TAG = "w2m"
+VIEW_BLOCKS = 64.0  # How far the game draws a display of view range 1, at its usual setting.
+DECIMALS = 6  # Of blocks: finer than single precision tells at the edge of a room.
 
 
 def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
@@ -35,23 +50,6 @@ def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
     """
     tags = nbt.get("Tags")
     return [str(tag) for tag in tags] if isinstance(tags, list | tuple) else []
-
-
-# Display entities: blocks of any size and turn, drawn by the game since 1.19.4.
-#
-# A ``block_display`` draws one block state. Its ``transformation`` carries the unit cube of the
-# block: turned by ``right_rotation``, stretched by ``scale``, turned by ``left_rotation``, moved by
-# ``translation``; then the entity's own ``Rotation`` turns it and its position moves it. All that is
-# in block axes: x east, y up, z south.
-#
-# Entities have no collision. What they belong to stands in their tags, so that it lasts through
-# files: ``w2m``, ``w2m_object_7`` and ``w2m_class_chair``.
-
-BLOCK_DISPLAY = "minecraft:block_display"
-FIRST_VERSION = 3337  # 1.19.4, the first game with display entities.
-TAG = "w2m"
-VIEW_BLOCKS = 64.0  # How far the game draws a display of view range 1, at its usual setting.
-DECIMALS = 6  # Of blocks: finer than single precision tells at the edge of a room.
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +93,7 @@ def block_display(
         UsageError: the state is no block state.
     """
     quarters = int(np.round(yaw_deg / 90.0))
-    turned, rest = _turned_box(np.asarray(box, np.float64), quarters), yaw_deg - 90.0 * quarters
+    turned, rest = _rotate_box(np.asarray(box, np.float64), quarters), yaw_deg - 90.0 * quarters
     low, size = turned[:3], turned[3:] - turned[:3]
     half = np.radians(rest) / 2
     nbt: dict[str, Any] = {
@@ -104,12 +102,12 @@ def block_display(
             "left_rotation": _floats([0.0, np.sin(half), 0.0, np.cos(half)]),
             "right_rotation": _floats([0.0, 0.0, 0.0, 1.0]),
             "scale": _floats(size),
-            "translation": _floats(_about_y(rest) @ low),
+            "translation": _floats(_rotation_about_y(rest) @ low),
         },
         "view_range": Float(view_range),
         # Said outright, so that whoever turns the volume finds it and turns it.
         "Rotation": _floats([0.0, 0.0]),
-        "Tags": tags_of(class_id, instance),
+        "Tags": owner_tags(class_id, instance),
     }
     if light is not None:
         nbt["brightness"] = {"block": int(light), "sky": int(light)}
@@ -117,7 +115,7 @@ def block_display(
     return Entity((x, y, z), BLOCK_DISPLAY, nbt, class_id, instance)
 
 
-def tags_of(class_id: int, instance: int) -> list[str]:
+def owner_tags(class_id: int, instance: int) -> list[str]:
     """Return the tags that tell what an entity belongs to."""
     tags = [TAG]
     if class_id:
@@ -139,7 +137,7 @@ def owner_of(entity: Entity) -> tuple[int, int]:
 
 def display_cubes(entities: Iterable[Entity]) -> list[DisplayCube]:
     """Return what the block displays among entities draw; others, and broken ones, draw nothing."""
-    found = (_cube_of(entity) for entity in entities if entity.id == BLOCK_DISPLAY)
+    found = (_parse_display(entity) for entity in entities if entity.id == BLOCK_DISPLAY)
     return [cube for cube in found if cube is not None]
 
 
@@ -158,12 +156,14 @@ def check_displays(volume: BlockVolume, version: GameVersion) -> None:
         )
 
 
-def _cube_of(entity: Entity) -> DisplayCube | None:
+def _parse_display(entity: Entity) -> DisplayCube | None:
     try:
-        state = _state_of(entity.nbt["block_state"])
+        state = _state_text(entity.nbt["block_state"])
         placed = np.eye(4)
         placed[:3, 3] = entity.position
-        matrix = placed @ _own_turn(entity.nbt) @ _matrix_of(entity.nbt.get("transformation"))
+        matrix = (
+            placed @ _entity_rotation(entity.nbt) @ _matrix_of(entity.nbt.get("transformation"))
+        )
     except (KeyError, TypeError, ValueError, AttributeError, UsageError):
         return None  # The file is not ours, and a game that reads it draws nothing either.
     if not np.isfinite(matrix).all() or abs(matrix).max() > 1e9:
@@ -179,14 +179,14 @@ def _matrix_of(transformation: Any) -> np.ndarray:
     if not isinstance(transformation, Mapping):
         return np.array(transformation, np.float64).reshape(4, 4)
     turn = _rotation_of(transformation.get("left_rotation"))
-    stretch = np.diag(_three(transformation.get("scale"), 1.0))
+    stretch = np.diag(_vector3(transformation.get("scale"), 1.0))
     matrix = np.eye(4)
     matrix[:3, :3] = turn @ stretch @ _rotation_of(transformation.get("right_rotation"))
-    matrix[:3, 3] = _three(transformation.get("translation"), 0.0)
+    matrix[:3, 3] = _vector3(transformation.get("translation"), 0.0)
     return matrix
 
 
-def _three(values: Any, default: float) -> np.ndarray:
+def _vector3(values: Any, default: float) -> np.ndarray:
     return np.array([default] * 3 if values is None else values, np.float64).reshape(3)
 
 
@@ -211,22 +211,22 @@ def _rotation_of(stated: Any) -> np.ndarray:
     )
 
 
-def _own_turn(nbt: Mapping[str, Any]) -> np.ndarray:
+def _entity_rotation(nbt: Mapping[str, Any]) -> np.ndarray:
     """Return the 4x4 of an entity's Rotation: its yaw is clockwise from above, its pitch down."""
     yaw, pitch = (float(value) for value in nbt.get("Rotation", (0.0, 0.0)))
     cosine, sine = np.cos(np.radians(pitch)), np.sin(np.radians(pitch))
     turn = np.eye(4)
-    turn[:3, :3] = _about_y(-yaw) @ [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]
+    turn[:3, :3] = _rotation_about_y(-yaw) @ [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]
     return turn
 
 
-def _about_y(yaw_deg: float) -> np.ndarray:
+def _rotation_about_y(yaw_deg: float) -> np.ndarray:
     """Return the 3x3 turn of block axes, counter-clockwise from above: east goes to north."""
     cosine, sine = np.cos(np.radians(yaw_deg)), np.sin(np.radians(yaw_deg))
     return np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]])
 
 
-def _turned_box(box: np.ndarray, quarter_turns: int) -> np.ndarray:
+def _rotate_box(box: np.ndarray, quarter_turns: int) -> np.ndarray:
     """Return a box turned about the up axis by whole quarters: x goes to -z, z to x."""
     for _ in range(quarter_turns % 4):
         x0, y0, z0, x1, y1, z1 = box
@@ -246,7 +246,7 @@ def _state_nbt(state: str) -> dict[str, Any]:
     return {"Name": parsed.name, "Properties": dict(parsed.properties)}
 
 
-def _state_of(nbt: Mapping[str, Any]) -> str:
+def _state_text(nbt: Mapping[str, Any]) -> str:
     """Return the text of a state, checked: it may come from a file of anyone's."""
     pairs = ",".join(f"{key}={value}" for key, value in dict(nbt.get("Properties", {})).items())
     return str(parse_state(f"{nbt['Name']}[{pairs}]" if pairs else str(nbt["Name"])))

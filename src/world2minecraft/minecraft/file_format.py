@@ -1,12 +1,13 @@
-"""What the formats of blocks share: the options of their writers, and files known by suffix."""
+"""Shared parts of block formats: files known by suffix, options of writers, and losses.
+
+``Losses`` counts what a format could not carry; ``w2m convert`` prints it.
+"""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-
-# What a format could not carry: readers and writers tell, `w2m convert` prints it.
 
 
 class Losses:

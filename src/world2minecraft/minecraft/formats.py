@@ -15,46 +15,7 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 
-# Where a player may stand in a volume of blocks, for worlds that come without a spawn.
-
 PLAYER_LAYERS = 2  # A player is 1.8 blocks high.
-
-
-def top_of_middle(volume: BlockVolume) -> tuple[float, float, float]:
-    """Return where feet can stand nearest to the middle of the volume, in world blocks.
-
-    A place is a block whose boxes leave the player's two layers above it free. Places under a
-    roof are taken before others, then the nearest to the middle, then the lowest. Where nothing
-    can be stood on, the place is the middle above the volume.
-    """
-    size_x, size_y, size_z = volume.states.shape
-    tops = np.array([_top(state) for state in volume.palette])
-    heights = np.pad(tops[volume.states], ((0, 0), (0, PLAYER_LAYERS), (0, 0)))
-    is_free = heights == 0
-    stands = (heights[:, :size_y] > 0) & is_free[:, 1 : size_y + 1] & is_free[:, 2:]
-    middle = np.array([size_x / 2 - 0.5, size_z / 2 - 0.5])
-    x, y, z = volume.corner
-    if not stands.any():
-        return (x + size_x / 2, float(y + size_y), z + size_z / 2)
-    cells = np.argwhere(stands)
-    distance = np.square(cells[:, [0, 2]] - middle).sum(axis=1)
-    roof = np.where(volume.states.any(axis=1), size_y - 1 - _first(volume.states[:, ::-1]), -1)
-    is_outside = cells[:, 1] >= roof[cells[:, 0], cells[:, 2]]
-    best = cells[np.lexsort((cells[:, 1], distance, is_outside))[0]]
-    floor = float(y + best[1] + heights[tuple(best)])
-    return (float(x + best[0] + 0.5), floor, float(z + best[2] + 0.5))
-
-
-def _first(states: np.ndarray) -> np.ndarray:
-    """The first layer of each column that is not air."""
-    return (states > 0).argmax(axis=1)
-
-
-def _top(state: str) -> float:
-    boxes = boxes_of(state)
-    return float(boxes[:, 4].max()) if len(boxes) else 0.0
-
-
 LABELS = "labels of blocks (class and object)"  # What no format of the game holds.
 FORMATS = Registry(
     "block_format",
@@ -69,6 +30,43 @@ FORMATS = Registry(
         "mcstructure": "world2minecraft.minecraft.bedrock.mcstructure:McstructureFormat",
     },
 )
+
+
+def default_spawn(volume: BlockVolume) -> tuple[float, float, float]:
+    """Return where feet can stand nearest to the middle of the volume, in world blocks.
+
+    A place is a block whose boxes leave the player's two layers above it free. Places under a
+    roof are taken before others, then the nearest to the middle, then the lowest. Where nothing
+    can be stood on, the place is the middle above the volume.
+    """
+    size_x, size_y, size_z = volume.states.shape
+    tops = np.array([_top_height(state) for state in volume.palette])
+    heights = np.pad(tops[volume.states], ((0, 0), (0, PLAYER_LAYERS), (0, 0)))
+    is_free = heights == 0
+    stands = (heights[:, :size_y] > 0) & is_free[:, 1 : size_y + 1] & is_free[:, 2:]
+    middle = np.array([size_x / 2 - 0.5, size_z / 2 - 0.5])
+    x, y, z = volume.corner
+    if not stands.any():
+        return (x + size_x / 2, float(y + size_y), z + size_z / 2)
+    cells = np.argwhere(stands)
+    distance = np.square(cells[:, [0, 2]] - middle).sum(axis=1)
+    roof = np.where(
+        volume.states.any(axis=1), size_y - 1 - _first_solid_layer(volume.states[:, ::-1]), -1
+    )
+    is_outside = cells[:, 1] >= roof[cells[:, 0], cells[:, 2]]
+    best = cells[np.lexsort((cells[:, 1], distance, is_outside))[0]]
+    floor = float(y + best[1] + heights[tuple(best)])
+    return (float(x + best[0] + 0.5), floor, float(z + best[2] + 0.5))
+
+
+def _first_solid_layer(states: np.ndarray) -> np.ndarray:
+    """The first layer of each column that is not air."""
+    return (states > 0).argmax(axis=1)
+
+
+def _top_height(state: str) -> float:
+    boxes = boxes_of(state)
+    return float(boxes[:, 4].max()) if len(boxes) else 0.0
 
 
 class BlockFormat(Protocol):
@@ -111,7 +109,7 @@ def read_blocks(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     for format_ in block_formats():
         if format_.can_read and format_.is_at(source):
             return format_.read(source, Losses() if losses is None else losses)
-    raise InputError(source, f"is no block file that is read; known: {known_formats('read')}")
+    raise InputError(source, f"is no block file that is read; known: {list_suffixes('read')}")
 
 
 def write_blocks(
@@ -132,14 +130,14 @@ def write_blocks(
         UsageError: no format has this suffix. OutputError: the path cannot be written.
     """
     target = Path(path)
-    format_ = format_to_write(target)
+    format_ = format_for_path(target)
     told = Losses() if losses is None else losses
     format_.write(volume, target, options or WriteOptions(), told)
     if not format_.keeps_labels:
         told.add(LABELS, int((volume.semantic > 0).sum()))
 
 
-def format_to_write(path: str | Path) -> BlockFormat:
+def format_for_path(path: str | Path) -> BlockFormat:
     """Return the format that a path's suffix names.
 
     Raises:
@@ -149,7 +147,7 @@ def format_to_write(path: str | Path) -> BlockFormat:
     for format_ in block_formats():
         if format_.can_write and suffix == format_.suffix:
             return format_
-    raise UsageError(f"{path}: no block format ends so; known: {known_formats('write')}")
+    raise UsageError(f"{path}: no block format ends so; known: {list_suffixes('write')}")
 
 
 def block_formats() -> list[BlockFormat]:
@@ -157,7 +155,7 @@ def block_formats() -> list[BlockFormat]:
     return [FORMATS.load(name)() for name in FORMATS.names()]
 
 
-def known_formats(verb: Literal["read", "write"]) -> str:
+def list_suffixes(verb: Literal["read", "write"]) -> str:
     """Return the suffixes that are read or written, as an error's end."""
     able = [f for f in block_formats() if (f.can_read if verb == "read" else f.can_write)]
     return ", ".join(f.suffix or "a world folder" for f in able)
@@ -192,7 +190,7 @@ class WorldFormat:
             volume,
             path,
             name=options.name,
-            spawn=options.spawn or top_of_middle(volume),
+            spawn=options.spawn or default_spawn(volume),
             spawn_yaw_deg=options.spawn_yaw_deg,
             version=game_version(options.mc_version),
         )

@@ -1,4 +1,4 @@
-"""NBT, the game's binary tree format, read strictly and within bounds.
+"""NBT, the game's binary tree format, read strictly and within bounds, and written.
 
 Python values and tags: ``Byte Short Long Float`` are the small classes below, a plain ``int`` is
 an Int, a plain ``float`` a Double, ``bool`` a Byte, ``str`` a String, ``dict`` a Compound, a list
@@ -6,7 +6,8 @@ a List of one kind, and an array of int8, int32 or int64 the array tag of that s
 
 A file is refused where it ends early, has bytes after its end, nests deeper, holds more values or
 unpacks to more bytes than ``NbtLimits`` allows. Counts are checked against the bytes that are left
-before anything is allocated.
+before anything is allocated. Gzip is written without a time, so that bytes depend on values alone.
+``minecraft.bedrock.nbt_little_endian`` overrides what differs in Bedrock's dialect.
 """
 
 import struct
@@ -20,9 +21,12 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
 
-# The kinds of value in NBT: tags, the classes of the small numbers, how each is packed.
-
 (END, BYTE, SHORT, INT, LONG, FLOAT, DOUBLE, BYTES, STRING, LIST, COMPOUND, INTS, LONGS) = range(13)
+_ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
+MAX_BYTES = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
+_CHUNK_BYTES = 1 << 20
+# The fewest bytes that one value of each kind takes: it bounds a list's count.
+_MIN_VALUE_BYTES = (0, 1, 2, 4, 8, 4, 8, 4, 2, 5, 1, 4, 4)
 
 
 class Byte(int):
@@ -55,9 +59,6 @@ def array_layouts(order: str) -> dict[int, np.dtype]:
     }
 
 
-# NBT written: a tree becomes bytes. Bedrock's dialect overrides what differs there.
-
-_ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
 _TAG_OF_TYPE: tuple[tuple[type, int], ...] = (
     (str, STRING),
     (bool, BYTE),
@@ -174,12 +175,6 @@ class NbtWriter:
         self.out += raw
 
 
-# Gzip and zlib, undone within bounds; gzip written without what differs from run to run.
-
-MAX_BYTES = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
-_AT_ONCE = 1 << 20
-
-
 def unpack(data: bytes, path: str | Path, limit: int = MAX_BYTES) -> bytes:
     """Undo gzip or zlib where the bytes begin so; other bytes come back as they are.
 
@@ -196,13 +191,13 @@ def unpack(data: bytes, path: str | Path, limit: int = MAX_BYTES) -> bytes:
     size = at = 0
     try:
         while not stream.eof and size <= limit:
-            rest, at = (rest, at) if rest else (data[at : at + _AT_ONCE], at + _AT_ONCE)
-            part = stream.decompress(rest, _AT_ONCE)
+            rest, at = (rest, at) if rest else (data[at : at + _CHUNK_BYTES], at + _CHUNK_BYTES)
+            part = stream.decompress(rest, _CHUNK_BYTES)
             rest = stream.unconsumed_tail
             if not part and not rest and at >= len(data):
                 break
             size += len(part)
-            parts = [*parts, part] if size <= _AT_ONCE else []
+            parts = [*parts, part] if size <= _CHUNK_BYTES else []
         if size > limit:
             raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
         if not stream.eof or stream.unused_data or at < len(data):
@@ -262,8 +257,6 @@ class NbtLimits:
 
 
 DEFAULT_LIMITS = NbtLimits()
-# The fewest bytes that one value of each kind takes: it bounds a list's count.
-_LEAST = (0, 1, 2, 4, 8, 4, 8, 4, 2, 5, 1, 4, 4)
 
 
 def read_nbt(
@@ -396,7 +389,7 @@ class NbtReader:
             raise self.damaged(f"has a list of {count} tags of kind {tag}")
         if count <= 0:
             return []
-        self._hold(count, _LEAST[tag])
+        self._hold(count, _MIN_VALUE_BYTES[tag])
         self._take(count)
         return self.elements(tag, count, depth)
 

@@ -1,6 +1,9 @@
-"""Signs made here: their text, and what a click on them does.
+"""Signs: made here, and converted between the forms in which games keep their texts.
 
-A sign is made as 1.20.1 keeps it; ``sign_texts`` brings it to the form of other games.
+Four tags until 1.19, two sides of four lines of JSON since 1.20, and lines of NBT since 1.21.5,
+where JSON is shown as plain letters. The game upgrades an older block entity only where the chunk
+says that it is older. A volume keeps signs as 1.20.1 has them: readers convert them to that form,
+and writers to the form of the game that is written for.
 """
 
 import json
@@ -12,13 +15,6 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import Byte
-
-# The texts of signs as each game keeps them.
-#
-# Four tags until 1.19, two sides of four lines of JSON since 1.20, and lines of NBT since 1.21.5, for
-# which JSON is letters to be shown. The game brings an older block entity up to date only where the
-# chunk says that it is older. A volume keeps signs as 1.20.1 has them: readers bring them to that
-# form, and writers to the form of the game that is written for.
 
 FIRST_TWO_SIDES = 3463  # 1.20.
 FIRST_NBT_LINES = 4325  # 1.21.5.
@@ -36,9 +32,12 @@ _CLICKS = {
     "suggest_command": "command",
     "change_page": "page",
 }
+SIGN = "minecraft:sign"
+LINE_COUNT = 4
+LINE_LETTERS = 15  # Of about six pixels; a line has 90.
 
 
-def signs_of_today(held: Iterable[BlockEntity], data_version: int) -> tuple[BlockEntity, ...]:
+def upgrade_signs(held: Iterable[BlockEntity], data_version: int) -> tuple[BlockEntity, ...]:
     """Return block entities with their signs as 1.20.1 has them.
 
     Args:
@@ -46,18 +45,18 @@ def signs_of_today(held: Iterable[BlockEntity], data_version: int) -> tuple[Bloc
         data_version: that of the game that wrote it.
     """
     if data_version < FIRST_TWO_SIDES:
-        return _changed(held, sign_of_today)
+        return _map_signs(held, upgrade_sign)
     if data_version < FIRST_NBT_LINES:
         return tuple(held)
-    return _changed(held, lambda nbt: _with_lines(nbt, _json_of_line))
+    return _map_signs(held, lambda nbt: _with_lines(nbt, _json_of_line))
 
 
-def signs_of_commands(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...]:
+def upgrade_command_signs(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...]:
     """Return block entities that commands of any game set, with their signs as 1.20.1 has them.
 
     A line that is a text in quotes is taken for JSON: only a line of NBT tells its game.
     """
-    return _changed(
+    return _map_signs(
         held,
         lambda nbt: _with_lines(
             nbt, lambda line: _json_of_line(line) if isinstance(line, dict) else line
@@ -65,7 +64,7 @@ def signs_of_commands(held: Iterable[BlockEntity]) -> tuple[BlockEntity, ...]:
     )
 
 
-def sign_for(entity: BlockEntity, data_version: int) -> BlockEntity:
+def convert_sign(entity: BlockEntity, data_version: int) -> BlockEntity:
     """Return a block entity of a volume as a game has it; what is no sign stays as it is.
 
     Before 1.20 a sign has its front alone.
@@ -73,15 +72,15 @@ def sign_for(entity: BlockEntity, data_version: int) -> BlockEntity:
     if entity.id not in SIGNS or FIRST_TWO_SIDES <= data_version < FIRST_NBT_LINES:
         return entity
     if data_version < FIRST_TWO_SIDES:
-        return replace(entity, nbt=_before(entity.nbt))
+        return replace(entity, nbt=_downgrade_sign(entity.nbt))
     return replace(entity, nbt=_with_lines(entity.nbt, _nbt_of_line))
 
 
-def sign_of_today(nbt: Mapping[str, Any]) -> dict[str, Any]:
+def upgrade_sign(nbt: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tags of a sign with two sides.
 
     Example:
-        >>> sign_of_today({"Text1": "Exit"})["front_text"]["messages"][0]
+        >>> upgrade_sign({"Text1": "Exit"})["front_text"]["messages"][0]
         '{"text": "Exit"}'
     """
     rest = {key: nbt[key] for key in nbt if key not in (*LEGACY_TEXT_KEYS, "Color", "GlowingText")}
@@ -96,7 +95,7 @@ def sign_of_today(nbt: Mapping[str, Any]) -> dict[str, Any]:
     return {**rest, "is_waxed": Byte(0), "front_text": front, "back_text": back}
 
 
-def _changed(
+def _map_signs(
     held: Iterable[BlockEntity], change: Callable[[Mapping[str, Any]], dict[str, Any]]
 ) -> tuple[BlockEntity, ...]:
     return tuple(replace(e, nbt=change(e.nbt)) if e.id in SIGNS else e for e in held)
@@ -112,7 +111,7 @@ def _component(text: Any) -> str:
     return line
 
 
-def _before(nbt: Mapping[str, Any]) -> dict[str, Any]:
+def _downgrade_sign(nbt: Mapping[str, Any]) -> dict[str, Any]:
     front = nbt.get("front_text")
     if not isinstance(front, Mapping):
         return dict(nbt)
@@ -205,11 +204,6 @@ def _json_of(text: Any, depth: int) -> Any:
     return found or {"text": ""}
 
 
-SIGN = "minecraft:sign"
-LINE_COUNT = 4
-LINE_LETTERS = 15  # Of about six pixels; a line has 90.
-
-
 def sign_entity(
     block_pos: tuple[int, int, int], lines: Sequence[str], command: str = ""
 ) -> BlockEntity:
@@ -241,7 +235,7 @@ def sign_entity(
     )
 
 
-def wrapped(text: str, lines: int) -> list[str]:
+def wrap_sign_text(text: str, lines: int) -> list[str]:
     """Return a text in lines that a sign can show, cut off with dots where it is too long.
 
     Args:

@@ -1,8 +1,7 @@
-"""What is seen of a block state: boxes, where the collision table shows something else.
+"""Visible boxes of block states, and which states are drawn at full brightness.
 
-In: a state's text. Out: the boxes of its look within the unit cube. One data file written by hand,
-``data/visual_boxes.json``, says what is seen of fences, walls, signs, torches, plants and others;
-all else looks as it collides.
+One data file written by hand, ``data/visual_boxes.json``, says what is seen of fences, walls, signs,
+torches, plants and others; all else looks as it collides.
 """
 
 import json
@@ -18,8 +17,6 @@ import numpy as np
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.collision_shapes import boxes_of
 
-# Which block states are seen at full brightness, whatever the light.
-
 LUMINOUS = (
     "sea_lantern",
     "glowstone",
@@ -33,16 +30,14 @@ LUMINOUS = (
     "candle",
 )
 DARK = ("torchflower", "lit=false")  # A flower, and candles and torches that do not burn.
+DATA_FILE = "data/visual_boxes.json"
+# Clockwise from above, from the side that the data file's boxes are written for.
+QUARTERS = ("north", "east", "south", "west")
 
 
 def is_luminous(state: str) -> bool:
     """Tell whether a state is drawn at full brightness."""
     return any(part in state for part in LUMINOUS) and not any(part in state for part in DARK)
-
-
-DATA_FILE = "data/visual_boxes.json"
-# Clockwise from above, from the side that the data file's boxes are written for.
-QUARTERS = ("north", "east", "south", "west")
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +55,7 @@ class VisualFamily:
 
 
 @lru_cache(maxsize=1 << 16)
-def visual_boxes_of(state: str) -> np.ndarray:
+def visual_boxes(state: str) -> np.ndarray:
     """Return the boxes that are seen of a block state.
 
     Args:
@@ -75,17 +70,17 @@ def visual_boxes_of(state: str) -> np.ndarray:
         UsageError: the text is no block state.
 
     Example:
-        >>> visual_boxes_of("minecraft:red_carpet").tolist()
+        >>> visual_boxes("minecraft:red_carpet").tolist()
         [[0.0, 0.0, 0.0, 1.0, 0.0625, 1.0]]
     """
     whole = complete(parse_state(state))
-    family = family_of(whole)
+    family = find_visual_family(whole)
     boxes = _table_boxes(whole) if family is None else _family_boxes(family, whole)
     boxes.flags.writeable = False
     return boxes
 
 
-def family_of(state: BlockState) -> VisualFamily | None:
+def find_visual_family(state: BlockState) -> VisualFamily | None:
     """Return the family whose look was written by hand for a complete state, or None."""
     name = state.name.partition(":")[2]
     properties = dict(state.properties)
@@ -133,13 +128,13 @@ def _family_boxes(family: VisualFamily, state: BlockState) -> np.ndarray:
     drawn = [box for part in family.parts for box in _part_boxes(part, values)]
     boxes = np.array(drawn, np.float64).reshape(-1, 6)
     if family.turn:
-        boxes = _turned(boxes, _quarter(values[family.turn]))
+        boxes = _rotate(boxes, _quarter(values[family.turn]))
     if family.rotation:
-        boxes = _turned(boxes, _quarter_of_rotation(values[family.rotation]))
+        boxes = _rotate(boxes, _quarter_of_rotation(values[family.rotation]))
     if family.point:
-        boxes = _pointed(boxes, values[family.point])
+        boxes = _tip(boxes, values[family.point])
     if family.axis and values[family.axis] != "y":
-        boxes = _turned(_pointed(boxes, "north"), values[family.axis] == "x")
+        boxes = _rotate(_tip(boxes, "north"), values[family.axis] == "x")
     return (boxes / 16).astype(np.float32)
 
 
@@ -156,12 +151,12 @@ def _part_boxes(part: Mapping[str, Any], values: Mapping[str, str]) -> Iterator[
     boxes = np.array(part["boxes"], np.float64)
     for quarter, side in enumerate(QUARTERS):
         if _holds(values, side, wanted):
-            yield from _turned(boxes, quarter).tolist()
+            yield from _rotate(boxes, quarter).tolist()
     if "faces" in part:
         for side in ("up", "down"):
             if _holds(values, side, wanted):
                 upright = boxes[:, [0, 2, 1, 3, 5, 4]]  # The north face's plate, laid down.
-                yield from _pointed(upright, "down" if side == "up" else "up").tolist()
+                yield from _tip(upright, "down" if side == "up" else "up").tolist()
 
 
 def _holds(values: Mapping[str, str], key: str, wanted: str) -> bool:
@@ -179,7 +174,7 @@ def _quarter_of_rotation(rotation: str) -> int:
     return ((sixteenths + 2) // 4 + 2) % 4
 
 
-def _turned(boxes: np.ndarray, quarters: int) -> np.ndarray:
+def _rotate(boxes: np.ndarray, quarters: int) -> np.ndarray:
     """Turn boxes, float64 [N, 6] in sixteenths, clockwise from above: x' = 16 - z, z' = x."""
     for _ in range(int(quarters) % 4):
         x0, y0, z0, x1, y1, z1 = boxes.T
@@ -187,12 +182,12 @@ def _turned(boxes: np.ndarray, quarters: int) -> np.ndarray:
     return boxes
 
 
-def _pointed(boxes: np.ndarray, facing: str) -> np.ndarray:
+def _tip(boxes: np.ndarray, facing: str) -> np.ndarray:
     """Tip boxes that are written for up towards one of the six sides."""
     x0, y0, z0, x1, y1, z1 = boxes.T
     if facing == "down":
         return np.stack([x0, 16 - y1, z0, x1, 16 - y0, z1], axis=1)
     if facing in QUARTERS:
         north = np.stack([x0, z0, 16 - y1, x1, z1, 16 - y0], axis=1)
-        return _turned(north, _quarter(facing))
+        return _rotate(north, _quarter(facing))
     return boxes

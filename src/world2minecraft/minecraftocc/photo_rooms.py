@@ -22,13 +22,8 @@ from world2minecraft.minecraftocc.labels.region import region_in
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.rooms.recipes import KINDS
-from world2minecraft.procgen.sensors.photo import (
-    TexturedScene,
-    developed,
-    exposed,
-    prepare_textured,
-)
-from world2minecraft.procgen.sensors.trajectory import plan_tour
+from world2minecraft.procgen.sensors.photo import TexturedScene, develop, expose, prepare_textured
+from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.rendering.voxel_camera import cast_voxels
 
 FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
@@ -124,7 +119,7 @@ def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[
     scene, voxels = prepare_textured(room), voxelize_room(room)
     rng = np.random.default_rng([room.seed, 6])
     images = plan.images_of(number)
-    poses = plan_tour(room, scene.photos.scene, plan.camera, images, rng)
+    poses = plan_trajectory(room, scene.photos.scene, plan.camera, images, rng)
     for frame, pose in enumerate(poses):
         yield _sample(plan, number, room, scene, voxels, pose, frame, split)
 
@@ -139,8 +134,8 @@ def _sample(
     frame: int,
     split: str,
 ) -> OccSample:
-    light = exposed(scene, plan.camera, pose[None])
-    colour = developed(light, np.random.default_rng([room.seed, 7, frame]))
+    light = expose(scene, plan.camera, pose[None])
+    colour = develop(light, np.random.default_rng([room.seed, 7, frame]))
     depth_m = cast_voxels(scene.photos.scene, plan.camera, pose).depth_m
     region = region_in(voxels, pose)
     scene_id = f"photo_{plan.seed}_{number:04d}"

@@ -30,11 +30,11 @@ from world2minecraft.minecraft.physics.any_angle_paths import (
 from world2minecraft.minecraft.physics.body import EYE
 from world2minecraft.minecraft.physics.shortest_paths import parts
 from world2minecraft.minecraft.physics.walk_graph import (
-    Solid,
+    CollisionGrid,
     WalkGraph,
     WalkRule,
-    doors_opened,
-    solid_of,
+    collision_grid,
+    open_all_doors,
     walk_graph,
 )
 from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_source
@@ -120,8 +120,8 @@ class VlnScene:
         self.source = source
         self.path, self.scene_id = str(source.path), source.scene_id
         volume = source.volume()
-        self.volume: BlockVolume = doors_opened(volume) if opens_doors else volume
-        self.solid: Solid = solid_of(self.volume, opens_doors)
+        self.volume: BlockVolume = open_all_doors(volume) if opens_doors else volume
+        self.solid: CollisionGrid = collision_grid(self.volume, opens_doors)
         self._opens_doors = opens_doors
         self.body, self.graph, self._found = self._walkable(body)
         self._fields: OrderedDict[tuple[tuple[float, ...], ...], np.ndarray] = OrderedDict()

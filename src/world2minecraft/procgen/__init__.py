@@ -5,14 +5,14 @@
 beside it.
 """
 
-from world2minecraft.procgen.capture import room_views, scan_room
 from world2minecraft.procgen.houses.house import generate_house
 from world2minecraft.procgen.preview import room_picture
+from world2minecraft.procgen.room_files import read_generated, write_generated
 from world2minecraft.procgen.rooms.floor_shapes import SHAPES
 from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS
 from world2minecraft.procgen.rooms.room import Room, generate_room
 from world2minecraft.procgen.sensors.depth_camera import SENSORS, Sensor
-from world2minecraft.procgen.stored import read_generated, write_generated
+from world2minecraft.procgen.virtual_scan import room_views, scan_room
 
 __all__ = [
     "BASE_KINDS",

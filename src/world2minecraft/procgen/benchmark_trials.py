@@ -13,9 +13,9 @@ from typing import Any, Literal
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.procgen.capture import scan_room
 from world2minecraft.procgen.houses.house import generate_house
 from world2minecraft.procgen.rooms.room import Room, generate_room
+from world2minecraft.procgen.virtual_scan import scan_room
 
 Split = Literal["tune", "test"]
 FIRST_SEED: dict[str, int] = {"tune": 500, "test": 1000}
@@ -62,7 +62,7 @@ class Trial:
         return generate_room(self.seed, kind=self.kind, clutter=self.clutter, shape=self.shape)
 
 
-def trials(split: Split, difficulty: str | None = None) -> tuple[Trial, ...]:
+def list_trials(split: Split, difficulty: str | None = None) -> tuple[Trial, ...]:
     """Return the trials of a split, ten a difficulty, in the order of ``DIFFICULTIES``.
 
     Args:
@@ -80,13 +80,13 @@ def trials(split: Split, difficulty: str | None = None) -> tuple[Trial, ...]:
     return tuple(_trial(name, split, n) for name in chosen for n in range(PER_DIFFICULTY))
 
 
-def trial_named(name: str) -> Trial:
+def find_trial(name: str) -> Trial:
     """Return a trial by name, such as ``noise-500`` or ``noise-500-clean``.
 
     Raises:
         UnknownNameError: no trial has this name.
     """
-    every = {trial.name: trial for split in ("tune", "test") for trial in trials(split)}
+    every = {trial.name: trial for split in ("tune", "test") for trial in list_trials(split)}
     found = every.get(name.removesuffix("-clean"))
     if found is None:
         raise UnknownNameError("trial", name, every)

@@ -5,13 +5,13 @@ Each stage owns its own parameters and their defaults; here they are only joined
 
 import json
 import math
-from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from dataclasses import asdict, dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from world2minecraft.capture.sfm import SfmParameters
 from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.parameters import parameter
 from world2minecraft.formats.volume_formats import format_by_name
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
@@ -26,8 +26,7 @@ from world2minecraft.reconstruction.semantics import LABELLERS
 class Parameters:
     """What decides a result, beside the capture.
 
-    voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
-    not. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion`` where
+    voxel_m: the cell of all stages. blocks_per_metre: the scale of the world. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion`` where
     depth was measured and cells are of the size that its network learnt; else ``votes`` where
     anything voted, or ``geometric``. mend: clean up what is built as a person would; ``w2m clean
     OUT --list`` tells what that was. formats: further forms of the build, such as
@@ -38,27 +37,36 @@ class Parameters:
     photos, each ``PHOTO:x,y``, and the metres between them; both give a capture its scale.
     """
 
-    voxel_m: float = 0.08
-    blocks_per_metre: float = 4.0
-    predictor: str = "depth"
-    depth_model: str = ""
-    plan: str = ""
-    labeller: str = "auto"
-    mc_version: str = "1.20.1"
-    mend: bool = True
-    formats: str = ""
-    known: tuple[str, float] | None = None
-    known_points: tuple[str, str, float] | None = None
-    capture: dict[str, str] = field(default_factory=dict)
-    posing: SfmParameters = field(default_factory=SfmParameters)
-    stereo: StereoParameters = field(default_factory=StereoParameters)
-    register: RegisterParameters = field(default_factory=RegisterParameters)
-    occupy: OccupyParameters = field(default_factory=OccupyParameters)
-    fuse: FuseParameters = field(default_factory=FuseParameters)
-    clean: CleanParameters = field(default_factory=CleanParameters)
-    find: FindParameters = field(default_factory=FindParameters)
-    furnish: FurnishParameters = field(default_factory=FurnishParameters)
-    build: BuildParameters = field(default_factory=BuildParameters)
+    voxel_m: float = parameter(0.08, unit="m", origin="the paper's cell", stage="scan")
+    blocks_per_metre: float = parameter(
+        4.0,
+        unit="blocks per metre",
+        origin="a room is recognised at once; at 2 it is not",
+        stage="build",
+    )
+    predictor: str = parameter("depth", stage="fuse")
+    depth_model: str = parameter("", stage="scan")
+    plan: str = parameter("", stage="fuse")
+    labeller: str = parameter("auto", stage="label")
+    mc_version: str = parameter("1.20.1", origin="newer games upgrade its worlds", stage="build")
+    mend: bool = parameter(True, stage="build")
+    formats: str = parameter("", stage="build")
+    known: tuple[str, float] | None = parameter(
+        None, unit="m", stage="scan", typed='--known "table height" 0.72'
+    )
+    known_points: tuple[str, str, float] | None = parameter(
+        None, unit="m", stage="scan", typed="--known-points A:x,y B:x,y METRES"
+    )
+    capture: dict[str, str] = parameter(dict, stage="scan", typed="--set capture.KEY=VALUE")
+    posing: PosingParameters = parameter(PosingParameters, stage="scan")
+    stereo: StereoParameters = parameter(StereoParameters, stage="scan")
+    register: RegisterParameters = parameter(RegisterParameters, stage="register")
+    occupy: OccupyParameters = parameter(OccupyParameters, stage="fuse")
+    fuse: FuseParameters = parameter(FuseParameters, stage="fuse")
+    clean: CleanParameters = parameter(CleanParameters, stage="label")
+    find: FindParameters = parameter(FindParameters, stage="find")
+    furnish: FurnishParameters = parameter(FurnishParameters, stage="furnish")
+    build: BuildParameters = parameter(BuildParameters, stage="build")
 
     def __post_init__(self):
         if not 0.01 <= self.voxel_m <= 0.5:
@@ -93,13 +101,6 @@ def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
 
 
 METHODS = ("best", "paper")
-# What is not set by its own key, and what is typed instead.
-SAID_ELSEWHERE = {
-    "known": '--known "table height" 0.72',
-    "known_points": "--known-points A:x,y B:x,y METRES",
-    "fuse.voxel_m": "--voxel 0.08",  # One size for all stages.
-    "capture": "--set capture.KEY=VALUE",
-}
 TYPES_IN_WORDS = {bool: "yes or no", int: "a whole number", float: "a number"}
 
 
@@ -152,18 +153,35 @@ def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
         inner = getattr(value, entry.name)
         if is_dataclass(inner):
             keys += parameter_keys(inner, f"{prefix}{entry.name}.")
-        elif not isinstance(inner, dict | tuple) and prefix + entry.name not in SAID_ELSEWHERE:
+        elif not isinstance(inner, dict | tuple) and "typed" not in entry.metadata:
             keys.append(prefix + entry.name)
     return keys
+
+
+def first_reader(key: str) -> str:
+    """Return the first stage that reads the parameter of a dotted key, or its group.
+
+    Nothing for one that does not exist, and for the copy of another.
+    """
+    group, _, name = key.partition(".")
+    declared = {entry.name: entry for entry in fields(Parameters)}
+    if group not in declared:
+        return ""
+    inner = getattr(Parameters(), group)
+    copied = is_dataclass(inner) and any(
+        entry.name == name and "copy_of" in entry.metadata for entry in fields(inner)
+    )
+    return "" if copied else declared[group].metadata["stage"]
 
 
 def _with_one(value: Any, path: list[str], text: str, key: str) -> Any:
     name = path[0]
     if name == "capture" and len(path) == 2:
         return replace(value, capture={**value.capture, path[1]: text})
-    if key in SAID_ELSEWHERE:
-        raise UsageError(f"--set does not take {key}; type {SAID_ELSEWHERE[key]}")
-    if name not in {entry.name for entry in fields(value)}:
+    declared = {entry.name: entry for entry in fields(value)}
+    if len(path) == 1 and name in declared and "typed" in declared[name].metadata:
+        raise UsageError(f"--set does not take {key}; type {declared[name].metadata['typed']}")
+    if name not in declared:
         raise UnknownNameError("parameter", key, parameter_keys())
     inner = getattr(value, name)
     if is_dataclass(inner) != (len(path) > 1):

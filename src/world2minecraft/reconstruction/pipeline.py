@@ -118,10 +118,8 @@ def _fuse(
 ) -> Scan:
     """Fuse the evidence of all views, write it, and return the scan with what is to be noted."""
     rules = chosen.fuse.suited(scan.depth_kind)
-    evidence, scan = (
-        fuse_views(network.predict(scan), scan, rules, progress),
-        skip_damaged_frames(scan),
-    )
+    evidence = fuse_views(network.predict(scan), scan, rules, progress)
+    scan = skip_damaged_frames(scan)
     notes = notes_of(network)
     if chosen.plan:
         evidence, notes_of_plan = voted_by_plan(evidence, Path(chosen.plan))

@@ -11,17 +11,9 @@ from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.parameters import Parameters, first_reader
 
-# The first stage that reads a parameter, or a whole group of them.
-READ_FIRST_BY = {
-    "voxel_m": "scan", "capture": "scan", "posing": "scan", "stereo": "scan", "depth_model": "scan",
-    "known": "scan", "known_points": "scan", "register": "register", "predictor": "fuse",
-    "occupy": "fuse", "fuse": "fuse", "plan": "fuse", "labeller": "label", "clean": "label",
-    "find": "find", "furnish": "furnish", "blocks_per_metre": "build", "mc_version": "build",
-    "mend": "build", "formats": "build", "build": "build",
-}  # fmt: skip
-# The same of what the manifest says of files: hashes.
+# The first stage that reads a file of which the manifest holds the hash.
 FILES_READ_FIRST_BY = {"capture": "scan", "labels": "fuse", "plan": "fuse", "networks": "fuse"}
 
 
@@ -65,7 +57,7 @@ def resume_parameters(
         if now != _at(default, key):
             raise UsageError(
                 f"--from {start} keeps what was made with {key} {_shown(was)}, not {_shown(now)}; "
-                f"leave {key} out, or begin with --from {_first_reader(key)}"
+                f"leave {key} out, or begin with --from {first_reader(key)}"
             )
         chosen = _with_value(chosen, key.split("."), was, out)
         changed.append(f"{key}={_shown(was)}")
@@ -106,13 +98,8 @@ def _differing(
     """Give the key, the value of then and that of now where kept stages read another one."""
     for key, was in _flat(stated if isinstance(stated, dict) else {}):
         now = _at(asked, key)
-        if _first_reader(key) in kept and now is not ... and now != was:
+        if first_reader(key) in kept and now is not ... and now != was:
             yield key, was, now
-
-
-def _first_reader(key: str) -> str:
-    """Return the first stage that reads a parameter; nothing for one that is no more."""
-    return "" if key == "fuse.voxel_m" else READ_FIRST_BY.get(key.partition(".")[0], "")
 
 
 def _flat(stated: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:

@@ -7,9 +7,9 @@ empty space in a few jumps. Coordinates, ``t`` and faces are those of ``renderin
 
 from world2minecraft.core.jit import inlined, lean, njit
 from world2minecraft.rendering.ray_caster.ray import (
-    away_from_zero,
     enter_grid,
     floor_clamped,
+    make_ray,
     not_behind,
     ray_of_pixel,
 )
@@ -91,11 +91,11 @@ def trace_ray(cells, ox, oy, oz, dx, dy, dz, t):
     from ``safe_start``.
     """
     nx, ny, nz = cells.shape
-    dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
-    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
+    ray = make_ray(ox, oy, oz, dx, dy, dz)
+    ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     face = NO_FACE
     if not (0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz):
-        t, face = enter_grid(cells.shape, ox, oy, oz, rx, ry, rz)
+        t, face = enter_grid(cells.shape, ray)
         if face == NO_FACE:
             return 0.0, 0, 0, 0, NO_FACE
     # On the grid's hull rounding may point outside.

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.minecraft.block_colours import colour_of
-from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes
 from world2minecraft.rendering.block_elements import BlockModel, Element, ElementFace
 from world2minecraft.rendering.texture import Texture
 
@@ -24,7 +24,7 @@ def visible_boxes(state: str) -> np.ndarray:
     """Return the boxes that are drawn for a state, float32 [N, 6] within the unit cell."""
     if state.partition("[")[0] in INVISIBLE:
         return np.empty((0, 6), np.float32)
-    return visual_boxes_of(state)
+    return visual_boxes(state)
 
 
 class PlainModels:

@@ -188,8 +188,8 @@ class Session:
             return preview_message(document.draft, _plan(document, checked))
 
         if command["op"] in TITLES and not self._is_small:
-            return await self._beside(command["op"], work)
-        return await self._asked(work)
+            return await self._run_in_background(command["op"], work)
+        return await self._read(work)
 
     async def ask(self, name: str, fields: Mapping[str, Any]) -> Any:
         """Return the answer to a question about the scene. Raises as ``do``."""
@@ -198,12 +198,12 @@ class Session:
             return document.ask(name, **fields)
 
         if name in TITLES and not self._is_small:
-            return await self._beside(name, question)
-        return await self._asked(question)
+            return await self._run_in_background(name, question)
+        return await self._read(question)
 
-    async def asked(self, question: Callable[[Editor], Value]) -> Value:
+    async def read(self, question: Callable[[Editor], Value]) -> Value:
         """Return what a function of the document gives; it runs in a thread, in its turn."""
-        return await self._asked(question)
+        return await self._read(question)
 
     async def save(self) -> int:
         """Write the files of the scene; return the revision that they hold. Raises as ``do``."""
@@ -284,21 +284,21 @@ class Session:
             "cells": len(operation.cells),
         }
 
-    async def _beside(self, name: str, work: Callable[[Editor], Value]) -> Value:
+    async def _run_in_background(self, name: str, work: Callable[[Editor], Value]) -> Value:
         """Return what long work on a copy of the scene gives; only copying takes a turn."""
-        copy = await self._asked(copy_editor)
+        copy = await self._read(copy_editor)
         return await run_in_background(self.jobs, name, copy, work)
 
     async def _do_long(self, name: str, command: Command, actor: str) -> dict[str, Any]:
         """Plan a command beside and do it, where its cells are still what they were."""
         document = self.document
-        planned = await self._beside(name, lambda copy: _plan(copy, command))
+        planned = await self._run_in_background(name, lambda copy: _plan(copy, command))
         async with self._turn:
             if document is not self.editor:
                 raise UsageError("another room was opened meanwhile; nothing was done")
             return await self._step(lambda: document.do(planned, actor=actor))
 
-    async def _asked(self, question: Callable[[Editor], Value]) -> Value:
+    async def _read(self, question: Callable[[Editor], Value]) -> Value:
         async with self._turn:
             return await asyncio.to_thread(question, self.document)
 

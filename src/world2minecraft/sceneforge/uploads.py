@@ -205,7 +205,7 @@ class CaptureFolder:
             return self.source
         return self.source / self.files[number].path
 
-    def held(self) -> list[int]:
+    def received_bytes(self) -> list[int]:
         """Return how many bytes of each file have come."""
         return [_size(self.place_of(number)) for number in range(len(self.files))]
 
@@ -309,7 +309,7 @@ class CaptureStore:
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFileError(folder / CAPTURE, f"is no capture ({error})") from error
 
-    def announce(self, title: str, files: Any) -> CaptureFolder:
+    def create(self, title: str, files: Any) -> CaptureFolder:
         """Make room for a capture that a page is about to send.
 
         Args:
@@ -329,7 +329,7 @@ class CaptureStore:
         name = inner[0].path if alone else _folder_name(top or title)
         return self._made(title or top or name, name, inner, "")
 
-    def adopt(self, path: Path) -> CaptureFolder:
+    def register(self, path: Path) -> CaptureFolder:
         """Return the capture that lies at a path of this machine; it is read where it is.
 
         Raises:
@@ -343,7 +343,7 @@ class CaptureStore:
                 return one
         return self._made(place.stem if place.is_file() else place.name, "", (), str(place))
 
-    def forget(self, number: str) -> None:
+    def delete(self, number: str) -> None:
         """Delete a capture with all that came of it; one that lies elsewhere stays there."""
         shutil.rmtree(self.named(number).folder, ignore_errors=True)
 

@@ -66,7 +66,7 @@ class Workspace:
         self.captures = CaptureStore(home, most_bytes)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
-        self.working: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.
+        self.running_jobs: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.
 
     @property
     def editor(self) -> Editor:
@@ -90,7 +90,7 @@ class Workspace:
                     editor.name = one.title
             self._capture, self._photos, self.compared = None, None, None
             await self.session.show(editor)
-        self.remember_where_possible(source)
+        self.try_add_recent(source)
 
     @property
     def exports(self) -> Path:
@@ -142,7 +142,7 @@ class Workspace:
                 self._photos = (editor, made)
             return self._photos[1]
 
-    def beside(self) -> dict[str, Any]:
+    def extras(self) -> dict[str, Any]:
         """Return what there is beside the open scene, as ``Scene.has`` of ``wire.ts``."""
         photos = count_photos(self.run, self.capture_of_run())
         return {"photos": photos, "truth": self.truth_folder() is not None}
@@ -154,16 +154,16 @@ class Workspace:
     def begin_with(self, source: Path, is_capture: bool) -> None:
         """Show a capture of this machine first, or note that a room was opened."""
         if is_capture:
-            self.wanted = self.captures.adopt(source).id
+            self.wanted = self.captures.register(source).id
         else:
-            self.remember_where_possible(source)
+            self.try_add_recent(source)
 
-    def remember_where_possible(self, source: Path) -> None:
+    def try_add_recent(self, source: Path) -> None:
         """Note that a room was opened; a home that cannot be written keeps nobody from editing."""
         with suppress(OutputError):
-            self.remember(source)
+            self.add_recent(source)
 
-    def remember(self, source: Path) -> None:
+    def add_recent(self, source: Path) -> None:
         """Note that a room was opened; the newest come first."""
         place = str(source.resolve())
         kept = [place, *(old for old in self._noted() if old != place)][:MAX_RECENT]
@@ -198,8 +198,8 @@ class Workspace:
         return self.job_at(capture.id)
 
     def job_at(self, what: str) -> str | None:
-        """Return the id of the job that is at work on what ``working`` names so, None for none."""
-        number = self.working.get(what)
+        """Return the id of the job that is at work on what ``running_jobs`` names so, None for none."""
+        number = self.running_jobs.get(what)
         if number is None:
             return None
         try:

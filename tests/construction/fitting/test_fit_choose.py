@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from world2minecraft.construction.fitting.selection import choose, compute_gains
 from world2minecraft.construction.fitting.shapes import CALM, SIDES, shape_set
 from world2minecraft.construction.fitting.stabilization import make_stair_corners
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 
 CALM_SET = shape_set(CALM)
 FEW = shape_set(frozenset(("slab",)))
@@ -60,7 +60,7 @@ def test_corners_are_those_that_the_game_computes(seed):
     grid = rng.choice([0, 1, *straight, *straight], (4, 4, 3))
     made = make_stair_corners(grid, CALM_SET)
     palette = ["minecraft:air", *(one.sample for one in CALM_SET.shapes)]
-    states, names = connected(np.swapaxes(grid[:, ::-1], 1, 2).astype(np.uint16), palette)
+    states, names = update_connections(np.swapaxes(grid[:, ::-1], 1, 2).astype(np.uint16), palette)
     told = np.swapaxes(states, 1, 2)[:, ::-1]
     assert [names[n] for n in told.ravel()] == [palette[n] for n in made.ravel()]
 

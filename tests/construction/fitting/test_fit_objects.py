@@ -22,8 +22,8 @@ from world2minecraft.construction.fitting import (
 from world2minecraft.construction.fitting.stabilization import label_parts, remove_crumbs
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.connections import update_connections
+from world2minecraft.minecraft.rules.stability import find_unstable
 
 ALL = shape_set(CALM | {"carpet", "post"})
 STANDS = Rules()
@@ -41,10 +41,10 @@ def falls(numbers: np.ndarray, shapes: ShapeSet) -> list:
     palette = ["minecraft:air", *(one.sample for one in shapes.shapes), "minecraft:stone"]
     whole = np.pad(numbers, 1)
     whole[:, :, 0] = len(palette) - 1
-    states, names = connected(grid_to_block_axes(whole.astype(np.uint16)), palette)
+    states, names = update_connections(grid_to_block_axes(whole.astype(np.uint16)), palette)
     zeros = np.zeros(states.shape, np.uint8)
     volume = BlockVolume(states, tuple(names), zeros, zeros.astype(np.uint16), (0, 0, 0), np.eye(4))
-    return [one for one in unstable(volume) if "stone" not in one.state]
+    return [one for one in find_unstable(volume) if "stone" not in one.state]
 
 
 def hovering(numbers: np.ndarray, shapes: ShapeSet) -> int:

@@ -14,7 +14,7 @@ from world2minecraft.construction.fitting.shapes import (
     subcell_mask,
 )
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 ALL = shape_set(CALM | {"carpet", "post"})
 SAMPLES = [shape.sample for shape in ALL.shapes]
@@ -27,7 +27,7 @@ def slow_solid(state: str) -> np.ndarray:
         at = np.array([i, j, k]) * (PROBES // 4) + 3
         x, y, z = (at + 0.5) / PROBES
         point = np.array([x, z, 1 - y])
-        inside = [(box[:3] < point) & (point < box[3:]) for box in visual_boxes_of(state)]
+        inside = [(box[:3] < point) & (point < box[3:]) for box in visual_boxes(state)]
         solid[tuple(at)] = any(bool(one.all()) for one in inside)
     return solid[3 :: PROBES // 4, 3 :: PROBES // 4, 3 :: PROBES // 4]
 

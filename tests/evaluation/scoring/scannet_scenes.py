@@ -14,8 +14,8 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.procgen import generate_room
-from world2minecraft.procgen.capture import room_views
 from world2minecraft.procgen.sensors.shots import room_to_scan
+from world2minecraft.procgen.virtual_scan import room_views
 
 NAME = "scene0000_00"
 SEED = 500

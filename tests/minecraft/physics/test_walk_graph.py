@@ -9,9 +9,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
-from world2minecraft.minecraft.physics import step
-from world2minecraft.minecraft.physics.collisions import overlapping
+from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, step
+from world2minecraft.minecraft.physics.collisions import find_overlaps
 from world2minecraft.minecraft.physics.shortest_paths import (
     distances_m,
     elbow_room_m,
@@ -21,9 +20,9 @@ from world2minecraft.minecraft.physics.shortest_paths import (
 )
 from world2minecraft.minecraft.physics.walk_graph import (
     WalkRule,
-    doors_opened,
     is_shut,
-    opened,
+    open_all_doors,
+    open_door,
     walk_graph,
 )
 
@@ -83,7 +82,7 @@ def fits(world, feet, scale, top=None):
     box = body_box(feet, scale)
     box[4] = box[4] if top is None else top
     boxes = world.near(box[:3] - 1, box[3:] + 1)
-    return not overlapping(boxes, box, 1e-6).any()
+    return not find_overlaps(boxes, box, 1e-6).any()
 
 
 def slow_stands(volume, spacing, scale):
@@ -97,7 +96,7 @@ def slow_stands(volume, spacing, scale):
             box = body_box(tuple(at), scale)
             box[[1, 4]] = -1e6, 1e6
             boxes = world.near(box[:3], box[3:])
-            touched = boxes[overlapping(boxes, box, 1e-6)]
+            touched = boxes[find_overlaps(boxes, box, 1e-6)]
             for top in set(np.round(touched[:, 4], 6)):
                 if fits(world, (at[0], top, at[2]), scale):
                     found.add(
@@ -195,14 +194,14 @@ def test_doors_are_opened_on_the_way_and_iron_ones_are_not():
 
     assert leads(volume)
     assert not leads(volume, opens_doors=False)
-    assert leads(doors_opened(volume), opens_doors=False)
+    assert leads(open_all_doors(volume), opens_doors=False)
     iron = tuple(state.replace("oak_door", "iron_door") for state in PALETTE)
     locked = BlockVolume(
         states, iron, volume.semantic, volume.instance, volume.corner, volume.block_to_room
     )
     assert not leads(locked)
-    assert is_shut(PALETTE[LOWER]) and not is_shut(opened(PALETTE[LOWER]))
-    assert opened("minecraft:stone") == "minecraft:stone"
+    assert is_shut(PALETTE[LOWER]) and not is_shut(open_door(PALETTE[LOWER]))
+    assert open_door("minecraft:stone") == "minecraft:stone"
 
 
 def test_a_gap_of_one_block_lets_a_player_of_the_games_size_through_and_no_larger():

@@ -19,9 +19,9 @@ from world2minecraft.minecraft.physics import (
     body_box,
     eye_height,
     standing_place,
+    step,
 )
-from world2minecraft.minecraft.physics import step
-from world2minecraft.minecraft.physics.collisions import free_way, overlapping
+from world2minecraft.minecraft.physics.collisions import find_overlaps, free_distance
 
 PLAIN = BoxWorld([[-1e4, -1, -1e4, 1e4, 0, 1e4]])
 STANDING = Body((0.0, 0.0, 0.0), on_ground=True)
@@ -119,7 +119,7 @@ def test_a_body_never_enters_a_box(seed, held):
     for keys in held:
         body = step(world, body, keys)
         box = body_box(body.position, crouched=body.crouched)
-        assert not overlapping(boxes, box, 1e-6).any()
+        assert not find_overlaps(boxes, box, 1e-6).any()
         assert body.position[1] >= -1e-9
 
 
@@ -143,15 +143,17 @@ def test_a_free_way_is_the_longest_of_many_small_moves(corners, axis, way):
     pairs = np.array(corners).reshape(-1, 2, 3)
     boxes = np.concatenate([pairs.min(axis=1), pairs.max(axis=1)], axis=1)
     box = np.array([-0.3, 0.0, -0.3, 0.3, 1.8, 0.3])
-    boxes = boxes[~overlapping(boxes, box, 0.0) & (boxes[:, 3:] - boxes[:, :3] > 0.1).all(axis=1)]
+    boxes = boxes[~find_overlaps(boxes, box, 0.0) & (boxes[:, 3:] - boxes[:, :3] > 0.1).all(axis=1)]
     moved, small = 0.0, way / 1000
     for _ in range(1000 if way else 0):
         ahead = box.copy()
         ahead[[axis, 3 + axis]] += moved + small
-        if overlapping(boxes, ahead).any():
+        if find_overlaps(boxes, ahead).any():
             break
         moved += small
-    assert free_way(boxes, box, axis, way) == pytest.approx(moved, abs=abs(small) * 1.01 + 1e-6)
+    assert free_distance(boxes, box, axis, way) == pytest.approx(
+        moved, abs=abs(small) * 1.01 + 1e-6
+    )
 
 
 def test_the_golden_walks_are_walked_so():
@@ -196,7 +198,7 @@ def test_one_begins_where_one_fits():
     world = BoxWorld([[-9, -1, -9, 9, 0, 9], [-1, 0, -1, 1, 3, 1]])
     x, y, z = standing_place(world, (0.9, 0.0, 0.0))
     assert y == 0
-    assert not overlapping(world.boxes, body_box((x, y, z))).any()
+    assert not find_overlaps(world.boxes, body_box((x, y, z))).any()
     assert math.hypot(x - 0.9, z) < 0.8
 
 

@@ -1,4 +1,8 @@
-"""How much surface lies at each place along an axis."""
+"""Profiles of surface area along an axis, and the exact position of a face.
+
+Near a wall's own face stand others a few centimetres away: a door's leaf and a window's pane
+behind it, a picture or a wardrobe's back before it. The one with the most surface is the wall.
+"""
 
 from dataclasses import dataclass
 
@@ -7,6 +11,10 @@ import numpy as np
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
 CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks at one are one.
+SEARCH_RADIUS_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
+BIN_M = 0.01
+LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last parts a wall from a rug or a leaf 2 cm away.
+MIN_SIGMA_M = 0.003  # What a face is off for other reasons than noise; no patch counts for more.
 
 
 @dataclass(frozen=True)
@@ -64,17 +72,6 @@ def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisPr
 
 def _area_per_bin(codes: np.ndarray, count: int) -> np.ndarray:
     return np.bincount(codes % count, minlength=count) * (CELL_M * CELL_M)
-
-
-# Where a face lies along an axis, to millimetres.
-#
-# Beside a wall's own face stand others a few centimetres away: a door's leaf and a window's pane
-# behind it, a picture or a wardrobe's back before it. The one with the most surface is the wall.
-
-SEARCH_RADIUS_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.
-BIN_M = 0.01
-LIMITS_M = (0.03, 0.02, 0.012, 0.012)  # The last parts a wall from a rug or a leaf 2 cm away.
-MIN_SIGMA_M = 0.003  # What a face is off for other reasons than noise; no patch counts for more.
 
 
 def face_position_m(facing: OrientedPoints, axis: int, place_m: float) -> float:

@@ -1,4 +1,4 @@
-"""Which way is up, and where the floor is.
+"""Estimation of the up direction and of the floor's plane.
 
 Up is the direction that much surface faces, that the cameras' image rows are level to, and that
 their image columns point away from; the floor is then fitted as a plane.

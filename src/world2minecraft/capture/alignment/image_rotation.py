@@ -1,9 +1,9 @@
-"""Captures whose images lie on their side, turned upright.
+"""Rotation of captures whose images lie on their side.
 
-A phone held upright keeps its pictures as its sensor lies: sideways. Where the capture says which
-way is up in its world, the poses tell by how many quarter turns most of its images are off. All
-images, their lenses and the poses are then turned together: each pixel's ray in the world stays
-the same.
+A phone held upright stores its pictures as its sensor lies: sideways. Where the capture states
+which way is up in its world, the poses tell by how many quarter turns most of its images are off.
+All images, cameras and poses are then rotated together: each pixel's ray in the world stays the
+same.
 """
 
 from collections.abc import Sequence

@@ -1,9 +1,13 @@
-"""Where the room is in the scan: gravity, floor, walls, and whether its size is plausible.
+"""The room's frame in the scan: gravity, floor, walls, and a check of the room's size.
 
 In: views in the scan's frame, any tilt and turn. Out: ``scan_to_room``, which puts the floor at
 z = 0, the walls along x and y and the inner corner of the room at (0, 0, 0). Of the four quarter
-turns that this leaves open, that one is taken in which the first camera looks towards +y (north
+turns that this leaves open, the one is taken in which the first camera looks towards +y (north
 in the game), so that the result does not depend on the frame that the capture chose.
+
+Gravity and walls are found one after the other, each from its own few surfaces. The last tenths of
+a degree come from floor, ceilings, walls and large fronts together: each face across an axis is a
+plane at a position of its own, and one small rotation must fit them all.
 """
 
 from collections.abc import Iterable
@@ -26,13 +30,6 @@ from world2minecraft.core.types import Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.geometry.rotations import rotation_from_vector
 
-# The last tenths of a degree: one turn that lays all large faces along the axes at once.
-#
-# Gravity and walls are found one after the other, each from its own few surfaces. Here floor,
-# ceilings, walls and large fronts say together how the frame still leans and turns: each face that
-# looks along an axis is a plane across it, at a place of its own, and one small turn of the frame
-# must fit them all.
-
 MIN_FACING_COSINE = 0.97  # Cosine of 14 degrees.
 MIN_FACE_M2 = 0.5
 MIN_FACE_SHARE = 0.15  # Of the largest that looks the same way.
@@ -42,6 +39,12 @@ SPREAD_FACTOR = 8.0  # A level face's limit is at least that many times the medi
 # kitchen's floor would lean by 0.5 degrees.
 WALL_SAY, FLOOR_SAY = 0.1, 4.0
 DAMPING_M2 = 0.02  # Moments that a face must exceed to be heard: 0.15 m from its middle on average.
+SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
+HEIGHT_RANGE_M = (1.5, 12.0)
+MIN_POINTS = 500
+DECIMALS = 9
+UNSEEN_NOTE_STARTS = ("no floor was seen", "no wall was seen", "no ceiling was seen")
+CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +151,6 @@ def _densest_positions(faces: Faces, along: np.ndarray) -> np.ndarray:
         held = np.convolve(np.bincount(bins, weight), np.ones(3), mode="same")
         places[face] = own.min() + (int(np.argmax(held)) + 0.5) * BIN_M
     return places
-
-
-SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
-HEIGHT_RANGE_M = (1.5, 12.0)
-MIN_POINTS = 500
-DECIMALS = 9
-UNSEEN_NOTE_STARTS = ("no floor was seen", "no wall was seen", "no ceiling was seen")
-CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
 
 
 @dataclass(frozen=True)

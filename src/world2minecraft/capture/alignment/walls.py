@@ -1,6 +1,6 @@
-"""The walls: how the room is turned about the vertical, and where its inner box ends.
+"""Walls: the room's yaw about the vertical, and its inner box.
 
-All here is in a level frame: z up, the floor at 0.
+Everything here is in a level frame: z up, the floor at 0.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What ``w2m scan`` found, on one page: plan, photos, directions of look and doubts."""
+"""The page of ``w2m scan``: plan, photos, view directions and diagnostics."""
 
 from world2minecraft.capture.poster.page import draw_poster, poster_png
 from world2minecraft.capture.poster_marker import is_poster

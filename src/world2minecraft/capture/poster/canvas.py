@@ -1,4 +1,4 @@
-"""The sheet that a poster is drawn on: colours, type and shapes, drawn double and made smaller."""
+"""``Sheet``: the canvas of a poster, drawn at twice its size and reduced."""
 
 import unicodedata
 

@@ -1,7 +1,7 @@
 """``draw_poster``: the page of a capture, and its PNG.
 
-With poses: a plan at the left; photos, looks and doubts at the right. Without: a large contact
-sheet at the left; sharpness, overlap and doubts at the right.
+With poses: a plan at the left; photos, view directions and diagnostics at the right. Without: a
+large contact sheet at the left; sharpness, overlap and diagnostics at the right.
 """
 
 import io

@@ -1,4 +1,4 @@
-"""The plan's panel: what was seen from above, the way of the camera, a scale bar and a rose."""
+"""Panels of the poster: plan, contact sheet, bar charts and the chart of view directions."""
 
 from collections.abc import Mapping, Sequence
 
@@ -23,10 +23,15 @@ from world2minecraft.capture.quality.top_view import TopView
 from world2minecraft.capture.quality.view_directions import ViewDirections
 from world2minecraft.capture.validation import evenly_spaced
 
-# The chart of looks: how many pictures cover each heading and each height of look.
-
 DEEP = blend_colours(FIRST, INK, 0.45)
 HEADINGS = ("N", "E", "S", "W", "N")
+GAP_PX = 10
+CAPTION_PX = 22
+CONES = 60  # More would hide the room.
+CONE_M, HALF_DEG = 0.34, 24.0
+RELIEF = 1.6  # How strongly steps of height shade the plan.
+WALL_M = 0.06  # The noise of a wall's far side.
+LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 
 def draw_view_directions(
@@ -59,12 +64,6 @@ def direction_heatmap(directions: ViewDirections) -> np.ndarray:
     low, high = np.array(blend_colours(PANEL, FIRST, 0.25)), np.array(DEEP)
     colours = low * (1 - share) + high * share
     return np.where(seen[..., None] > 0, colours, np.array(PANEL)).round().astype(np.uint8)
-
-
-# The contact sheet: some pictures of the capture, spread evenly, doubtful ones marked.
-
-GAP_PX = 10
-CAPTION_PX = 22
 
 
 def draw_photos(
@@ -156,13 +155,6 @@ def draw_bars(
     sheet.line([(corner[0], low), (corner[0] + size[0], low)], FAINT, 0.5)
     sheet.text((corner[0], low + 5), words[0], 15, FAINT)
     sheet.text((corner[0] + size[0], low + 5), words[1], 15, FAINT, anchor="ra")
-
-
-CONES = 60  # More would hide the room.
-CONE_M, HALF_DEG = 0.34, 24.0
-RELIEF = 1.6  # How strongly steps of height shade the plan.
-WALL_M = 0.06  # The noise of a wall's far side.
-LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 
 def draw_plan(

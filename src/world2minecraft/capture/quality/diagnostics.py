@@ -1,4 +1,4 @@
-"""What could go wrong with a capture, each with what to do about it."""
+"""Diagnostics of a capture: what could go wrong, each with advice."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence

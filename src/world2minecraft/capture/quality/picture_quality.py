@@ -1,4 +1,9 @@
-"""Some of a capture's pictures, small, each with how sharp, bright and bare it is."""
+"""Quality of sampled pictures: sharpness, brightness, texture, and overlap of neighbours.
+
+Overlap is that of the best shift of one thumbnail over the other, by normalised cross-
+correlation. For the kitchen's and a generated room's neighbours it is within about a tenth of
+what their depth says, as a median over many pairs; a single pair may be far off.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +25,10 @@ DRAFT_COST = 0.15  # A JPEG at a quarter of its size, against one decoded whole.
 STRONG_SHARE = 0.1  # Blur is judged at the strongest edges alone: bare walls have none.
 PATCH_PX = 16
 BARE_CONTRAST = 3.0  # Of 255: the noise of a good sensor; features need more.
+OVERLAP_WIDTH_PX = 64
+MIN_OVERLAP = 0.2  # Smaller overlaps agree by chance.
+MIN_CORRELATION = 0.4  # Pictures of different places reach this correlation one time in three.
+NOISE_LEVEL = 8.0  # Grey levels: noise of bare walls is not blown up to texture.
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,17 +133,6 @@ def textureless_share(grey: np.ndarray) -> float:
     patches = grey[: rows * PATCH_PX, : columns * PATCH_PX]
     patches = patches.reshape(rows, PATCH_PX, columns, PATCH_PX)
     return float((patches.std(axis=(1, 3)) < BARE_CONTRAST).mean())
-
-
-# How much two pictures share, told from how one has to be shifted over the other.
-#
-# This is a look, not a match: at the kitchen's and a generated room's neighbours it is within about
-# a tenth of what their depth says, as a median over many pairs; a single pair may be far off.
-
-OVERLAP_WIDTH_PX = 64
-MIN_OVERLAP = 0.2  # Smaller overlaps agree by chance.
-MIN_CORRELATION = 0.4  # Pictures of different places reach this correlation one time in three.
-NOISE_LEVEL = 8.0  # Grey levels: noise of bare walls is not blown up to texture.
 
 
 def neighbour_overlaps(pictures: Sequence[Picture]) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Which way a capture takes through ``w2m reconstruct``, in words, and about how long that is."""
+"""The way of a capture through ``w2m reconstruct``, in words, and about how long it takes."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""``survey_capture``: all that a first look at a capture finds."""
+"""``survey_capture``: the results of a quick survey of a capture."""
 
 from dataclasses import dataclass
 

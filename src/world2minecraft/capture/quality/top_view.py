@@ -1,7 +1,7 @@
-"""A first top view of a capture: coloured points of some frames, laid into one level frame.
+"""A top view of a capture: coloured points of some frames, rasterised in one level frame.
 
-Points above ``CUT_HEIGHT_SHARE`` of the room's height are left out, so that one looks in from above; where a
-column holds points at many heights stands a wall or something tall.
+Points above ``CUT_HEIGHT_SHARE`` of the room's height are left out, so that one looks in from
+above; where a column holds points at many heights stands a wall or something tall.
 """
 
 from collections.abc import Iterator, Sequence

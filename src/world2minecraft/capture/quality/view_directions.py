@@ -1,4 +1,4 @@
-"""Where the cameras looked: how many pictures cover each heading and height of look."""
+"""View directions: how many pictures cover each heading and pitch."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

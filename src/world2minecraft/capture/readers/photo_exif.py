@@ -1,7 +1,7 @@
-"""A phone's photo, turned upright as its EXIF says, and what EXIF tells of lens and time.
+"""EXIF of photos: upright orientation, lens and time.
 
-Only photos without poses are turned so: the intrinsics of posed captures speak of the pixels as
-they are stored.
+Only photos without poses are rotated upright: the intrinsics of posed captures speak of the pixels
+as they are stored.
 """
 
 import math

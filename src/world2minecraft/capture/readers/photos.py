@@ -1,7 +1,7 @@
-"""Photos of a room in a folder, and nothing else: no poses, perhaps depth, any phone.
+"""Reader of a folder of photos without poses, perhaps with depth.
 
 What is no photo of the room is left out with a reason: screenshots, thumbnails, panoramas,
-copies, edits beside their originals, and what operating systems and phones add.
+copies, edits next to their originals, and what operating systems and phones add.
 """
 
 import hashlib

@@ -1,4 +1,4 @@
-"""Our own plain layout: ``capture.json`` beside ``colour/``, ``depth/`` and ``labels/``.
+"""Reader and writer of the program's own layout: ``capture.json`` with images.
 
 The layout is described in docs/captures.md. ``write_plain`` writes it from views; what it writes
 is read back equal, but for depth, which is rounded to whole millimetres unless the unit is metres.

@@ -1,4 +1,4 @@
-"""Whether a capture is a plan alone: a RoomPlan, and no frames beside it."""
+"""Detection of captures that are a RoomPlan file without frames."""
 
 from pathlib import Path
 

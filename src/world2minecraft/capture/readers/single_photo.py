@@ -1,7 +1,7 @@
-"""One photo of a room, and nothing else: a file, such as a phone keeps or a listing shows.
+"""Reader of one photo, such as a phone takes or a listing shows.
 
-Its lens is what the user says, else what EXIF says, else a usual one. It has no pose: where it was
-taken is told from depth by a network, or taken to be a person's eye.
+Its lens is what the user states, else what EXIF states, else a usual one. It has no pose: the
+camera's place comes from depth by a network, or is that of a person's eye.
 """
 
 import re

@@ -1,7 +1,9 @@
-"""A video of a walk through a room becomes photos: sharp ones, well apart.
+"""Reader of a video of a walk through a room: selects sharp, well separated frames.
 
-``motion`` looks through the video once at low resolution; here pictures are chosen from what it
-found. They are decoded when they are read, upright, in the order of the video.
+One pass over the video at low resolution measures motion and sharpness. Motion is the shift of
+blocks of the picture against the last reference picture, by phase correlation: it sees walking,
+turning and coming nearer alike, and a hand's shake does not add up. Sharpness is the strength of
+fine edges. Selected frames are decoded when they are read, upright, in the order of the video.
 """
 
 from dataclasses import dataclass
@@ -29,12 +31,6 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.types import Camera
 
-# How a video moves and how sharp its pictures are, and which of them to take.
-#
-# One pass over the video at low resolution. Motion is the shift of blocks of the picture against
-# the last reference picture, found by phase correlation: it sees walking, turning and coming nearer
-# alike, and a hand's shake does not add up. Sharpness is the strength of fine edges.
-
 SMALL_PX = 192  # The longer side of the small pictures.
 BLOCK = 48  # The side of a block of them; shifts of up to half of it are seen.
 MIN_PEAK = 0.045  # Correlation under it is chance: a bare wall, or another scene.
@@ -43,6 +39,10 @@ FRAME_STEP = 0.12  # Of the longer side, from one picture taken to the next: sev
 SEARCH_STEPS = 0.4  # How far from its place, in steps, the sharpest picture is looked for.
 MAX_SECONDS = 3600.0
 SHARP_ROWS = 6  # Each sixth row tells the sharpness.
+SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
+DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.
+FOCAL_KEYS = ("com.apple.quicktime.camera.focal_length.35mm_equivalent",)
+_IMAGE_SUFFIXES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", ".tif", ".tiff")
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,12 +255,6 @@ def select_frames(look: VideoAnalysis, wanted: int) -> list[int]:
             off = np.abs(look.path[near] - place) / step
             chosen.append(int(near[(look.sharpness[near] * (1 - 0.5 * off)).argmax()]))
     return chosen
-
-
-SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
-DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.
-FOCAL_KEYS = ("com.apple.quicktime.camera.focal_length.35mm_equivalent",)
-_IMAGE_SUFFIXES = (".jpg", ".jpeg", ".png", ".heic", ".heif", ".webp", ".npy", ".tif", ".tiff")
 
 
 class VideoSource:

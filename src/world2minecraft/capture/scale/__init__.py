@@ -1,8 +1,8 @@
-"""The metric scale of a capture whose unit nobody knows, as photos give it.
+"""The metric scale of a capture whose unit is unknown, as photos give it.
 
-``collect_unscaled`` gathers the surface, ``estimate_scale`` finds the factor to metres from the
-habits of rooms and people, or from lengths that the user knows: ``parse_known_length`` takes one by its
-name, ``KnownDistance`` by two pixels.
+``collect_unscaled`` gathers the surface, ``estimate_scale`` finds the factor to metres from usual
+sizes in rooms, or from lengths that the user knows: ``parse_known_length`` takes one by its name,
+``KnownDistance`` by two pixels.
 """
 
 from world2minecraft.capture.scale.estimate import ScaleEstimate, estimate_scale

@@ -1,4 +1,8 @@
-"""The factor from a scan's unit to metres, how sure it is, and where it was taken from."""
+"""Estimation of the factor from a scan's unit to metres, with its uncertainty and sources.
+
+Without known lengths it is the main mode of a posterior over the logarithm of the scale, made of
+the priors in ``priors`` and the measurements of the room.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,13 +20,15 @@ from world2minecraft.capture.scale.known_lengths import (
 from world2minecraft.capture.scale.measurements import LevelFace, RoomMeasurements, measure_room
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
-# How likely each scale of a scan is, and what that comes to: the best mode and its sigma.
-
 LOG_RANGE = (
     1.2  # Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
 )
 STEPS = 961
 MIN_SIGMA = 0.03  # No prior of furniture is better than that.
+OUTLIER_PROBABILITY = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
+MAX_LOG_DIFFERENCE = 0.05  # Two known lengths that differ by more are told.
+PRIOR_WEIGHT = 0.5  # A known length outweighs habits, but these say which table was meant.
+MAX_NAMED_LEVELS = 2  # More would make the sentence long.
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,12 +112,6 @@ def _mode_ranges(weight: np.ndarray) -> list[tuple[int, int]]:
             high = low = n
     bounds.append(len(weight))
     return list(pairwise(bounds))
-
-
-OUTLIER_PROBABILITY = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
-MAX_LOG_DIFFERENCE = 0.05  # Two known lengths that differ by more are told.
-PRIOR_WEIGHT = 0.5  # A known length outweighs habits, but these say which table was meant.
-MAX_NAMED_LEVELS = 2  # More would make the sentence long.
 
 
 @dataclass(frozen=True)

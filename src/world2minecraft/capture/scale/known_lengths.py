@@ -1,4 +1,4 @@
-"""Lengths that the user knows: a table's height, a room's side, or two points of the photos."""
+"""Lengths that the user knows: a table's height, a room's side, or a distance of two pixels."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,8 @@
-"""What a room gives to measure by, in the scan's own unit: floor, cameras, ceiling, level faces.
+"""Measurements of a room in the scan's own unit: floor, cameras, ceiling, level faces.
 
-The stages behind need thresholds in metres; so the surface is first brought to about metres by
-the height at which a person holds a camera, and what was found is carried back.
+The stages behind need thresholds in metres. So depth is first brought to about metres by what a
+person who walks through a room usually looks at, and the surface by the height at which a person
+holds a camera; what was found is carried back to the scan's unit.
 """
 
 from collections.abc import Iterable, Iterator
@@ -16,13 +17,19 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
-# The surface of a scan whose unit nobody knows.
-#
-# Flat patches are found with thresholds in metres. So depth is first brought to about metres, by
-# what a person who walks through a room usually looks at, and the surface is carried back.
-
 USUAL_DEPTH_M = 1.9  # Median over the virtual walks of seeds 500 to 549, 1.4 to 2.6 each.
 EVERY_PIXEL = 7  # Of the depth images, for their median.
+USUAL_CAMERA_M = 1.45  # A person who stands and holds a phone before the chest or the eyes.
+USUAL_RANGE_M = 2.0  # How far off the patches are; only the first guess rests on it.
+MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
+LEVEL_RANGE_M = (0.25, 1.30)  # What stands on a floor and has a top to measure by.
+MIN_LEVEL_M2 = 0.10  # A seat has 0.16.
+MIN_CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
+MIN_CEILING_M2, MIN_CEILING_SHARE = 0.5, 0.4
+OTHER_STOREY_RATIO = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
+SINGLE_STOREY_SHARE = 0.9  # Of the cameras that stand on the lowest floor where it is the only one.
+TOP_QUANTILE = 0.995
+MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
 def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> OrientedPoints:
@@ -77,19 +84,6 @@ def _scale_views(views: Iterable[View], factor: float) -> Iterator[View]:
             depth_camera=view.depth_camera,
             depth_to_colour=between,
         )
-
-
-USUAL_CAMERA_M = 1.45  # A person who stands and holds a phone before the chest or the eyes.
-USUAL_RANGE_M = 2.0  # How far off the patches are; only the first guess rests on it.
-MIN_FACING_COSINE = 0.94  # Cosine of 20 degrees.
-LEVEL_RANGE_M = (0.25, 1.30)  # What stands on a floor and has a top to measure by.
-MIN_LEVEL_M2 = 0.10  # A seat has 0.16.
-MIN_CEILING_OVER_CAMERA = 1.15  # Wall cupboards and shelves have undersides too, at the eye.
-MIN_CEILING_M2, MIN_CEILING_SHARE = 0.5, 0.4
-OTHER_STOREY_RATIO = 1.7  # Times the lowest cameras' height: cameras over that stand on stairs.
-SINGLE_STOREY_SHARE = 0.9  # Of the cameras that stand on the lowest floor where it is the only one.
-TOP_QUANTILE = 0.995
-MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
 @dataclass(frozen=True)

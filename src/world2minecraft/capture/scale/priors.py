@@ -1,9 +1,9 @@
-"""What is known of rooms before one is measured: how likely each length is, in metres.
+"""Priors on sizes in rooms: log-densities of heights and sides in metres.
 
 Figures are of standards and habits, not of our generated rooms: dining tables and desks are 0.70
 to 0.78 m high (EN 527: 0.74), worktops 0.85 to 0.95, seats 0.42 to 0.48, beds 0.40 to 0.65;
 ceilings of homes 2.3 to 3.0. A person who scans holds the camera 1.2 to 1.7 m over the floor,
-but may sit, kneel or hold it up; so each density has a wide part beside the narrow one.
+but may sit, kneel or hold it up; so each density has a wide part besides the narrow one.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Where photos were taken: found from nothing, or measured and put right where poses are stated."""
+"""Structure from motion: camera poses of photos, from pixels alone or verified where stated."""
 
 from world2minecraft.capture.sfm.incremental_mapping import find_poses
 from world2minecraft.capture.sfm.parameters import SfmParameters

@@ -1,7 +1,13 @@
-"""From poses and links to points, and to better poses: triangulation and bundle adjustment.
+"""Triangulation and bundle adjustment with pycolmap.
 
-A round takes poses and lenses, makes points of all matches that meet within a gate, moves
-everything to where it fits best, and drops what is then off by more than the gate.
+A round takes poses and cameras, triangulates points from all matches that meet within a gate,
+adjusts everything, and drops observations that are then off by more than the gate.
+
+Anchors hold photos with stated poses that see too little to place themselves. Each photo sees
+eight points that are not there: they lie where its stated pose would have them, and do not move.
+The robust loss lets many real points that agree overrule them. On a generated room with bare
+walls, refining without them moved good poses by 70 mm. They hold the lens too, so they are for
+captures that see too little to tell it.
 """
 
 from dataclasses import dataclass
@@ -22,16 +28,12 @@ from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
 from world2minecraft.core.types import Camera
 
-# Stated poses hold photos that see too little to place themselves.
-#
-# Each photo sees eight points that are not there: they lie where its stated pose would have them,
-# and do not move. The robust loss lets many real points that agree overrule them. On a generated
-# room with bare walls, refining without them moved good poses by 70 mm. They hold the lens too, so
-# they are for captures that see too little to tell it.
-
 CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,
 DEPTHS = (0.6, 1.6)  # and how far, by the middle depth: near for the place, far for the turn.
 ANCHORS = 2 * len(CORNERS) * len(DEPTHS)  # Each is seen twice: COLMAP takes no point seen once.
+MIN_ANGLE_DEG = 1.5  # Rays that meet at less tell no depth.
+MIN_POINTS = 20  # A photo that sees fewer is not held by them.
+MIN_PHOTOS_FOR_RADIAL = 15  # With so many photos a lens takes a second term of distortion.
 
 
 def anchor_pixels(camera: Camera) -> np.ndarray:
@@ -75,11 +77,6 @@ def _median_depth(model: Any, inside: list[int]) -> float:
         seen = points @ matrix[2, :3] + matrix[2, 3]
         depths.append(seen[seen > 0])
     return float(np.median(np.concatenate(depths)))
-
-
-MIN_ANGLE_DEG = 1.5  # Rays that meet at less tell no depth.
-MIN_POINTS = 20  # A photo that sees fewer is not held by them.
-MIN_PHOTOS_FOR_RADIAL = 15  # With so many photos a lens takes a second term of distortion.
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Which photos share a lens, and lenses as pycolmap has them and as the program has them."""
+"""Groups of photos that share a camera, and conversion of cameras to and from pycolmap."""
 
 from dataclasses import dataclass
 from typing import Any

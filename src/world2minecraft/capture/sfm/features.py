@@ -1,4 +1,4 @@
-"""What photos are known by: SIFT features, their colours, and how sharp each photo is."""
+"""SIFT features of photos, with their colours and each photo's sharpness."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,4 +1,8 @@
-"""Photos of which nothing is known but their pixels get places, lenses and points."""
+"""Incremental mapping: poses, cameras and points of photos from their pixels alone.
+
+COLMAP's mapper runs on one thread, so that it repeats itself. Its models become one where they
+share photos and agree on their poses.
+"""
 
 from dataclasses import replace
 from typing import Any
@@ -34,9 +38,15 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 
-# Places from nothing: COLMAP's incremental mapping, on one thread so that it repeats itself.
-
 Model = dict[int, tuple[np.ndarray, Camera]]
+MIN_SHARED_PHOTOS = 3  # Two photos fit any two models.
+MAX_ROTATION_DEG = 3.0  # How far shared photos may be turned after the best similarity,
+MAX_SHIFT_SHARE = 0.05  # and moved, by the way between the farthest of them.
+MEDIAN_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
+OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
+ENOUGH_SHARE = 0.6  # A model of this share of the linked photos needs no second trial.
+MIN_PLACED_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
+MIN_PHOTOS = 3
 
 
 def run_mapper(
@@ -127,13 +137,6 @@ def _read_model(found: Any) -> Model:
     return model
 
 
-# Several models become one, where they share photos and agree on how these stand.
-
-MIN_SHARED_PHOTOS = 3  # Two photos fit any two models.
-MAX_ROTATION_DEG = 3.0  # How far shared photos may be turned after the best similarity,
-MAX_SHIFT_SHARE = 0.05  # and moved, by the way between the farthest of them.
-
-
 def merge_models(models: list[Model]) -> tuple[Model, int]:
     """Return the largest model with those joined to it that fit, and how many these were.
 
@@ -172,13 +175,6 @@ def _register_model(model: Model, whole: Model) -> Model | None:
     names = sorted(model)
     poses = found.poses(np.array([model[i][0] for i in names]))
     return {i: (pose, model[i][1]) for i, pose in zip(names, poses, strict=True)}
-
-
-MEDIAN_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
-OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
-ENOUGH_SHARE = 0.6  # A model of this share of the linked photos needs no second trial.
-MIN_PLACED_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
-MIN_PHOTOS = 3
 
 
 def find_poses(

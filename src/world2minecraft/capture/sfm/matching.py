@@ -1,4 +1,8 @@
-"""Links between photos: the matches that one geometry explains."""
+"""Matching of photos: candidate pairs, descriptor matches and two-view verification.
+
+Descriptors are bytes, so their products are whole numbers below 2^24 and float32 holds them
+exactly: no order of summing, and so no number of threads, can change a match.
+"""
 
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -16,11 +20,6 @@ from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 
-# Which features of two photos are the same thing, and which photos are worth comparing.
-#
-# Descriptors are bytes, so their products are whole numbers below 2^24 and float32 holds them
-# exactly: no order of summing, and so no number of threads, can change a match.
-
 SELF_PRODUCT = 512.0**2  # A descriptor times itself.
 MAX_RATIO = 0.8  # The next best must be so much farther (Lowe's).
 MAX_ANGLE_RAD = 0.7  # rad between two descriptors; COLMAP's.
@@ -28,6 +27,14 @@ MAX_WORDS = 512  # Descriptors of the photos themselves that tell alike ones, wh
 MAX_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
 
 Pair = tuple[int, int]
+MAX_TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
+MAX_ERROR_SHARE = (
+    0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
+)
+PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
+MAX_ROTATION_STRETCH = (
+    1.1  # A turn has singular values that are all one; a focal length 10 % off shows so.
+)
 
 
 def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -126,16 +133,6 @@ def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
     weighed = np.sqrt(counts) * rare
     length = np.linalg.norm(weighed, axis=1, keepdims=True)
     return np.round(weighed / np.maximum(length, 1e-12), 9)
-
-
-MAX_TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
-MAX_ERROR_SHARE = (
-    0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
-)
-PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
-MAX_ROTATION_STRETCH = (
-    1.1  # A turn has singular values that are all one; a focal length 10 % off shows so.
-)
 
 
 @dataclass(frozen=True, eq=False)

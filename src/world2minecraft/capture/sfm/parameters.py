@@ -1,4 +1,4 @@
-"""How photos are placed: every number that decides it, and where it comes from."""
+"""Parameters of structure from motion, with the reason for each value."""
 
 from dataclasses import dataclass
 

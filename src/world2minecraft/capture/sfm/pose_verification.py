@@ -1,4 +1,4 @@
-"""Photos with stated poses and lenses: these are measured, and put right where they are off."""
+"""Verification of stated poses and cameras, and refinement where they are off."""
 
 from dataclasses import dataclass, field, replace
 
@@ -31,9 +31,14 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 
-# Single photos: how far a stated pose is from what its matches say, and a new one from points.
-
 MIN_INLIERS = 30  # Points that a pose found anew must agree with; COLMAP's own least.
+MIN_POINTS = 50  # Fewer say nothing of poses.
+MIN_MOUNTED_POSES = 12  # Poses for the place of another sensor on the device to be sought.
+MAX_MOUNT_RATIO = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
+MAX_MOUNT_SHARE = 0.2  # and be no farther than so many times the depth that is seen.
+MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
+NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
+MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
 
 
 def epipolar_errors_px(
@@ -120,15 +125,6 @@ def register_photo(
     there = np.eye(4)
     there[:3] = answer["cam_from_world"].matrix()
     return np.linalg.inv(there)
-
-
-MIN_POINTS = 50  # Fewer say nothing of poses.
-MIN_MOUNTED_POSES = 12  # Poses for the place of another sensor on the device to be sought.
-MAX_MOUNT_RATIO = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
-MAX_MOUNT_SHARE = 0.2  # and be no farther than so many times the depth that is seen.
-MIN_POINTS_PER_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
-NEARLY_RIGHT_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
-MAX_REFINED_ERROR_PX = 1.5  # Refined poses that are off by more have run away.
 
 
 @dataclass(frozen=True, eq=False)

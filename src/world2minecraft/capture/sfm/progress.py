@@ -1,4 +1,4 @@
-"""How far the placing of photos is: one stage, whose parts follow each other."""
+"""Progress of structure from motion: one stage, whose parts follow each other."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""pycolmap, reached from here alone: loaded late, silent, and with its failures in one line."""
+"""Access to pycolmap: imported when needed, without its log, failures as one-line errors."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

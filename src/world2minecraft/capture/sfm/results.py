@@ -1,4 +1,4 @@
-"""What was solved, as the value that later stages take: in one order, rounded, with its figures."""
+"""Results of structure from motion: a ``SparseScene``, and reasons for photos left out."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -13,12 +13,11 @@ from world2minecraft.capture.sfm.similarity_transform import Similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, SparseScene
 
-# Why photos could not be placed, in words that tell what to do.
-
 MIN_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
 CHANCE_MATCHES = 6  # So many features match by chance.
 BLURRED_SHARE = 0.5  # Times the usual sharpness.
 CAPTURE_ADVICE = "walk sideways around the room, with most of each picture in the next"
+DIGITS = 9  # What is left of rounding in sums; a nanometre.
 
 
 def explain_left_out(
@@ -111,9 +110,6 @@ def no_model_error(
             f"were taken; {CAPTURE_ADVICE}"
         )
     return CaptureError(PHOTOS, reason)
-
-
-DIGITS = 9  # What is left of rounding in sums; a nanometre.
 
 
 def to_sparse_scene(

@@ -1,13 +1,13 @@
-"""The similarity that carries poses of one frame to those of another, by centres and rotations.
+"""A robust similarity transform between two sets of poses, by centres and rotations.
 
-Centres alone turn and stretch a small path with noisy poses (2.5 % in a trial); rotations hold it.
-Both are weighed by how well they agree, and poses that do not fit lose their weight.
+Centres alone rotate and stretch a small path with noisy poses (2.5 % in a trial); rotations hold
+it. Both are weighted by how well they agree, and poses that do not fit lose their weight.
 
 Stated poses are often those of another sensor on the same device, or of its wrong lens: a focal
-length or a middle that is off moves and turns all poses alike, as seen from the camera. Where that
-is allowed for, place and turn of that sensor in the camera are found too. On the real kitchen, with
-poses of the depth sensor, they bring 84 % of the points within 8 cm of the sensor's own surface;
-its place alone 60 %, neither 32 %.
+length or a principal point that is off moves and rotates all poses alike, as seen from the camera.
+Where that is allowed for, position and rotation of that sensor in the camera are estimated too. On
+the real kitchen, with poses of the depth sensor, they bring 84 % of the points within 8 cm of the
+sensor's own surface; its position alone 60 %, neither 32 %.
 """
 
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Depth of photos from each other: a plane sweep, semi-global matching and mutual agreement."""
+"""Multi-view stereo: plane sweep, semi-global matching and consistency of depth maps."""
 
 from world2minecraft.capture.stereo.depth_maps import depth_maps
 from world2minecraft.capture.stereo.monocular_depth import (

@@ -1,10 +1,8 @@
-"""Small islands of depth: bits that hang on nothing around them are chance, not things."""
+"""Consistency between depth maps, and the speckle filter."""
 
 import numpy as np
 
 from world2minecraft.core.jit import njit
-
-# Which depths other photos confirm, and the mean of what they all say.
 
 
 @njit

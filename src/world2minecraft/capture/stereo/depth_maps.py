@@ -1,4 +1,4 @@
-"""Depth of every photo: swept alone, confirmed by others, filled where planes say how."""
+"""Depth maps of all photos: swept, filtered by consistency, filled by planes or a network."""
 
 from collections.abc import Iterator
 
@@ -17,11 +17,16 @@ from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.unprojection import pixel_rays, project
 from world2minecraft.rendering.thread_pool import run_parallel
 
-# Which photos each is compared with: those that see the same things at a good angle.
-
 SAMPLE_GRID = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.
 DEPTH_PERCENTILES = (20, 50, 80)
 MIN_SHARED_POINTS = 20  # So many points in common prove that nothing stands between.
+PARALLEL_PHOTOS = 2  # Photos swept side by side; each needs about 60 MB.
+TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+SURE_TRUST = 160  # Trust of depth that may decide where a flat patch lies.
+PLANE_TRUST = np.uint8(96)
+MIN_PLANE_VOTES = 2  # Two photos may guess alike by chance; three hardly.
+MIN_SPARSE_POINTS = 20
+STAGE = "stereo"
 
 
 def select_neighbours(
@@ -88,15 +93,6 @@ def _neighbour_score(photo, other, to_other, points_m, depth_m, angle_deg) -> fl
     worth = np.exp(-0.5 * octaves**2 - 0.5 * (distance / 0.5) ** 2)
     shared = len(np.intersect1d(photo.guide_point, other.guide_point, assume_unique=True))
     return float(worth.sum() / len(points_m) * (0.2 + 0.8 * min(1.0, shared / MIN_SHARED_POINTS)))
-
-
-PARALLEL_PHOTOS = 2  # Photos swept side by side; each needs about 60 MB.
-TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
-SURE_TRUST = 160  # Trust of depth that may decide where a flat patch lies.
-PLANE_TRUST = np.uint8(96)
-MIN_PLANE_VOTES = 2  # Two photos may guess alike by chance; three hardly.
-MIN_SPARSE_POINTS = 20
-STAGE = "stereo"
 
 
 def depth_maps(

@@ -1,9 +1,11 @@
-"""Depth by a network alone, for photos that cannot be compared: each map laid on its own photo.
+"""Depth networks: filling the holes of stereo, or giving the depth of a photo alone.
 
-A network errs by some per cent from photo to photo, each its own way. So each map is first laid on
-the sparse points of its photo, by one factor (or a factor and a shift) and then by what lies around
-each pixel. A photo with too few points takes the factor that most others have; registration evens
-out what is left.
+A network knows how walls look, but not how large this room is, and it errs by some per cent from
+photo to photo. So each map is first fitted to what was measured in its photo (the sparse points,
+and the pixels of which stereo is sure) by one factor, or a factor and a shift, and then locally.
+Where it then agrees with what lies around a hole, it fills the hole, with less trust than anything
+measured. Without stereo, a photo with too few points takes the factor that most others have;
+registration evens out what is left.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,12 +20,6 @@ from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import Camera, DepthMap, PhotoStream, SparseScene
-
-# Networks that guess depth from one picture, and how a guess fills what stereo leaves open.
-#
-# A network knows how walls look, but not how large this room is. Its map is laid on what was
-# measured in the photo: the sparse points, and the pixels of which stereo is sure. Where it then
-# agrees with what lies around a hole, it fills the hole, with less trust than anything measured.
 
 Kind = Literal["metric", "inverse"]
 
@@ -42,6 +38,14 @@ WINDOW_SHARES = (
 )  # Half widths of what is around, by the picture's width.
 MAX_LOG_CORRECTION = 0.25  # One wrong point must not outweigh all that is right around it.
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest of what was measured.
+DEPTH_MODELS = Registry(
+    "depth_model", {"hf": "world2minecraft.capture.stereo.hf_depth:HuggingFaceDepth"}
+)
+NETWORK_TRUST = (
+    160  # More than half, so that it is registered; less than what several photos confirm.
+)
+WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.
+STAGE = "stereo"
 
 
 class DepthModel(Protocol):
@@ -57,11 +61,6 @@ class DepthModel(Protocol):
     def predict(self, colour: np.ndarray, camera: Camera) -> np.ndarray:
         """Return float32 [H, W] for a picture uint8 [H, W, 3] without distortion."""
         ...
-
-
-DEPTH_MODELS = Registry(
-    "depth_model", {"hf": "world2minecraft.capture.stereo.hf_depth:HuggingFaceDepth"}
-)
 
 
 def load_depth_model(name: str) -> DepthModel:
@@ -235,13 +234,6 @@ def _weighted_median(values: np.ndarray, weight: np.ndarray) -> float:
     order = np.argsort(values, kind="stable")
     rising = np.cumsum(weight[order])
     return float(values[order[np.searchsorted(rising, rising[-1] / 2)]])
-
-
-NETWORK_TRUST = (
-    160  # More than half, so that it is registered; less than what several photos confirm.
-)
-WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.
-STAGE = "stereo"
 
 
 def network_maps(

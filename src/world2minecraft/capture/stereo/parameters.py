@@ -1,4 +1,4 @@
-"""How depth is found in photos: every number that decides it, and where it comes from."""
+"""Parameters of stereo, with the reason for each value."""
 
 from dataclasses import dataclass
 

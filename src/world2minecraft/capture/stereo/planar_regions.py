@@ -1,4 +1,4 @@
-"""Surfaces without texture, or glossy: taken for flat, and as far away as their rims are.
+"""Planes for surfaces without texture, or glossy ones, fitted to the depth at their rims.
 
 Where a picture has one colour there is nothing to match, or only what is mirrored in it, which
 lies behind it. But around it there are edges, and an even patch of colour is mostly one plane.

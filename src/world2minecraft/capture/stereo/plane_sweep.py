@@ -1,4 +1,11 @@
-"""The depth of one photo by a plane sweep over its neighbours, before anything is checked."""
+"""Plane-sweep stereo of one photo: matching costs, semi-global matching, the winning depth.
+
+A plane at depth z before the camera carries the pixel u of the photo to
+``turn @ (u, v, 1) + shift / z`` of a neighbour, up to scale. There the windows around both are
+compared by their zero-mean normalised cross-correlation, to which brightness and contrast mean
+nothing. In Hirschmueller's semi-global matching a path along each of eight directions carries, for
+each plane, the least cost of everything behind it; the plane with the least sum of all eight wins.
+"""
 
 import numpy as np
 
@@ -7,11 +14,7 @@ from world2minecraft.capture.stereo.stereo_photos import StereoPhoto
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.jit import njit
 
-# How badly each pixel fits its neighbours at each depth: a plane sweep with correlation.
-#
-# A plane at depth z before the camera carries the pixel u of the photo to
-# ``turn @ (u, v, 1) + shift / z`` of a neighbour, up to scale. There the windows around both are
-# compared by their zero-mean normalised correlation, to which brightness and contrast mean nothing.
+NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse points.
 
 
 @njit
@@ -191,12 +194,6 @@ def _mean_best_scores(scores, best, costs, d):
         costs[x, d] = np.uint8(min(max(cost + np.float32(0.5), np.float32(0)), np.float32(254)))
 
 
-# Semi-global matching: depths that fit their pixels and change little from one to the next.
-#
-# Along each of eight directions a path carries, for each plane, the least cost of everything behind
-# it; the plane with the least sum of all eight wins. Hirschmueller's method, with whole costs.
-
-
 @njit
 def aggregate_costs(costs, small_step, large_step):
     """Return float32 [h, w, D]: the sum of eight paths' costs; see the module.
@@ -282,9 +279,6 @@ def select_planes(total):
                 if bend > 0:
                     found[y, x] = best + (low - up) / (2 * bend)
     return found
-
-
-NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse points.
 
 
 def depth_range(photo: StereoPhoto, all_m: np.ndarray) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Photos made small and straight, all of them at once in memory, and where they were taken."""
+"""Photos prepared for stereo: downscaled and undistorted, with poses and sparse depths."""
 
 from dataclasses import dataclass
 

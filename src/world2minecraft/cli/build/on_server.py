@@ -4,7 +4,7 @@ import os
 from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.minecraft.server.rcon import note_of, parse_address
+from world2minecraft.minecraft.server.rcon import build_note_path, parse_address
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
@@ -52,7 +52,7 @@ def on_server(
     volume = place_volume(volume, at, turns, ROOM_CORNER_BLOCK[1] if is_room else None)
     losses, built = Losses(), affected_mask(volume, air)
     plan = plan_build(volume, game_version(mc_version), built=built, losses=losses)
-    note = note_of(f"{host}:{port}", plan.digest)
+    note = build_note_path(f"{host}:{port}", plan.digest)
     if note.is_file():
         print("An earlier run of this build was stopped; this one goes on from there.")
     client = RconClient(host, port, password)

@@ -103,7 +103,7 @@ def run(
     server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
     first = source or (editor and document_folder(None, place))
     if first:
-        server.workshop.begin_with(first, dropped)
+        server.workspace.begin_with(first, dropped)
     if place is not None:
         print(f"note: your demo room is kept in {place.parent}")
     _tell(server, editor)

@@ -101,10 +101,10 @@ def _check_source(
 def _check_figures(given: dict[str, Any]) -> None:
     """Refuse figures out of range before any work is done."""
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.procgen.sensors.shots import Shooting
+    from world2minecraft.procgen.sensors.shots import ScanSettings
 
     try:
-        Shooting(**given)
+        ScanSettings(**given)
     except ValueError as error:
         raise UsageError(f"--{str(error).replace('_', '-')}") from error
 
@@ -122,9 +122,9 @@ def _check_empty(out: Path) -> None:
 
 
 def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
-    from world2minecraft.procgen.benchmark_trials import trial_named, write_trial
+    from world2minecraft.procgen.benchmark_trials import find_trial, write_trial
 
-    write_trial(trial_named(name), out, progress)
+    write_trial(find_trial(name), out, progress)
 
 
 def _room(

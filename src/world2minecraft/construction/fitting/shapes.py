@@ -15,7 +15,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import block_axes_to_grid
 from world2minecraft.minecraft.transforms import mirror_state, turn_state
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 SUB = 8  # Finer masks gained 0.003 to 0.013 of IoU for three times the time (reference/fit.md).
 PROBES = 32  # Along each axis: every box of the game's that matters lies on 32nds.
@@ -45,7 +45,7 @@ def probe_state(state: str) -> np.ndarray:
         UsageError: the text is no block state.
     """
     solid = np.zeros((PROBES,) * 3, bool)
-    for box in np.clip(visual_boxes_of(state), 0, 1):
+    for box in np.clip(visual_boxes(state), 0, 1):
         low = np.ceil(box[:3] * PROBES - 0.5).astype(int)
         high = np.ceil(box[3:] * PROBES - 0.5).astype(int)
         solid[tuple(map(slice, low, high))] = True

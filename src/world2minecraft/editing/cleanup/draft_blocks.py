@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks
 from world2minecraft.editing.volume_draft import Draft
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 CRUMB_M3 = 0.03  # Two blocks at 4 blocks a metre.
 FREE = (AIR, "minecraft:cave_air", "minecraft:void_air", "minecraft:light")
@@ -16,7 +16,7 @@ FREE = (AIR, "minecraft:cave_air", "minecraft:void_air", "minecraft:light")
 
 def visible_blocks(draft: Draft) -> np.ndarray:
     """Return bool [X, Y, Z]: blocks that one sees; not air, light or barriers."""
-    return _by_state(draft, lambda state: len(visual_boxes_of(state)) > 0)
+    return _by_state(draft, lambda state: len(visual_boxes(state)) > 0)
 
 
 def free_cells(draft: Draft) -> np.ndarray:

@@ -25,7 +25,7 @@ from world2minecraft.editing.cleanup.draft_blocks import (
 )
 from world2minecraft.editing.cleanup.gaps import close_gap, full_block_of
 from world2minecraft.editing.volume_draft import Draft
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 GAP = 1 / 8  # Blocks: shapes nearer than this touch for the eye. A fence's bar is 1/8 thick.
 # Half of the 26 neighbours: the others are these, seen from the other side.
@@ -96,7 +96,7 @@ def touches(state: str, other: str, step: tuple[int, int, int]) -> bool:
         >>> touches("minecraft:oak_slab[type=bottom]", "minecraft:stone", (0, 1, 0))
         False
     """
-    mine, its = visual_boxes_of(state), visual_boxes_of(other)
+    mine, its = visual_boxes(state), visual_boxes(other)
     if not len(mine) or not len(its):
         return False
     away = np.array(step, np.float64)

@@ -11,7 +11,7 @@ from world2minecraft.core.types import Blocks
 from world2minecraft.editing.cleanup.draft_blocks import move_blocks
 from world2minecraft.editing.volume_draft import Draft
 from world2minecraft.minecraft.block_states import known_blocks
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 DOWN = np.array([0, -1, 0])
 PLATE = 0.26  # What is no higher than this, in blocks, is a plate: a trapdoor, a carpet.
@@ -60,7 +60,7 @@ def full_block_of(state: str) -> str:
 
 
 def _lowest(state: str) -> float:
-    boxes = visual_boxes_of(state)
+    boxes = visual_boxes(state)
     return float(boxes[:, 1].min()) if len(boxes) else 0.0
 
 
@@ -94,7 +94,7 @@ def _sink(draft: Draft, cells: np.ndarray) -> bool:
 
 
 def _is_plate(state: str) -> bool:
-    boxes = visual_boxes_of(state)
+    boxes = visual_boxes(state)
     return not len(boxes) or float(boxes[:, 4].max()) <= PLATE
 
 

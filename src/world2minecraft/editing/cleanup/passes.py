@@ -22,8 +22,8 @@ from world2minecraft.editing.cleanup.floating import repair_floating
 from world2minecraft.editing.cleanup.holes import close_holes
 from world2minecraft.editing.cleanup.intrusions import close_see_through, trim_severed_pieces
 from world2minecraft.editing.volume_draft import Draft
-from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.rules.connections import update_connections
+from world2minecraft.minecraft.rules.stability import find_unstable
 
 EXACT_BLOCKS_PER_METRE = 8.0  # Above it, cells are copied as they are.
 ROUNDS = 4  # A mend may uncover what another rule is for.
@@ -34,7 +34,7 @@ def stabilize(draft: Draft) -> None:
     """Set connections as the game would, and take away what would not stay; each is an edit."""
     for _ in range(STEADY_ROUNDS):
         _connect(draft)
-        found = unstable(draft.volume())
+        found = find_unstable(draft.volume())
         if not found:
             return
         for position, state, reason in found:
@@ -44,7 +44,7 @@ def stabilize(draft: Draft) -> None:
 
 
 def _connect(draft: Draft) -> None:
-    states, palette = connected(draft.states, draft.palette)
+    states, palette = update_connections(draft.states, draft.palette)
     numbers = np.array([draft.id_of(state) for state in palette], np.uint16)
     new = numbers[states]
     cells = np.argwhere(new != draft.states)

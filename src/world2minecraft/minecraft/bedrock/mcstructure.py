@@ -27,7 +27,7 @@ from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, j
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.nbt import NbtLimits
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.unlabelled_volume import check_size, palette_of, unlabelled
 
 FORMAT_VERSION = 1
@@ -222,7 +222,7 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
             block_entities.append(BlockEntity(place, *java))  # type: ignore[arg-type]
     losses.add("entities", len(structure.get("entities", [])))
     # What Bedrock leaves to its neighbours a Java file must state.
-    states, palette = connected(states, palette)
+    states, palette = update_connections(states, palette)
     return _trimmed_palette(states, palette, (x, y, z), block_entities)
 
 

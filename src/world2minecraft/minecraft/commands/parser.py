@@ -24,7 +24,7 @@ from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.commands.snbt import SnbtReader
 from world2minecraft.minecraft.file_format import Losses
-from world2minecraft.minecraft.signs import signs_of_commands
+from world2minecraft.minecraft.signs import upgrade_command_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     check_size,
@@ -158,7 +158,7 @@ def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
         x0, y0, z0, x1, y1, z1, state = row.tolist()
         states[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = ours[state]
     x, y, z = low.tolist()
-    blocks = signs_of_commands(_block_entities(site, states, palette, (x, y, z)))
+    blocks = upgrade_command_signs(_block_entities(site, states, palette, (x, y, z)))
     return unlabelled(states, palette, (x, y, z), blocks, site.entities)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.physics.body import TOUCH
-from world2minecraft.minecraft.physics.walk_graph import Solid
+from world2minecraft.minecraft.physics.walk_graph import CollisionGrid
 
 
 def bodies_fit(
-    solid: Solid,
+    solid: CollisionGrid,
     corner: tuple[int, int, int],
     feet: np.ndarray,
     half: float,

@@ -1,4 +1,7 @@
-"""What stops a player: the collision boxes of blocks, near a place."""
+"""Collisions of boxes with the boxes of blocks: sweeping along each axis, stepping up, standing.
+
+Boxes are float64 [N, 6]: low and high corner. What a box lies in already does not hold it.
+"""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -9,20 +12,18 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.physics.body import STEP_HEIGHT, TOUCH, WIDTH, body_box
 
-# A box moves among boxes: how far it comes along each axis, and up what steps.
-#
-# Boxes are float64 [N, 6]: low and high corner. What a box lies in already does not hold it.
-
 _OTHERS = ((1, 2), (0, 2), (0, 1))
+_TALLEST = 1  # Cells by which a box may reach beyond its own: fences are 1.5 high.
+_RINGS = 40  # Of places tried around one that is taken, a quarter of a body apart.
 
 
-def overlapping(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> np.ndarray:
+def find_overlaps(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> np.ndarray:
     """Return which of some boxes a box lies over, bool [N]; touching is not lying over."""
     inside = (boxes[:, :3] < box[3:] - touch) & (boxes[:, 3:] > box[:3] + touch)
     return np.asarray(inside.all(axis=1))
 
 
-def free_way(
+def free_distance(
     boxes: np.ndarray, box: np.ndarray, axis: int, way: float, touch: float = TOUCH
 ) -> float:
     """Return how much of a way along one axis a box can go before it meets another."""
@@ -42,7 +43,7 @@ def free_way(
     return float(max(way, gaps[gaps <= touch].max(initial=way)))
 
 
-def swept(
+def sweep_box(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, touch: float = TOUCH
 ) -> tuple[float, float, float]:
     """Return how much of a way, float64 [3], a box can go: up or down, then the longer side first.
@@ -53,38 +54,36 @@ def swept(
     gone = [0.0, 0.0, 0.0]
     here = box.copy()
     for axis in longer_first:
-        gone[axis] = free_way(boxes, here, axis, float(way[axis]), touch)
+        gone[axis] = free_distance(boxes, here, axis, float(way[axis]), touch)
         here[[axis, 3 + axis]] += gone[axis]
     return gone[0], gone[1], gone[2]
 
 
-def climbed(
+def sweep_with_step(
     boxes: np.ndarray, box: np.ndarray, way: np.ndarray, height: float, touch: float = TOUCH
 ) -> tuple[float, float, float]:
     """Return how much of a way a box can go when it may step up by a height and down again."""
-    best = swept(boxes, box, np.array([way[0], height, way[2]]), touch)
+    best = sweep_box(boxes, box, np.array([way[0], height, way[2]]), touch)
     reach = box.copy()  # All that it would pass over: as high as all of that lets it.
     reach[:3] += np.minimum([way[0], 0, way[2]], 0)
     reach[3:] += np.maximum([way[0], 0, way[2]], 0)
-    up = free_way(boxes, reach, 1, height, touch)
+    up = free_distance(boxes, reach, 1, height, touch)
     if up < height:
-        x, _, z = swept(boxes, _moved(box, (0, up, 0)), np.array([way[0], 0, way[2]]), touch)
+        x, _, z = sweep_box(
+            boxes, _translate(box, (0, up, 0)), np.array([way[0], 0, way[2]]), touch
+        )
         if _length(x, z) > _length(best[0], best[2]):
             best = (x, up, z)
-    down = free_way(boxes, _moved(box, best), 1, way[1] - best[1], touch)
+    down = free_distance(boxes, _translate(box, best), 1, way[1] - best[1], touch)
     return best[0], best[1] + down, best[2]
 
 
-def _moved(box: np.ndarray, way: tuple[float, float, float]) -> np.ndarray:
+def _translate(box: np.ndarray, way: tuple[float, float, float]) -> np.ndarray:
     return box + np.array([*way, *way])
 
 
 def _length(x: float, z: float) -> float:
     return x * x + z * z
-
-
-_TALLEST = 1  # Cells by which a box may reach beyond its own: fences are 1.5 high.
-_RINGS = 40  # Of places tried around one that is taken, a quarter of a body apart.
 
 
 class World(Protocol):
@@ -103,7 +102,7 @@ class BoxWorld:
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return the boxes that reach into a box."""
-        return self.boxes[overlapping(self.boxes, np.concatenate([low, high]), 0.0)]
+        return self.boxes[find_overlaps(self.boxes, np.concatenate([low, high]), 0.0)]
 
 
 class BlockWorld:
@@ -154,7 +153,7 @@ class BlockWorld:
         return np.concatenate(found)
 
 
-def standing_place(
+def find_standing_place(
     world: World, position: tuple[float, float, float], scale: float = 1.0
 ) -> tuple[float, float, float]:
     """Return the nearest place to a position where a body of a scale fits and stands.
@@ -163,21 +162,23 @@ def standing_place(
     position itself comes back where none is free.
     """
     for ring in range(_RINGS):
-        for x, z in _ring(ring):
+        for x, z in _ring_offsets(ring):
             at = np.array(position) + np.array([x, 0, z]) * WIDTH * scale / 4
-            if (free := _stands(world, at, scale)) is not None:
+            if (free := _settle_on_ground(world, at, scale)) is not None:
                 return free
     return position
 
 
-def _ring(ring: int) -> list[tuple[int, int]]:
+def _ring_offsets(ring: int) -> list[tuple[int, int]]:
     """Return the places of a square ring, the nearest to its middle first."""
     span = range(-ring, ring + 1)
     places = [(x, z) for x in span for z in span if max(abs(x), abs(z)) == ring]
     return sorted(places, key=lambda place: (place[0] ** 2 + place[1] ** 2, place))
 
 
-def _stands(world: World, at: np.ndarray, scale: float) -> tuple[float, float, float] | None:
+def _settle_on_ground(
+    world: World, at: np.ndarray, scale: float
+) -> tuple[float, float, float] | None:
     """Return a place moved onto what lies under it, within a step; None where none can stand."""
     reach = STEP_HEIGHT * scale
     x, y, z = at.tolist()
@@ -185,9 +186,9 @@ def _stands(world: World, at: np.ndarray, scale: float) -> tuple[float, float, f
     boxes = world.near(box[:3] - 2 * reach, box[3:] + 2 * reach)
     for lift in (0.0, reach):
         raised = box + np.tile([0, lift, 0], 2)
-        if overlapping(boxes, raised, TOUCH * scale).any():
+        if find_overlaps(boxes, raised, TOUCH * scale).any():
             continue
-        down = free_way(boxes, raised, 1, -lift - reach, TOUCH * scale)
+        down = free_distance(boxes, raised, 1, -lift - reach, TOUCH * scale)
         if down > -lift - reach:
             return x, y + lift + down, z
     return None

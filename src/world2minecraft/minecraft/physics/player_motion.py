@@ -25,7 +25,12 @@ from world2minecraft.minecraft.physics.body import (
     Keys,
     body_box,
 )
-from world2minecraft.minecraft.physics.collisions import World, climbed, overlapping, swept
+from world2minecraft.minecraft.physics.collisions import (
+    World,
+    find_overlaps,
+    sweep_box,
+    sweep_with_step,
+)
 
 _MARGIN = 1.0  # Blocks around what a tick can reach.
 
@@ -86,7 +91,7 @@ def _around(world: World, body: Body, scale: float) -> np.ndarray:
 
 def _fits(boxes: np.ndarray, body: Body, scale: float) -> bool:
     """Whether one can stand upright."""
-    return not overlapping(boxes, body_box(body.position, scale), TOUCH * scale).any()
+    return not find_overlaps(boxes, body_box(body.position, scale), TOUCH * scale).any()
 
 
 def _accelerate(
@@ -116,12 +121,12 @@ def _go(
     """Return how far a body comes, up steps where it stands or lands."""
     box = body_box(body.position, scale, crouched=crouched)
     touch = TOUCH * scale
-    gone = swept(boxes, box, way, touch)
+    gone = sweep_box(boxes, box, way, touch)
     landed = way[1] < 0 and gone[1] - way[1] > touch
     blocked = abs(gone[0] - way[0]) > touch or abs(gone[2] - way[2]) > touch
     if not blocked or not (body.on_ground or landed):
         return gone
-    up = climbed(boxes, box, way, STEP_HEIGHT * scale, touch)
+    up = sweep_with_step(boxes, box, way, STEP_HEIGHT * scale, touch)
     farther = up[0] ** 2 + up[2] ** 2 > gone[0] ** 2 + gone[2] ** 2 + touch**2
     return up if farther else gone
 
@@ -133,7 +138,7 @@ def _kept_from_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: floa
 
     def over_nothing(x: float, z: float) -> bool:
         moved = box + np.tile([x, -STEP_HEIGHT * scale, z], 2)
-        return not overlapping(boxes, moved, TOUCH * scale).any()
+        return not find_overlaps(boxes, moved, TOUCH * scale).any()
 
     x, y, z = way.tolist()
     while x and over_nothing(x, 0.0):

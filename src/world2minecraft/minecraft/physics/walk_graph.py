@@ -2,7 +2,11 @@
 
 The player has the game's body, times a scale that is the volume's own where none is named: at 4
 blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, jumps 1.25 where he
-may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut.
+may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut. Closed
+doors and gates count as open, but for iron doors, which open only by a button or the like.
+
+Each column of a grid has gaps in which a body fits, between what is over and under it; their heights
+are counted in sixteenths of a block, as the game's shapes are.
 """
 
 from dataclasses import dataclass, replace
@@ -18,12 +22,20 @@ from world2minecraft.minecraft.collision_shapes import FULL_CUBE
 from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
 from world2minecraft.minecraft.physics.collisions import BlockWorld
 
-# Doors and gates that a player opens on the way: shut ones count as open for walking.
-#
-# Iron doors open only by a button or the like, so they stay as they are.
-
 _OPENED = ("_door", "_fence_gate")
 _LOCKED = ("minecraft:iron_door",)
+HEIGHT_STEPS = 16  # Heights a block.
+MAX_FLOORS = 16  # Stands over each other in one column; towers have more.
+SKY = np.iinfo(np.int32).max  # The ceiling of what is open above.
+WET = 254  # The class of liquids: neither a way nor a ground.
+_FULL = (1 << HEIGHT_STEPS) - 1
+JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
+SLIM = 0.4  # Of a player's scale: where cluttered scans leave no floor, a camera still fits.
+DROP = 3.0  # Blocks: from higher a fall hurts.
+COARSE_M = 0.15  # Smaller blocks need no columns at their corners.
+SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
+_LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
+_FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the first to the last.
 
 
 def is_door(state: str) -> bool:
@@ -42,28 +54,17 @@ def is_shut(state: str) -> bool:
     return is_door(state) and not locked and "open=false" in state
 
 
-def opened(state: str) -> str:
+def open_door(state: str) -> str:
     """Return the state of the same door, open; other states come back as they are."""
     return state.replace("open=false", "open=true") if is_shut(state) else state
 
 
-def doors_opened(volume: BlockVolume) -> BlockVolume:
+def open_all_doors(volume: BlockVolume) -> BlockVolume:
     """Return the volume with all its doors and gates open; its cells are the same array."""
-    return replace(volume, palette=tuple(opened(state) for state in volume.palette))
+    return replace(volume, palette=tuple(open_door(state) for state in volume.palette))
 
 
-# Where a body can stand in each column of a grid: the gaps between what is over and under it.
-#
-# Heights are counted in sixteenths of a block, as the game's shapes are.
-
-FINE = 16  # Heights a block.
-MOST_FLOORS = 16  # Stands over each other in one column; towers have more.
-SKY = np.iinfo(np.int32).max  # The ceiling of what is open above.
-WET = 254  # The class of liquids: neither a way nor a ground.
-_FULL = (1 << FINE) - 1
-
-
-class Solid(NamedTuple):
+class CollisionGrid(NamedTuple):
     """The collision boxes of a volume, as the kernels read them."""
 
     kinds: np.ndarray  # uint16 [X, Y, Z]; 0 has no box
@@ -73,7 +74,7 @@ class Solid(NamedTuple):
     is_full: np.ndarray  # bool [K]
 
 
-class Stands(NamedTuple):
+class StandingPlaces(NamedTuple):
     """The gaps of a grid of C columns in which a body fits; heights in sixteenths of a block."""
 
     counts: np.ndarray  # int32 [C]
@@ -82,9 +83,9 @@ class Stands(NamedTuple):
     ground: np.ndarray  # uint8 [C, MOST_FLOORS], the class of what is under the feet
 
 
-def stands_of(
-    solid: Solid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
-) -> Stands:
+def find_standing_places(
+    solid: CollisionGrid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
+) -> StandingPlaces:
     """Return where a body stands in each column of a volume.
 
     Args:
@@ -95,13 +96,13 @@ def stands_of(
     """
     xs, zs = columns
     count = len(xs) * len(zs)
-    stands = Stands(
+    stands = StandingPlaces(
         np.zeros(count, np.int32),
-        np.zeros((count, MOST_FLOORS), np.int32),
-        np.zeros((count, MOST_FLOORS), np.int32),
-        np.zeros((count, MOST_FLOORS), np.uint8),
+        np.zeros((count, MAX_FLOORS), np.int32),
+        np.zeros((count, MAX_FLOORS), np.int32),
+        np.zeros((count, MAX_FLOORS), np.uint8),
     )
-    need = int(np.ceil(height * FINE - 1e-6))
+    need = int(np.ceil(height * HEIGHT_STEPS - 1e-6))
     if count:
         _fill(solid, xs, zs, half, need, stands)
     return stands
@@ -133,7 +134,7 @@ def _mask(solid, box, masks):
                     continue
                 mask = _cell_mask(solid, kind, box, i, k)
                 masks[j] |= mask & _FULL
-                masks[j + 1] |= mask >> FINE
+                masks[j + 1] |= mask >> HEIGHT_STEPS
 
 
 @njit
@@ -143,8 +144,8 @@ def _cell_mask(solid, kind, box, i, k):
     for n in range(solid.start[kind], solid.start[kind + 1]):
         b = solid.boxes[n]
         if i + b[0] < box[2] and i + b[3] > box[0] and k + b[2] < box[3] and k + b[5] > box[1]:
-            low = max(0, int(np.floor(b[1] * FINE + 1e-6)))
-            top = int(np.ceil(b[4] * FINE - 1e-6))
+            low = max(0, int(np.floor(b[1] * HEIGHT_STEPS + 1e-6)))
+            top = int(np.ceil(b[4] * HEIGHT_STEPS - 1e-6))
             mask |= ((1 << max(top - low, 0)) - 1) << low
     return mask
 
@@ -157,10 +158,10 @@ def _gaps(solid, box, masks, need, column, stands):
         mask = masks[j]
         if (mask == 0 and is_free) or (mask == _FULL and not is_free):
             continue
-        for bit in range(FINE):
+        for bit in range(HEIGHT_STEPS):
             if bool(mask >> bit & 1) != is_free:
                 continue
-            at = j * FINE + bit
+            at = j * HEIGHT_STEPS + bit
             if not is_free:
                 floor = at
             elif floor >= 0 and at - floor >= need:
@@ -174,7 +175,7 @@ def _gaps(solid, box, masks, need, column, stands):
 @njit
 def _add(solid, box, floor, ceiling, column, found, stands):
     ground = _ground(solid, box, floor)
-    if ground == WET or found == MOST_FLOORS:
+    if ground == WET or found == MAX_FLOORS:
         return found
     stands.floor[column, found] = floor
     stands.ceiling[column, found] = ceiling
@@ -186,7 +187,7 @@ def _add(solid, box, floor, ceiling, column, found, stands):
 def _ground(solid, box, floor):
     """Return the largest class of what a body stands on at a height; unknown counts as none."""
     nx, ny, nz = solid.kinds.shape
-    top, found = (floor - 1) // FINE, 0
+    top, found = (floor - 1) // HEIGHT_STEPS, 0
     for i in range(max(0, int(np.floor(box[0]))), min(nx - 1, int(np.floor(box[2]))) + 1):
         for k in range(max(0, int(np.floor(box[1]))), min(nz - 1, int(np.floor(box[3]))) + 1):
             for j in range(max(0, top - 1), min(ny - 1, top) + 1):
@@ -194,18 +195,9 @@ def _ground(solid, box, floor):
                 if kind == 0:
                     continue
                 mask = _cell_mask(solid, kind, box, i, k)
-                if mask >> (floor - 1 - j * FINE) & 1 and solid.classes[i, j, k] != 255:
+                if mask >> (floor - 1 - j * HEIGHT_STEPS) & 1 and solid.classes[i, j, k] != 255:
                     found = max(found, int(solid.classes[i, j, k]))
     return found
-
-
-JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
-SLIM = 0.4  # Of a player's scale: where cluttered scans leave no floor, a camera still fits.
-DROP = 3.0  # Blocks: from higher a fall hurts.
-COARSE_M = 0.15  # Smaller blocks need no columns at their corners.
-SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
-_LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
-_FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the first to the last.
 
 
 @dataclass(frozen=True)
@@ -302,21 +294,23 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
     per_block = columns_per_block(volume.blocks_per_metre, width)
     half = width / 2 if how.at_corners and 1 / volume.blocks_per_metre >= COARSE_M else None
     xs, zs = (_columns(volume.states.shape[axis], per_block, half) for axis in (0, 2))
-    stands = stands_of(solid_of(volume, how.opens_doors), (xs, zs), width / 2, height)
+    stands = find_standing_places(
+        collision_grid(volume, how.opens_doors), (xs, zs), width / 2, height
+    )
     if not how.on_furniture:
-        stands = _without_furniture(stands)
+        stands = _drop_furniture(stands)
     deep = len(zs)
     column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
     first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
-    climb = (JUMP_HEIGHT if how.jump else how.step) * scale * FINE + 1e-6
-    limits = (climb, how.drop * scale * FINE + 1e-6, how.step * scale * FINE + 1e-6)
-    need = int(np.ceil(height * FINE - 1e-6))
+    climb = (JUMP_HEIGHT if how.jump else how.step) * scale * HEIGHT_STEPS + 1e-6
+    limits = (climb, how.drop * scale * HEIGHT_STEPS + 1e-6, how.step * scale * HEIGHT_STEPS + 1e-6)
+    need = int(np.ceil(height * HEIGHT_STEPS - 1e-6))
     start, to = _steps(stands.counts, stands.floor, stands.ceiling, first, deep, need, limits)
     feet = np.stack([xs[column // deep], np.zeros(len(column)), zs[column % deep]], axis=1)
     feet += np.array(volume.corner)
-    feet[:, 1] += stands.floor[column, level] / FINE
+    feet[:, 1] += stands.floor[column, level] / HEIGHT_STEPS
     ceiling = stands.ceiling[column, level]
-    rooms = np.where(ceiling == SKY, np.inf, (ceiling - stands.floor[column, level]) / FINE)
+    rooms = np.where(ceiling == SKY, np.inf, (ceiling - stands.floor[column, level]) / HEIGHT_STEPS)
     origin = np.repeat(np.arange(len(feet)), np.diff(start))
     length_m = np.linalg.norm(feet[to] - feet[origin], axis=1) / volume.blocks_per_metre
     return WalkGraph(
@@ -340,9 +334,9 @@ def columns_per_block(blocks_per_metre: float, width: float) -> int:
     return max(1, round(1 / (SPACING_M * blocks_per_metre)), int(np.ceil(1 / width - 1e-6)))
 
 
-def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
+def collision_grid(volume: BlockVolume, opens_doors: bool = True) -> CollisionGrid:
     """Return the boxes of a volume for the kernels; liquids count as full and are no ground."""
-    world = BlockWorld.of_volume(doors_opened(volume) if opens_doors else volume)
+    world = BlockWorld.of_volume(open_all_doors(volume) if opens_doors else volume)
     wet = np.array([state.startswith(_LIQUIDS) for state in volume.palette])[volume.states]
     shapes = [*world.shapes, FULL_CUBE]
     kinds = np.where(wet, len(shapes) - 1, world.kinds).astype(np.uint16)
@@ -350,7 +344,7 @@ def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
     classes = np.where(beds[volume.states], int(SemanticClass.BED), volume.semantic)
     counts = [len(shape) for shape in shapes]
     full = [len(shape) == 1 and np.array_equal(shape, FULL_CUBE) for shape in shapes]
-    return Solid(
+    return CollisionGrid(
         kinds,
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
         np.concatenate(shapes).astype(np.float64).reshape(-1, 6),
@@ -359,14 +353,14 @@ def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
     )
 
 
-def _without_furniture(stands: Stands) -> Stands:
+def _drop_furniture(stands: StandingPlaces) -> StandingPlaces:
     """Return the stands whose ground is none of chair, bed, sofa, table, screen and furniture."""
     low, high = _FURNITURE
     there = np.arange(stands.floor.shape[1]) < stands.counts[:, None]
     kept = there & ~((stands.ground >= low) & (stands.ground <= high))
     order = np.argsort(~kept, axis=1, kind="stable")
     moved = [np.take_along_axis(part, order, axis=1) for part in stands[1:]]
-    return Stands(kept.sum(axis=1).astype(np.int32), *moved)
+    return StandingPlaces(kept.sum(axis=1).astype(np.int32), *moved)
 
 
 @njit
@@ -384,14 +378,16 @@ def _steps(count, floor, ceiling, first, deep, need, limits):
                     if (dx == 0 and dz == 0) or not (0 <= x + dx < wide and 0 <= z + dz < deep):
                         continue
                     other = column + dx * deep + dz
-                    there = _reached(count, floor, ceiling, other, low, high, need, limits)
+                    there = _step_target(count, floor, ceiling, other, low, high, need, limits)
                     if there < 0:
                         continue
                     goal = floor[other, there]
                     lift, least = max(low, goal), min(low, goal) - limits[2]
                     if dx != 0 and dz != 0:
-                        one = _passes(count, floor, ceiling, column + dz, lift, least, need)
-                        two = _passes(count, floor, ceiling, column + dx * deep, lift, least, need)
+                        one = _can_brush_past(count, floor, ceiling, column + dz, lift, least, need)
+                        two = _can_brush_past(
+                            count, floor, ceiling, column + dx * deep, lift, least, need
+                        )
                         if not (one and two):
                             continue
                     to[edges] = first[other] + there
@@ -401,7 +397,7 @@ def _steps(count, floor, ceiling, first, deep, need, limits):
 
 
 @njit
-def _reached(count, floor, ceiling, other, low, high, need, limits):
+def _step_target(count, floor, ceiling, other, low, high, need, limits):
     """Return the stand of another column that one step leads to; -1 for none."""
     for n in range(count[other]):
         goal = floor[other, n]
@@ -414,7 +410,7 @@ def _reached(count, floor, ceiling, other, low, high, need, limits):
 
 
 @njit
-def _passes(count, floor, ceiling, side, lift, least, need):
+def _can_brush_past(count, floor, ceiling, side, lift, least, need):
     """Whether a body at a height may brush a column that it passes by, and would not fall there."""
     for n in range(count[side]):
         if least <= floor[side, n] <= lift and ceiling[side, n] - lift >= need:

@@ -5,6 +5,10 @@ every state takes the properties that it would have after an update of all its n
 corners of stairs; the sides of panes, bars and fences; gates sunk between walls; the sides and
 posts of walls; the halves of doors and of double chests; the distance of leaves from a log; snow
 on grass; the smoke of campfires on hay. Redstone is left alone. docs/states.md has the rules.
+
+A block is taken for a stair, a fence and so on by its name's end and by having the properties of
+one, so mods' and newer games' blocks that keep to the game's names are joined as well. Directions
+are those of ``supports``: north, east, south, west, up, down.
 """
 
 from collections.abc import Callable, Iterable
@@ -30,11 +34,6 @@ from world2minecraft.minecraft.rules.supports import (
     faces_of,
 )
 
-# What the rules of connection ask of a block state by itself, each as a small number.
-#
-# A block is taken for a stair, a fence and so on by its name's end and by having the properties of
-# one, so mods' and newer games' blocks that keep to the game's names are joined as well.
-
 (OTHER, STAIRS, PANE, FENCE, BRICK_FENCE, GATE, WALL, DOOR, CHEST, LEAVES, SNOWY, CAMPFIRE,
  LOG, OLD_WALL) = range(14)  # fmt: skip
 SIDES = DIRECTIONS[:4]
@@ -53,6 +52,13 @@ _ENDS = (  # The end of the name, the properties that it needs, and the kind.
     ("", ("snowy",), SNOWY),
     ("campfire", ("signal_fire",), CAMPFIRE),
 )
+MAX_STATES = 1 << 16  # A volume's states are uint16.
+_NONE = np.empty(0, np.int32)
+SHAPES = ("straight", "inner_left", "inner_right", "outer_left", "outer_right")
+HEIGHTS = ("none", "low", "tall")
+MAX_LEAF_DISTANCE = 7  # A leaf's distance from a log that it does not reach.
+_DOOR_KEYS = ("facing", "hinge", "open", "powered")
+_FLAT = (NORTH, EAST, SOUTH, WEST)
 
 
 class Traits(NamedTuple):
@@ -70,7 +76,7 @@ class Traits(NamedTuple):
 
 
 @lru_cache(maxsize=1 << 16)
-def traits_of(text: str) -> Traits:
+def connection_traits(text: str) -> Traits:
     """Return the traits of a block state; ``block`` is 0 and is numbered by who compares blocks.
 
     Raises:
@@ -113,15 +119,7 @@ def _variant(name: str, kind: int, values: dict[str, str]) -> int:
     return 0
 
 
-# A volume of block states while rules change it by looking at neighbours.
-#
-# Directions are those of ``supports``: north, east, south, west, up, down.
-
-MOST_STATES = 1 << 16  # A volume's states are uint16.
-_NONE = np.empty(0, np.int32)
-
-
-class Board:
+class StateGrid:
     """A volume with a rim of air around it, whose states are changed by kind.
 
     Cells are numbers into ``flat``, the volume with its rim in C order.
@@ -206,7 +204,7 @@ class Board:
             LimitError: the palette is full.
         """
         if text not in self._ids:
-            if len(self.palette) >= MOST_STATES:
+            if len(self.palette) >= MAX_STATES:
                 raise LimitError("palette", "has more than 65,536 block states")
             self._ids[text] = len(self.palette)
             self.palette.append(text)
@@ -216,17 +214,12 @@ class Board:
         if name == "block":
             block = parse_state(text).name
             return self._blocks.setdefault(block, len(self._blocks))
-        return int(getattr(traits_of(text), name))
+        return int(getattr(connection_traits(text), name))
 
 
-SHAPES = ("straight", "inner_left", "inner_right", "outer_left", "outer_right")
-HEIGHTS = ("none", "low", "tall")
-FARTHEST = 7  # A leaf's distance from a log that it does not reach.
-_DOOR_KEYS = ("facing", "hinge", "open", "powered")
-_FLAT = (NORTH, EAST, SOUTH, WEST)
-
-
-def connected(states: np.ndarray, palette: Iterable[str]) -> tuple[np.ndarray, tuple[str, ...]]:
+def update_connections(
+    states: np.ndarray, palette: Iterable[str]
+) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return a volume with the connections and shapes that the game would compute.
 
     What lies outside the volume counts as air. Doing it twice changes nothing more.
@@ -243,17 +236,27 @@ def connected(states: np.ndarray, palette: Iterable[str]) -> tuple[np.ndarray, t
 
     Example:
         >>> pair = np.array([[[1]], [[2]]], np.uint16)
-        >>> states, palette = connected(pair, ("minecraft:air", "oak_fence", "stone"))
+        >>> states, palette = update_connections(pair, ("minecraft:air", "oak_fence", "stone"))
         >>> palette[states[0, 0, 0]]
         'minecraft:oak_fence[east=true,north=false,south=false,waterlogged=false,west=false]'
     """
-    board = Board(states, palette)
-    for rule in (_doors, _chests, _stairs, _gates, _joints, _walls, _leaves, _snowy, _campfires):
+    board = StateGrid(states, palette)
+    for rule in (
+        _doors,
+        _chests,
+        _stairs,
+        _gates,
+        _panes_and_fences,
+        _walls,
+        _leaves,
+        _snowy,
+        _campfires,
+    ):
         rule(board)
     return board.result()
 
 
-def _doors(board: Board) -> None:
+def _doors(board: StateGrid) -> None:
     """The upper half of a door follows its lower half."""
     cells = board.cells_of(DOOR)
     if not len(cells):
@@ -272,7 +275,7 @@ def _doors(board: Board) -> None:
     board.change(cells[pairs], below[pairs][:, None], write)
 
 
-def _chests(board: Board) -> None:
+def _chests(board: StateGrid) -> None:
     """A half of a double chest without its other half is single; a chest joins one that asks."""
     for rule in (_orphan_chests, _asked_chests):
         cells = board.cells_of(CHEST)
@@ -280,7 +283,7 @@ def _chests(board: Board) -> None:
             rule(board, cells)
 
 
-def _orphan_chests(board: Board, cells: np.ndarray) -> None:
+def _orphan_chests(board: StateGrid, cells: np.ndarray) -> None:
     own = board.at(cells)
     halves = board.column("variant")[own] > 0
     cells, own = cells[halves], own[halves]
@@ -290,7 +293,7 @@ def _orphan_chests(board: Board, cells: np.ndarray) -> None:
     board.change(cells[alone], np.zeros((alone.sum(), 1), int), lambda _: {"type": "single"})
 
 
-def _asked_chests(board: Board, cells: np.ndarray) -> None:
+def _asked_chests(board: StateGrid, cells: np.ndarray) -> None:
     own = board.at(cells)
     variant, facing, block = (board.column(name) for name in ("variant", "facing", "block"))
     partner = _partner(board)
@@ -304,12 +307,12 @@ def _asked_chests(board: Board, cells: np.ndarray) -> None:
     board.change(cells[asked], chosen[asked][:, None], lambda row: {"type": TYPES[row[0]]})
 
 
-def _partner(board: Board) -> np.ndarray:
+def _partner(board: StateGrid) -> np.ndarray:
     """Return the direction, int [P], of the other half: a left half's is clockwise."""
     return (board.column("facing") + np.where(board.column("variant") == 1, 1, 3)) % 4
 
 
-def _stairs(board: Board) -> None:
+def _stairs(board: StateGrid) -> None:
     """A stair bends around the stair before it, else into the one behind it."""
     cells = board.cells_of(STAIRS)
     if not len(cells):
@@ -330,7 +333,7 @@ def _stairs(board: Board) -> None:
     board.change(cells, shape[:, None], lambda row: {"shape": SHAPES[row[0]]})
 
 
-def _gates(board: Board) -> None:
+def _gates(board: StateGrid) -> None:
     """A gate beside a wall hangs lower."""
     cells = board.cells_of(GATE)
     if not len(cells):
@@ -342,12 +345,14 @@ def _gates(board: Board) -> None:
     board.change(cells, sunk[:, None], lambda row: {"in_wall": _text(row[0])})
 
 
-def _joints(board: Board) -> None:
+def _panes_and_fences(board: StateGrid) -> None:
     """Panes, bars and fences join what they know, and full faces."""
     for kind in (PANE, FENCE, BRICK_FENCE):
         cells = board.cells_of(kind)
         if len(cells):
-            joined = np.stack([_joins(board, cells, side, kind) for side in _FLAT], axis=1)
+            joined = np.stack(
+                [_joins_neighbour(board, cells, side, kind) for side in _FLAT], axis=1
+            )
             board.change(
                 cells,
                 joined.astype(int),
@@ -355,7 +360,7 @@ def _joints(board: Board) -> None:
             )
 
 
-def _joins(board: Board, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
+def _joins_neighbour(board: StateGrid, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
     """Return whether cells of a kind join their neighbours at a side, bool [N]."""
     other = board.at(cells, side)
     kinds = board.column("kind")[other]
@@ -369,19 +374,19 @@ def _joins(board: Board, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
     return joined
 
 
-def _walls(board: Board) -> None:
+def _walls(board: StateGrid) -> None:
     """Walls from the top down: a wall's sides and post depend on what stands on it."""
     cells = board.cells_of(WALL)
     if not len(cells):
         return
-    joined = np.stack([_joins(board, cells, side, WALL) for side in _FLAT], axis=1)
+    joined = np.stack([_joins_neighbour(board, cells, side, WALL) for side in _FLAT], axis=1)
     heights = board.heights(cells)
     for level in np.unique(heights)[::-1]:
         here = heights == level
         _wall_layer(board, cells[here], joined[here])
 
 
-def _wall_layer(board: Board, cells: np.ndarray, joined: np.ndarray) -> None:
+def _wall_layer(board: StateGrid, cells: np.ndarray, joined: np.ndarray) -> None:
     above = board.at(cells, UP)
     arms = board.column("arms")[above][:, None]
     covered = (arms >> np.arange(4) & 1).astype(bool)
@@ -402,21 +407,21 @@ def _wall_layer(board: Board, cells: np.ndarray, joined: np.ndarray) -> None:
     )
 
 
-def _leaves(board: Board) -> None:
+def _leaves(board: StateGrid) -> None:
     """Leaves count the way to the nearest log through leaves, up to seven."""
     cells = board.cells_of(LEAVES)
     if not len(cells):
         return
     kinds = board.column("kind").astype(np.uint8)[board.flat]
-    distance = np.where(kinds == LOG, 0, FARTHEST).astype(np.uint8)
-    for _ in range(FARTHEST - 1):
+    distance = np.where(kinds == LOG, 0, MAX_LEAF_DISTANCE).astype(np.uint8)
+    for _ in range(MAX_LEAF_DISTANCE - 1):
         around = [distance[cells + step] for step in board.steps]
-        distance[cells] = np.minimum(np.min(around, axis=0) + 1, FARTHEST)
+        distance[cells] = np.minimum(np.min(around, axis=0) + 1, MAX_LEAF_DISTANCE)
     found = distance[cells].astype(int)
     board.change(cells, found[:, None], lambda row: {"distance": str(row[0])})
 
 
-def _snowy(board: Board) -> None:
+def _snowy(board: StateGrid) -> None:
     """Grass and its kin are white under snow."""
     cells = board.cells_of(SNOWY)
     if len(cells):
@@ -425,7 +430,7 @@ def _snowy(board: Board) -> None:
         board.change(cells, snow.astype(int)[:, None], lambda row: {"snowy": _text(row[0])})
 
 
-def _campfires(board: Board) -> None:
+def _campfires(board: StateGrid) -> None:
     """A campfire on hay smokes high."""
     cells = board.cells_of(CAMPFIRE)
     if len(cells):

@@ -1,7 +1,18 @@
-"""Block light: what states give, which let it through, and how far it goes.
+"""Block light: what states emit, which let it through, and how it spreads.
 
 Light falls by one for each block it goes, and blocks that fill their whole cube stop it, but for
 glass and its like. Facts stand in ``data/light_levels.json``.
+
+``flood_light`` spreads every kind of light from cell to cell. Its arrays are flat views of a grid
+with one cell of margin on every side, so that a step never leaves them. ``kinds`` names for each
+cell its row in ``words``, which says what light can pass:
+
+- bits 0 to 23: which quarters of its faces are covered, four bits a face in the order -x +x -y +y
+  -z +z. A quarter's bit is 2 * (upper half of the first other axis) + (upper half of the second).
+  Light passes from cell to cell unless the two faces that touch cover all four quarters together.
+- ``SHUT``, all of them: light never enters, but leaves freely, as it does from a glowing block.
+- ``DIMS``: light that falls straight down is dimmed by it, as in water.
+- ``SOLID``: it darkens corners, and has no light of its own to show. The margin is shut, not solid.
 """
 
 import json
@@ -16,30 +27,20 @@ from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.name_patterns import pattern_of
 
-# Light that spreads from cell to cell, losing one a step: the flood behind every kind of light.
-#
-# All arrays are flat views of a grid with one cell of margin on every side, so that a step never
-# leaves them. ``kinds`` names for each cell its row in ``words``, which says what light can pass:
-#
-# - bits 0 to 23: which quarters of its faces are covered, four bits a face in the order -x +x -y +y
-#   -z +z. A quarter's bit is 2 * (upper half of the first other axis) + (upper half of the second).
-#   Light passes from cell to cell unless the two faces that touch cover all four quarters together.
-# - ``SHUT``, all of them: light never enters, but leaves freely, as it does from a glowing block.
-# - ``DIMS``: light that falls straight down is dimmed by it, as in water.
-# - ``SOLID``: it darkens corners, and has no light of its own to show. The margin is shut, not solid.
-
 SHUT = 0xFFFFFF
 DIMS = 1 << 24
 SOLID = 1 << 25
+DATA_FILE = "data/light_levels.json"
+BRIGHTEST = 15
 
 
-def steps_of(shape: tuple[int, ...]) -> np.ndarray:
+def neighbour_steps(shape: tuple[int, ...]) -> np.ndarray:
     """Return the six steps -x +x -y +y -z +z in a flat view of a grid, int64 [6]."""
     along = np.array([shape[1] * shape[2], shape[2], 1], np.int64)
     return np.stack([-along, along], axis=1).reshape(-1)
 
 
-def with_margin(values: np.ndarray, margin: int) -> np.ndarray:
+def pad_margin(values: np.ndarray, margin: int) -> np.ndarray:
     """Return values [X, Y, Z] with one cell of ``margin`` on every side, [X + 2, Y + 2, Z + 2]."""
     padded = np.full(tuple(size + 2 for size in values.shape), margin, values.dtype)
     padded[1:-1, 1:-1, 1:-1] = values
@@ -47,7 +48,7 @@ def with_margin(values: np.ndarray, margin: int) -> np.ndarray:
 
 
 @njit
-def spread(light, kinds, words, steps, seeds):
+def flood_light(light, kinds, words, steps, seeds):
     """Spread light from the cells ``seeds`` (int64 [N]), which have theirs already, in place.
 
     Cells are raised level by level from the brightest, so that each is raised once.
@@ -96,19 +97,15 @@ def _spread_cell(light, kinds, words, steps, cell, level, raised, found):
     return found
 
 
-DATA_FILE = "data/light_levels.json"
-BRIGHTEST = 15
-
-
 @lru_cache(maxsize=1 << 16)
-def light_of(state: str) -> int:
+def emitted_light(state: str) -> int:
     """Return the light that a block state gives, 0 to 15.
 
     Raises:
         UsageError: the text is no block state.
 
     Example:
-        >>> light_of("minecraft:lantern[hanging=true]")
+        >>> emitted_light("minecraft:lantern[hanging=true]")
         15
     """
     whole = complete(parse_state(state))
@@ -143,17 +140,17 @@ def spread_light(sources: np.ndarray, clear: np.ndarray) -> np.ndarray:
         sources: uint8 [X, Y, Z], the light that a block gives itself, 0 to 15.
         clear: bool [X, Y, Z], where light goes through.
     """
-    light = with_margin(sources.astype(np.uint8, copy=False), 0)
-    shut = with_margin(~clear, True).reshape(-1).view(np.uint8)
+    light = pad_margin(sources.astype(np.uint8, copy=False), 0)
+    shut = pad_margin(~clear, True).reshape(-1).view(np.uint8)
     words = np.array([0, SHUT], np.uint32)
     seeds = np.flatnonzero(light)
-    spread(light.reshape(-1), shut, words, steps_of(light.shape), seeds)
+    flood_light(light.reshape(-1), shut, words, neighbour_steps(light.shape), seeds)
     return np.ascontiguousarray(light[1:-1, 1:-1, 1:-1])
 
 
 def block_light(volume: BlockVolume) -> np.ndarray:
     """Return the block light of a volume, uint8 [X, Y, Z] in block axes."""
-    gives = np.array([light_of(state) for state in volume.palette], np.uint8)
+    gives = np.array([emitted_light(state) for state in volume.palette], np.uint8)
     clear = np.array([lets_light_through(state) for state in volume.palette], bool)
     return spread_light(gives[volume.states], clear[volume.states])
 

@@ -1,8 +1,9 @@
-"""What of a volume would not stay: falls, pops off, breaks, flows, or changes at an update.
+"""Unstable blocks of a volume: what falls, pops off, breaks, flows, or changes at an update.
 
 A written file gets no block updates, so a torch without a wall hangs there until the first block
-beside it changes. Here every state is asked what it needs, by the rules of
-``data/support_rules.json``, and whether a neighbour's update would give it other connections.
+next to it changes. Here every state is checked for the support that it needs from its neighbours,
+by the rules of ``data/support_rules.json``, which says how they are written, and for whether a
+neighbour's update would give it other connections.
 """
 
 import json
@@ -16,7 +17,7 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
-from world2minecraft.minecraft.rules.connections import Board, connected
+from world2minecraft.minecraft.rules.connections import StateGrid, update_connections
 from world2minecraft.minecraft.rules.light import block_light, lets_light_through
 from world2minecraft.minecraft.rules.name_patterns import pattern_of
 from world2minecraft.minecraft.rules.supports import (
@@ -29,16 +30,14 @@ from world2minecraft.minecraft.rules.supports import (
     is_solid,
 )
 
-# What a block state needs of its neighbours, and what a neighbour offers.
-#
-# The rules stand in ``data/support_rules.json``, which says how they are written.
-
 DATA_FILE = "data/support_rules.json"
 _AIR = ("minecraft:air", "minecraft:cave_air", "minecraft:void_air")
 _WATER = ("water", "bubble_column", "seagrass", "tall_seagrass", "kelp", "kelp_plant")
+MELTS_ABOVE = 11  # Ice and snow melt in brighter block light.
+_MELTING = ("minecraft:ice", "minecraft:snow")
 
 
-class Wish(NamedTuple):
+class SupportOption(NamedTuple):
     """One way to be held: what is asked of the blocks in some directions, one of which must do.
 
     ``none`` turns it round: none of them may.
@@ -52,7 +51,7 @@ class Wish(NamedTuple):
 class Demand(NamedTuple):
     """What a state needs: one of its wishes, else the reason holds."""
 
-    wishes: tuple[Wish, ...]
+    wishes: tuple[SupportOption, ...]
     reason: str
 
 
@@ -66,7 +65,7 @@ class _Rule(NamedTuple):
 
 
 @lru_cache(maxsize=1 << 16)
-def needs_of(text: str) -> tuple[Demand, ...]:
+def support_demands(text: str) -> tuple[Demand, ...]:
     """Return all that a block state demands.
 
     Raises:
@@ -77,7 +76,10 @@ def needs_of(text: str) -> tuple[Demand, ...]:
     if _names("never_asked").match(bare):
         return ()
     return tuple(
-        Demand(tuple(_wish(need, state) for need in rule.needs if need != "never"), rule.reason)
+        Demand(
+            tuple(_support_option(need, state) for need in rule.needs if need != "never"),
+            rule.reason,
+        )
         for rule in _rules()
         if rule.blocks.match(bare)
         and not rule.unless.match(bare)
@@ -87,7 +89,7 @@ def needs_of(text: str) -> tuple[Demand, ...]:
 
 
 @lru_cache(maxsize=1 << 18)
-def offers(text: str, asked: str, direction: int) -> bool:
+def offers_support(text: str, asked: str, direction: int) -> bool:
     """Whether a block state gives what is asked of it.
 
     Args:
@@ -141,12 +143,12 @@ def is_floodable(text: str) -> bool:
     return not (is_solid(text) or _names("unflooded").match(state.name.partition(":")[2]))
 
 
-def _wish(need: str, state: BlockState) -> Wish:
+def _support_option(need: str, state: BlockState) -> SupportOption:
     where, _, asked = need.partition(" ")
     where, dash, _ = where.partition("-")
     if asked.startswith("same:"):
         asked = f"exact:{state.name}:{asked.removeprefix('same:')}"
-    return Wish(_directions(where, state), asked, bool(dash))
+    return SupportOption(_directions(where, state), asked, bool(dash))
 
 
 def _directions(where: str, state: BlockState) -> tuple[int, ...]:
@@ -206,11 +208,7 @@ def _raw() -> dict[str, Any]:
     return json.loads(files("world2minecraft.minecraft").joinpath(DATA_FILE).read_text("utf-8"))
 
 
-MELTS_ABOVE = 11  # Ice and snow melt in brighter block light.
-_MELTING = ("minecraft:ice", "minecraft:snow")
-
-
-class Unstable(NamedTuple):
+class UnstableBlock(NamedTuple):
     """A block that would not stay as it is, and why."""
 
     block_pos: tuple[int, int, int]
@@ -218,7 +216,7 @@ class Unstable(NamedTuple):
     reason: str
 
 
-def unstable(volume: BlockVolume) -> list[Unstable]:
+def find_unstable(volume: BlockVolume) -> list[UnstableBlock]:
     """Return the blocks of a volume that would not stay, in the order of x, y, z.
 
     What lies outside the volume counts as air. Redstone and growth by hand are left out; what
@@ -233,12 +231,12 @@ def unstable(volume: BlockVolume) -> list[Unstable]:
     found += _melting(volume)
     corner = volume.corner
     return [
-        Unstable((x + corner[0], y + corner[1], z + corner[2]), state, reason)
+        UnstableBlock((x + corner[0], y + corner[1], z + corner[2]), state, reason)
         for (x, y, z), state, reason in sorted(found)
     ]
 
 
-def unstable_cells(
+def find_unstable_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     """Return the cells of a design that would not stay: cell, state and reason, in order.
@@ -250,11 +248,11 @@ def unstable_cells(
     return sorted(_all_cells(states, palette))
 
 
-def unmet_cells(
+def find_unmet_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     """Return the same but for those that an update would only connect or shape otherwise."""
-    board = Board(states, palette)
+    board = StateGrid(states, palette)
     found = [*_unmet(board), *_flowing(board)]
     return sorted((_place(board, cell), palette[int(board.flat[cell])], why) for cell, why in found)
 
@@ -262,17 +260,17 @@ def unmet_cells(
 def _all_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
-    return unmet_cells(states, palette) + _changing(states, palette)
+    return find_unmet_cells(states, palette) + _changing(states, palette)
 
 
-def _place(board: Board, cell: int) -> tuple[int, int, int]:
+def _place(board: StateGrid, cell: int) -> tuple[int, int, int]:
     x, y, z = (int(i) - 1 for i in np.unravel_index(cell, board.shape))
     return x, y, z
 
 
-def _unmet(board: Board) -> Iterable[tuple[int, str]]:
+def _unmet(board: StateGrid) -> Iterable[tuple[int, str]]:
     """Yield the cells whose needs no neighbour meets, with the reason."""
-    demands = [needs_of(text) for text in board.palette]
+    demands = [support_demands(text) for text in board.palette]
     asking = np.array([bool(held) for held in demands])
     if not asking.any():
         return
@@ -281,11 +279,11 @@ def _unmet(board: Board) -> Iterable[tuple[int, str]]:
     for number in np.unique(own).tolist():
         mine = cells[own == number]
         for demand in demands[number]:
-            for cell in mine[~_met(board, mine, demand)].tolist():
+            for cell in mine[~_is_met(board, mine, demand)].tolist():
                 yield cell, demand.reason
 
 
-def _met(board: Board, cells: np.ndarray, demand: Demand) -> np.ndarray:
+def _is_met(board: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
     """Return which cells, bool [N], have one of the neighbours that a demand wants."""
     met = np.zeros(len(cells), bool)
     for wish in demand.wishes:
@@ -297,17 +295,19 @@ def _met(board: Board, cells: np.ndarray, demand: Demand) -> np.ndarray:
     return met
 
 
-def _answers(board: Board, neighbours: np.ndarray, asked: str, way: int) -> np.ndarray:
+def _answers(board: StateGrid, neighbours: np.ndarray, asked: str, way: int) -> np.ndarray:
     """Return which neighbours, uint16 [N], give what is asked of them, bool [N]."""
     met, index = np.unique(neighbours, return_inverse=True)
-    return np.array([offers(board.palette[one], asked, way) for one in met], bool)[index.ravel()]
+    return np.array([offers_support(board.palette[one], asked, way) for one in met], bool)[
+        index.ravel()
+    ]
 
 
 def _changing(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     """Return the cells whose connections or shape an update would change."""
-    renewed, names = connected(states, palette)
+    renewed, names = update_connections(states, palette)
     numbers: dict[BlockState, int] = {}  # The same for texts that leave defaults out.
     whole = np.array(
         [numbers.setdefault(complete(parse_state(text)), len(numbers)) for text in names]
@@ -319,7 +319,7 @@ def _changing(
     ]
 
 
-def _flowing(board: Board) -> Iterable[tuple[int, str]]:
+def _flowing(board: StateGrid) -> Iterable[tuple[int, str]]:
     """Yield the cells whose water would run into a neighbour at its side or under it."""
     wet = np.array([holds_water(text) for text in board.palette])
     if not wet.any():

@@ -17,10 +17,10 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import (
-    bits_for,
+    bit_width,
     pack_straddled,
+    straddled_word_count,
     unpack_straddled,
-    words_for,
 )
 from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.entities import entity_nbt
@@ -34,7 +34,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.rules.attached_entities import attached
-from world2minecraft.minecraft.signs import signs_of_today
+from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
@@ -146,8 +146,8 @@ def _metadata(regions: Mapping[str, BlockVolume], name: str, size: np.ndarray) -
 def _region(volume: BlockVolume, low: np.ndarray, version: GameVersion) -> dict[str, Any]:
     corner = np.array(volume.corner)
     cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
-    bits = bits_for(len(volume.palette), LEAST_BITS)
-    words = np.zeros(words_for(len(cells), bits), np.uint64)
+    bits = bit_width(len(volume.palette), LEAST_BITS)
+    words = np.zeros(straddled_word_count(len(cells), bits), np.uint64)
     pack_straddled(cells, bits, words)
     blocks = [
         {**held.nbt, "id": held.id, **_xyz(np.array(held.block_pos) - corner)}
@@ -266,8 +266,8 @@ def _region_volume(
     lookup = np.array([number_of[text] for text in texts], np.uint16)
     states = np.empty(tuple(size.tolist()), np.uint16)
     words = region.pop("BlockStates")  # Its memory is free when the blocks are made.
-    bits = bits_for(max(len(texts), 1), LEAST_BITS)
-    if words.dtype != np.int64 or len(words) < words_for(states.size, bits):
+    bits = bit_width(max(len(texts), 1), LEAST_BITS)
+    if words.dtype != np.int64 or len(words) < straddled_word_count(states.size, bits):
         raise DamagedFileError(source, f"says {states.size:,} blocks and holds fewer")
     wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
     if wrong >= 0:
@@ -281,7 +281,7 @@ def _region_volume(
         states,
         palette,
         (x, y, z),
-        signs_of_today(held, int(data_version)),
+        upgrade_signs(held, int(data_version)),
         [_entity(nbt, start) for nbt in region.get("Entities", [])],
     )
 

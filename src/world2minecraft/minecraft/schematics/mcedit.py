@@ -15,16 +15,16 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
-from world2minecraft.minecraft.bit_packing import read_keys
+from world2minecraft.minecraft.bit_packing import read_legacy_keys
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
-from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.schematics.pre_flattening import (
-    block_entity_of,
-    entity_of,
+    apply_block_entity,
     join_halves,
     legacy_state,
-    state_with,
+    upgrade_block_entity,
+    upgrade_entity,
 )
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
@@ -72,15 +72,15 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
     size = check_size(sides, source)
     states, palette = _blocks(root, size, source, losses)
     corner = _corner(root)
-    held = [block_entity_of(nbt, corner) for nbt in root.get("TileEntities", [])]
+    held = [upgrade_block_entity(nbt, corner) for nbt in root.get("TileEntities", [])]
     states, palette = _with_entities(states, palette, held, corner)
     if states.size <= MAX_JOINED_CELLS:
-        states, palette = _used(*connected(*join_halves(states, palette)), palette)
+        states, palette = _used(*update_connections(*join_halves(states, palette)), palette)
     else:
         losses.add("connections of blocks, for the schematic is too large to compute them")
     losses.add("biomes", int("Biomes" in root))
     kept = [entity for entity in held if entity.id]
-    entities = [entity_of(nbt, corner) for nbt in root.get("Entities", [])]
+    entities = [upgrade_entity(nbt, corner) for nbt in root.get("Entities", [])]
     return unlabelled(states, palette, corner, kept, entities)
 
 
@@ -96,7 +96,7 @@ def _blocks(
         raise DamagedFileError(source, f"says {count:,} blocks and holds fewer")
     states = np.empty(size, np.uint16)
     counts = np.zeros(1 << 16, np.int64)
-    read_keys(numbers, values, more, states.transpose(1, 2, 0), counts)
+    read_legacy_keys(numbers, values, more, states.transpose(1, 2, 0), counts)
     names = _names(root)
     text_of: dict[int, str] = {}
     for key in np.flatnonzero(counts).tolist():
@@ -134,7 +134,7 @@ def _with_entities(
         cell = tuple(a - b for a, b in zip(entity.block_pos, corner, strict=True))
         if not all(0 <= at < side for at, side in zip(cell, states.shape, strict=True)):
             continue
-        text = state_with(texts[states[cell]], entity)
+        text = apply_block_entity(texts[states[cell]], entity)
         if text not in number_of:
             number_of[text] = len(texts)
             texts.append(text)

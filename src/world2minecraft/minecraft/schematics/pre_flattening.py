@@ -1,4 +1,10 @@
-"""The states of the numbers and data values that blocks had before 1.13."""
+"""Blocks, block entities and entities from before 1.13 ("the flattening"), upgraded to today's.
+
+Blocks had numbers and data values, and block entities held what is now in their state. Of blocks of
+two parts, what one part said, the other did not: the lower half of a door knew where it faces and
+whether it is open, the upper its hinge; of a tall plant only the lower half knew its kind; two
+chests side by side were one.
+"""
 
 import json
 import re
@@ -13,11 +19,8 @@ from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.attached_entities import attached
-from world2minecraft.minecraft.signs import sign_of_today
+from world2minecraft.minecraft.signs import upgrade_sign
 
-# Block entities and entities as they were before 1.13, as those of today.
-
-Corner = tuple[int, int, int]
 COLOURS = (
     *("white", "orange", "magenta", "light_blue", "yellow", "lime", "pink", "gray"),
     *("light_gray", "cyan", "purple", "blue", "brown", "green", "red", "black"),
@@ -55,9 +58,19 @@ RENAMED = {
     "structure": "structure_block",
 }
 WITHOUT_ENTITY = ("flower_pot", "music", "noteblock")  # Since 1.13 their state says it all.
+_PLANTS = ("sunflower", "lilac", "tall_grass", "large_fern", "rose_bush", "peony")
+PLANTS = tuple(f"minecraft:{name}" for name in _PLANTS)
+CHESTS = ("minecraft:chest", "minecraft:trapped_chest")
+# Where the right half of a chest stands, seen from its left half: steps along x and z.
+RIGHT_HALF = {"north": (1, 0), "east": (0, 1), "south": (-1, 0), "west": (0, -1)}
+FLATTENING = 1519  # 1.13: the table's states are named as that game names them.
+_MOD_NAME = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 
 
-def block_entity_of(nbt: Mapping[str, Any], corner: Corner) -> BlockEntity:
+Corner = tuple[int, int, int]
+
+
+def upgrade_block_entity(nbt: Mapping[str, Any], corner: Corner) -> BlockEntity:
     """Return a block entity of today, at its place in the world; its id is empty if there is none.
 
     Raises:
@@ -67,12 +80,12 @@ def block_entity_of(nbt: Mapping[str, Any], corner: Corner) -> BlockEntity:
     rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
     name = _name(str(nbt["id"]))
     if name == "minecraft:sign":
-        rest = sign_of_today(rest)
+        rest = upgrade_sign(rest)
     is_left_out = name.removeprefix("minecraft:") in WITHOUT_ENTITY
     return BlockEntity((x, y, z), "" if is_left_out else name, rest)
 
 
-def entity_of(nbt: Mapping[str, Any], corner: Corner) -> Entity:
+def upgrade_entity(nbt: Mapping[str, Any], corner: Corner) -> Entity:
     """Return an entity of today, at its place in the world.
 
     Raises:
@@ -84,12 +97,12 @@ def entity_of(nbt: Mapping[str, Any], corner: Corner) -> Entity:
     return Entity((x, y, z), _name(str(nbt["id"])), rest)
 
 
-def state_with(text: str, entity: BlockEntity) -> str:
+def apply_block_entity(text: str, entity: BlockEntity) -> str:
     """Return a block's state with what its block entity said before 1.13.
 
     Example:
         >>> bed = BlockEntity((0, 0, 0), "minecraft:bed", {"color": 3})
-        >>> state_with("minecraft:red_bed[part=foot]", bed)
+        >>> apply_block_entity("minecraft:red_bed[part=foot]", bed)
         'minecraft:light_blue_bed[part=foot]'
     """
     state, nbt = parse_state(text), entity.nbt
@@ -142,16 +155,6 @@ def _name(name: str) -> str:
     return f"minecraft:{RENAMED.get(lowered, lowered)}"
 
 
-# Blocks of two parts as they were before 1.13: what one part said, the other did not.
-#
-# The lower half of a door knew where it faces and whether it is open, the upper its hinge; of a
-# tall plant only the lower half knew its kind; two chests side by side were one.
-
-_PLANTS = ("sunflower", "lilac", "tall_grass", "large_fern", "rose_bush", "peony")
-PLANTS = tuple(f"minecraft:{name}" for name in _PLANTS)
-CHESTS = ("minecraft:chest", "minecraft:trapped_chest")
-# Where the right half of a chest stands, seen from its left half: steps along x and z.
-RIGHT_HALF = {"north": (1, 0), "east": (0, 1), "south": (-1, 0), "west": (0, -1)}
 Palette = tuple[str, ...]
 Pair = tuple[BlockState, BlockState]
 
@@ -242,10 +245,6 @@ def _number(palette: list[str], text: str) -> int:
     return palette.index(text)
 
 
-FLATTENING = 1519  # 1.13: the table's states are named as that game names them.
-_MOD_NAME = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
-
-
 def legacy_state(number: int, value: int, names: Mapping[int, str]) -> tuple[str, bool]:
     """Return the state of a block number and data value, and whether vanilla games had it.
 
@@ -272,16 +271,18 @@ def legacy_state(number: int, value: int, names: Mapping[int, str]) -> tuple[str
 @cache
 def _table() -> dict[int, tuple[str, ...]]:
     text = files("world2minecraft.minecraft").joinpath("data/legacy_blocks.json").read_text("utf-8")
-    return {int(key): _sixteen(states) for key, states in json.loads(text)["blocks"].items()}
+    return {
+        int(key): _states_by_value(states) for key, states in json.loads(text)["blocks"].items()
+    }
 
 
-def _sixteen(states: list[str | None]) -> tuple[str, ...]:
+def _states_by_value(states: list[str | None]) -> tuple[str, ...]:
     first = next(state for state in states if state is not None)
     every = [state or first for state in states] + [first] * (16 - len(states))
-    return tuple(_of_today(f"minecraft:{state}") for state in every)
+    return tuple(_modern_state(f"minecraft:{state}") for state in every)
 
 
-def _of_today(text: str) -> str:
+def _modern_state(text: str) -> str:
     state = parse_state(read_state(str(parse_state(text)), FLATTENING))
     if state.name.endswith("_stairs"):  # The table has the last of the shapes, not the first.
         state = state.having(shape="straight")

@@ -25,7 +25,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.rules.attached_entities import attached
-from world2minecraft.minecraft.signs import signs_of_today
+from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
@@ -208,7 +208,7 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
         states,
         palette,
         corner,
-        signs_of_today(held, game),
+        upgrade_signs(held, game),
         [_entity(nbt, corner, version, shift) for nbt in tree.get("Entities", [])],
     )
 

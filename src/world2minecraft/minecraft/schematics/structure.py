@@ -30,7 +30,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.rules.attached_entities import TILE, attached, attached_block
-from world2minecraft.minecraft.signs import signs_of_today
+from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
@@ -43,8 +43,6 @@ from world2minecraft.minecraft.unlabelled_volume import (
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
-# The block list of a structure file: records of a place, a number and, rarely, a compound.
-
 _RECORD = np.dtype(
     [("pos_head", "V11"), ("pos", ">i4", 3), ("state_head", "V8"), ("state", ">i4"), ("end", "u1")]
 )
@@ -54,6 +52,12 @@ _NBT_HEAD = bytes([COMPOUND, 0, 3]) + b"nbt"
 _DEPTH = 100
 # The bytes of one value of each kind; -1 where the value says its length itself.
 _SIZES = np.array([0, 1, 2, 4, 8, 4, 8, -1, -1, -1, -1, -1, -1], np.int64)
+LIMITS = NbtLimits()
+DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
+MAX_PALETTES = 1000
+_UNLISTED = 0xFFFF  # A palette has fewer states.
+_BATCH = 1 << 18
+MAX_BLOCKS = 3_000_000  # Listed one by one: 108 MB.
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,16 +264,7 @@ def scan_blocks(data, at, places, states, nbt_at, sizes):  # pragma: no cover
     return at
 
 
-LIMITS = NbtLimits()
-DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
-MAX_PALETTES = 1000
-_UNLISTED = 0xFFFF  # A palette has fewer states.
-_AT_ONCE = 1 << 18
-MAX_BLOCKS = 3_000_000  # Listed one by one: 108 MB.
 Corner = tuple[int, int, int]
-
-
-# Writing.
 
 
 def write_structure(
@@ -344,9 +339,6 @@ def _entity_out(entity: Entity, number: int, corner: Corner) -> dict[str, Any]:
     return {"pos": place.tolist(), "blockPos": block.tolist(), "nbt": nbt}
 
 
-# Reading.
-
-
 def read_structure(
     path: str | Path, losses: Losses | None = None, *, variant: int = 0
 ) -> BlockVolume:
@@ -363,10 +355,10 @@ def read_structure(
         LimitError: it is larger than the program reads. UsageError: it has no such variant.
     """
     source = Path(path)
-    return structure_of(read_bytes(source, MAX_FILE_BYTES), source, losses, variant=variant)
+    return parse_structure(read_bytes(source, MAX_FILE_BYTES), source, losses, variant=variant)
 
 
-def structure_of(
+def parse_structure(
     data: bytes, source: Path, losses: Losses | None = None, *, variant: int = 0
 ) -> BlockVolume:
     """Return the volume of a structure file's bytes. Args and errors as ``read_structure``."""
@@ -393,14 +385,14 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
         raise DamagedFileError(source, f"has a block outside of its size, {size}")
     ours = np.array([number_of[text] for text in texts] or [0], np.uint16)
     states = np.full(size, _UNLISTED, np.uint16)
-    for start in range(0, len(numbers), _AT_ONCE):  # As indices, all would take much memory.
-        x, y, z = places[start : start + _AT_ONCE].T
-        states[x, y, z] = ours[numbers[start : start + _AT_ONCE]]
+    for start in range(0, len(numbers), _BATCH):  # As indices, all would take much memory.
+        x, y, z = places[start : start + _BATCH].T
+        states[x, y, z] = ours[numbers[start : start + _BATCH]]
     losses.add("places that the structure leaves as they are", _put_air(states))
     corner = stated_corner(root, source) or (0, 0, 0)
     held = [_block_entity(places[n].tolist(), nbt, corner) for n, nbt in blocks.nbt.items()]
     entities = [_entity(nbt, corner) for nbt in root.get("entities", [])]
-    return unlabelled(states, palette, corner, signs_of_today(held, game), entities)
+    return unlabelled(states, palette, corner, upgrade_signs(held, game), entities)
 
 
 def _put_air(states: np.ndarray) -> int:

@@ -19,7 +19,7 @@ from world2minecraft.minecraft.commands.player_scale import pack_mcmeta, pack_zi
 from world2minecraft.minecraft.commands.writer import entity_tag
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.file_format import Losses
-from world2minecraft.minecraft.schematics.structure import structure_bytes, structure_of
+from world2minecraft.minecraft.schematics.structure import parse_structure, structure_bytes
 from world2minecraft.minecraft.unlabelled_volume import MAX_CELLS, joined
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
@@ -142,7 +142,7 @@ def _placed(archive: zipfile.ZipFile, source: Path) -> list[tuple[str, tuple[int
 def _read_piece(
     data: bytes, source: Path, place: tuple[int, int, int], losses: Losses | None
 ) -> BlockVolume:
-    piece = structure_of(data, source, losses)
+    piece = parse_structure(data, source, losses)
     if piece.corner != place:
         raise DamagedFileError(source, f"places at {place} what says to stand at {piece.corner}")
     return piece

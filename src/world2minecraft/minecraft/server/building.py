@@ -1,6 +1,7 @@
-"""Building a volume on a running server, through cuts of the connection, and checking that it is.
+"""Build a volume on a running server, across lost connections, and check the result.
 
-What was done is noted in a small file, so that a second run goes on where the first was stopped.
+A plan lists the commands in order. Progress is noted in a small file, so that a second run resumes
+where the first was stopped.
 """
 
 import hashlib
@@ -30,10 +31,7 @@ from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.versions import GameVersion
 
-# What is to be said to a server so that a volume stands there, in order.
-
 PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
-Probe = tuple[int, int, int, str]  # x, y, z and what must be there of a state
 # What games work out anew from whatever stands beside a block, in the volume or outside it.
 _FROM_NEIGHBOURS = frozenset(
     [
@@ -43,6 +41,29 @@ _FROM_NEIGHBOURS = frozenset(
     ]
 )
 _CHESTS = ("minecraft:chest", "minecraft:trapped_chest")  # Whose type says what it joins.
+NOTE_EVERY_S = 0.5
+LOAD_TRIES, LOAD_WAIT_S = 60, 0.5  # Half a minute for the chunks to come.
+RETRIES, FIRST_WAIT_S, MAX_WAIT_S = 6, 0.5, 8.0  # Half a minute for a server to come back.
+SHOWN = 3  # So many wrong blocks are named.
+# How the game says that a command was wrong; what it says of one that changed nothing is fine.
+_SYNTAX_ERROR = "<--[HERE]"
+_WRONG = (
+    _SYNTAX_ERROR,
+    "Unknown ",
+    "Incorrect ",
+    "Invalid ",
+    "Expected ",
+    "Too many blocks",
+    "An unexpected error",
+    "out of this world",
+    "outside of the world",
+)
+_NOT_LOADED = "not loaded"
+_WERE_LOADED = "No chunks were marked"
+_PASSED, _FAILED = "Test passed", "Test failed"
+
+
+Probe = tuple[int, int, int, str]  # x, y, z and what must be there of a state
 
 
 @dataclass(frozen=True)
@@ -96,8 +117,10 @@ def plan_build(
     lost = Losses() if losses is None else losses
     air = (volume.states == 0) & (True if built is None else built)
     blocks = [*air_commands(volume, air), *block_commands(volume, version)]
-    data = _short("block entities whose data is too long for RCON", data_commands(volume), lost)
-    entities = _short("entities too long for RCON", entity_commands(volume), lost)
+    data = _drop_long_commands(
+        "block entities whose data is too long for RCON", data_commands(volume), lost
+    )
+    entities = _drop_long_commands("entities too long for RCON", entity_commands(volume), lost)
     gone = [f"kill @e[tag={entity_tag(volume)}]"] if entities else []
     rows = chunk_rows(volume)
     return BuildPlan(
@@ -119,7 +142,7 @@ def _check_layers(volume: BlockVolume, version: GameVersion) -> None:
         )
 
 
-def _short(what: str, commands: Sequence[str], losses: Losses) -> list[str]:
+def _drop_long_commands(what: str, commands: Sequence[str], losses: Losses) -> list[str]:
     kept = [command for command in commands if len(command.encode()) <= MAX_COMMAND_BYTES]
     losses.add(what, len(commands) - len(kept))
     return kept
@@ -166,29 +189,6 @@ def _probes(
         (x, y, z, names[volume.states[tuple(cell)]])
         for (x, y, z), cell in zip(places, cells.tolist(), strict=True)
     )
-
-
-NOTE_EVERY_S = 0.5
-LOAD_TRIES, LOAD_WAIT_S = 60, 0.5  # Half a minute for the chunks to come.
-RETRIES, FIRST_WAIT_S, MOST_WAIT_S = 6, 0.5, 8.0  # Half a minute for a server to come back.
-SHOWN = 3  # So many wrong blocks are named.
-
-# How the game says that a command was wrong; what it says of one that changed nothing is fine.
-_MISREAD = "<--[HERE]"
-_WRONG = (
-    _MISREAD,
-    "Unknown ",
-    "Incorrect ",
-    "Invalid ",
-    "Expected ",
-    "Too many blocks",
-    "An unexpected error",
-    "out of this world",
-    "outside of the world",
-)
-_NOT_LOADED = "not loaded"
-_WERE_LOADED = "No chunks were marked"
-_PASSED, _FAILED = "Test passed", "Test failed"
 
 
 @dataclass(frozen=True)
@@ -274,7 +274,7 @@ class LiveBuilder:
 
     def _is_loaded(self, x: int, y: int, z: int) -> bool:
         said = self._say(f"execute if loaded {x} {y} {z}")
-        if _MISREAD not in said:
+        if _SYNTAX_ERROR not in said:
             return _PASSED in said
         # Games before 1.19.4 do not know the question. Of a block they tell, whichever it is,
         # where its chunk is loaded.
@@ -311,7 +311,7 @@ class LiveBuilder:
                     raise self._gone(error) from error
                 self._keep_note()
                 self._sleep(wait)
-                wait = min(2 * wait, MOST_WAIT_S)
+                wait = min(2 * wait, MAX_WAIT_S)
             else:
                 self._commands += 1
                 return reply

@@ -15,10 +15,14 @@ from types import TracebackType
 
 from world2minecraft.core.errors import ServerError, UsageError
 
-# Where a server's console is, and where this machine remembers how far a build on it is.
-
 PORT = 25575
 _ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
+MAX_COMMAND_BYTES = 1446  # 1,460 of the server's buffer, less the header and the zeros.
+MAX_REPLY_BYTES = 1 << 20  # What a server may send as one packet before it is taken for a mistake.
+FULL_REPLY_BYTES = 4096  # A reply this long goes on in the next packet.
+LOG_IN, COMMAND = 3, 2
+REFUSED = -1
+_HEADER = struct.Struct("<iii")
 
 
 def parse_address(text: str) -> tuple[str, int]:
@@ -34,20 +38,12 @@ def parse_address(text: str) -> tuple[str, int]:
     return found["host"].strip("[]"), port
 
 
-def note_of(server: str, digest: str) -> Path:
+def build_note_path(server: str, digest: str) -> Path:
     """Return the file that remembers how far a build on a server is."""
     from world2minecraft.core.jit import user_cache_dir  # noqa: PLC0415  # It loads numba.
 
     name = hashlib.sha256(f"{server} {digest}".encode()).hexdigest()[:24]
     return user_cache_dir() / "rcon" / f"{name}.json"
-
-
-MAX_COMMAND_BYTES = 1446  # 1,460 of the server's buffer, less the header and the zeros.
-MAX_REPLY_BYTES = 1 << 20  # What a server may send as one packet before it is taken for a mistake.
-FULL_REPLY_BYTES = 4096  # A reply this long goes on in the next packet.
-LOG_IN, COMMAND = 3, 2
-REFUSED = -1
-_HEADER = struct.Struct("<iii")
 
 
 class RconClient:

@@ -1,4 +1,10 @@
-"""Region files: 32 x 32 chunks in sectors of 4 KiB, with oversized chunks in files of their own."""
+"""Region files: 32 x 32 chunks in sectors of 4 KiB, with oversized chunks in files of their own.
+
+Chunks packed as LZ4 are the blocks of lz4-java, each with a head and a checksum. A head is
+``LZ4Block``, a byte (how the block is packed, and how large blocks are), then, each in four bytes
+of which the lowest comes first, the packed size, the size, and a checksum of the unpacked block:
+xxHash32 of which the four highest bits are left out. A block of size 0 ends the stream.
+"""
 
 import os
 import struct
@@ -15,17 +21,18 @@ from world2minecraft.core.files import read_bytes
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.nbt import pack_gzip, unpack
 
-# LZ4 as the game packs chunks with it: the blocks of lz4-java, each with a head and a checksum.
-#
-# A head is ``LZ4Block``, a byte (how the block is packed, and how large blocks are), then, each in
-# four bytes of which the lowest comes first, the packed size, the size, and a checksum of the
-# unpacked block: xxHash32 of which the four highest bits are left out. A block of size 0 ends it.
-
 MAGIC = b"LZ4Block"
 RAW, PACKED = 0x10, 0x20
 BLOCK_BITS = 16  # lz4-java's blocks of 64 KiB.
 SEED, MASK = 0x9747B28C, 0x0FFFFFFF
 _LZ4_HEADER = struct.Struct("<8sBiiI")
+SECTOR = 4096
+MAX_REGION_BYTES = 512 << 20
+MAX_CHUNK_BYTES = 16 << 20  # Unpacked; a chunk of 4,096 kinds of blocks in 24 sections has 4 MB.
+GZIP, ZLIB, PLAIN, LZ4, CUSTOM = 1, 2, 3, 4, 127
+EXTERNAL = 128
+COMPRESSIONS = {"gzip": GZIP, "zlib": ZLIB, "none": PLAIN, "lz4": LZ4}
+_CHUNK_HEADER = struct.Struct(">IB")
 
 
 def pack_lz4(data: bytes) -> bytes:
@@ -99,7 +106,7 @@ def checksum(block: bytes) -> int:
 
 
 @njit
-def _turned(value, bits):  # pragma: no cover
+def _rotate_left(value, bits):  # pragma: no cover
     """Turn 32 bits to the left."""
     low = np.uint64(0xFFFFFFFF)
     value &= low
@@ -125,9 +132,9 @@ def xxhash32(data, seed):  # pragma: no cover
                     word |= np.uint64(data[at + step]) << np.uint64(8 * step)
                 at += 4
                 mixed = (lanes[lane] + word * two) & low
-                lanes[lane] = (_turned(mixed, np.uint64(13)) * one) & low
-        found = _turned(lanes[0], np.uint64(1)) + _turned(lanes[1], np.uint64(7))
-        found += _turned(lanes[2], np.uint64(12)) + _turned(lanes[3], np.uint64(18))
+                lanes[lane] = (_rotate_left(mixed, np.uint64(13)) * one) & low
+        found = _rotate_left(lanes[0], np.uint64(1)) + _rotate_left(lanes[1], np.uint64(7))
+        found += _rotate_left(lanes[2], np.uint64(12)) + _rotate_left(lanes[3], np.uint64(18))
     else:
         found = start + five
     found = (found + np.uint64(size)) & low
@@ -136,22 +143,13 @@ def xxhash32(data, seed):  # pragma: no cover
         for step in range(4):
             word |= np.uint64(data[at + step]) << np.uint64(8 * step)
         at += 4
-        found = (_turned(found + word * three, np.uint64(17)) * four) & low
+        found = (_rotate_left(found + word * three, np.uint64(17)) * four) & low
     while at < size:
-        found = (_turned(found + np.uint64(data[at]) * five, np.uint64(11)) * one) & low
+        found = (_rotate_left(found + np.uint64(data[at]) * five, np.uint64(11)) * one) & low
         at += 1
     found = ((found ^ found >> np.uint64(15)) * two) & low
     found = ((found ^ found >> np.uint64(13)) * three) & low
     return found ^ found >> np.uint64(16)
-
-
-SECTOR = 4096
-MAX_REGION_BYTES = 512 << 20
-MAX_CHUNK_BYTES = 16 << 20  # Unpacked; a chunk of 4,096 kinds of blocks in 24 sections has 4 MB.
-GZIP, ZLIB, PLAIN, LZ4, CUSTOM = 1, 2, 3, 4, 127
-EXTERNAL = 128
-COMPRESSIONS = {"gzip": GZIP, "zlib": ZLIB, "none": PLAIN, "lz4": LZ4}
-_CHUNK_HEADER = struct.Struct(">IB")
 
 
 def pack_region(
@@ -294,7 +292,9 @@ def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, in
     if kind == LZ4:
         return unpack_lz4(packed, source, MAX_CHUNK_BYTES)
     if kind not in (GZIP, ZLIB, PLAIN):
-        reason = f"chunk {position} is packed in {_way(packed, kind)}, which is not read"
+        reason = (
+            f"chunk {position} is packed in {_compression_name(packed, kind)}, which is not read"
+        )
         advice = (
             "set region-file-compression=deflate in server.properties and let it save the world"
         )
@@ -307,7 +307,7 @@ def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, in
     return result
 
 
-def _way(packed: bytes, kind: int) -> str:
+def _compression_name(packed: bytes, kind: int) -> str:
     """How a chunk is packed: a way of one's own comes with a name, as the game's texts do."""
     if kind == CUSTOM and len(packed) > 2:
         name = packed[2 : 2 + int.from_bytes(packed[:2], "big")][:80]

@@ -1,4 +1,9 @@
-"""Chunks, columns of sections: written as since 1.18, read as since 1.13."""
+"""Chunks, columns of sections of 16 blocks a side: written for and read from games since 1.13.
+
+From 1.13 to 1.17 their content lies in a compound named ``Level``; the world is 256 blocks high and
+begins at 0. Until 1.15 numbers are packed without gaps; until 1.16 entities lie in the chunk. 1.13
+lights nothing when it loads a chunk, so that its sections are written with full light from the sky.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,9 +17,9 @@ from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.bit_packing import (
     SECTION,
     pack_section,
-    skip_texts,
-    words_before_1_16,
-    words_of_today,
+    repack_section_words,
+    skip_text_compounds,
+    straddle_section_words,
 )
 from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.nbt import (
@@ -33,7 +38,18 @@ from world2minecraft.minecraft.state_nbt import state_entry, state_text
 from world2minecraft.minecraft.unlabelled_volume import MISSHAPEN
 from world2minecraft.minecraft.versions import GameVersion
 
-# Sections, the cubes of 16 blocks a side that chunks of all games since 1.13 are made of.
+FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.
+FIRST_1_14 = 1901  # 18w43a: the game lights chunks on loading, and calls the last status full.
+FIRST_1_15 = 2203  # 19w36a: a biome for each 4 x 4 x 4 blocks.
+FIRST_WITHOUT_GAPS = 2529  # 20w17a, of 1.16: no number over two words.
+FIRST_ENTITY_FILES = 2681  # 20w45a, of 1.17: entities in files of their own.
+FIRST_WITHOUT_LEVEL = 2844  # 21w43a, of 1.18.
+VOID_BIOME_ID = 127
+_LIGHT_BYTES = 2048
+PALETTES = ("palette", "Palette")  # Since 1.18, and before.
+MAX_STATE_TEXTS = 100_000  # Texts of states of one world, some of them the same in other orders.
+VOID_BIOME = "minecraft:the_void"
+CHUNK_LIMITS = NbtLimits(depth=64, values=500_000, bytes=16 << 20)
 
 
 @dataclass(frozen=True)
@@ -78,7 +94,7 @@ class SectionPacker:
                 yield y, ([self.entries[n] for n in packed[0]], packed[1].copy())
 
 
-def section_of(
+def read_section(
     blocks: Any,
     palette_key: str,
     words_key: str,
@@ -114,7 +130,7 @@ def section_of(
     except (*MISSHAPEN, UsageError) as error:
         raise DamagedFileError(path, f"chunk {place} has a broken section") from error
     is_sized = 1 <= len(palette) <= SECTION
-    packed = words_of_today(words, len(palette), straddles=straddles) if is_sized else None
+    packed = repack_section_words(words, len(palette), straddles=straddles) if is_sized else None
     if packed is None:
         reason = f"{len(palette)} states in {len(words)} words"
         raise DamagedFileError(path, f"chunk {place}, section {height} has {reason}")
@@ -127,23 +143,9 @@ def _text_of(entry: str | Mapping[str, Any]) -> str:
     return entry if isinstance(entry, str) else state_text(entry)
 
 
-# Chunks of 1.13 to 1.17, whose content lies in a compound named ``Level``.
-#
-# The world is 256 blocks high and begins at 0. Until 1.15 numbers are packed without gaps; until
-# 1.16 entities lie in the chunk. 1.13 lights nothing when it loads a chunk, so that its sections
-# are written with full light from the sky.
-
-FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.
-FIRST_1_14 = 1901  # 18w43a: the game lights chunks on loading, and calls the last status full.
-FIRST_1_15 = 2203  # 19w36a: a biome for each 4 x 4 x 4 blocks.
-FIRST_WITHOUT_GAPS = 2529  # 20w17a, of 1.16: no number over two words.
-FIRST_ENTITY_FILES = 2681  # 20w45a, of 1.17: entities in files of their own.
-FIRST_WITHOUT_LEVEL = 2844  # 21w43a, of 1.18.
-VOID_BIOME_ID = 127
-_LIGHT_BYTES = 2048
-
-
-def flattened(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> dict[str, Any]:
+def upgrade_old_chunk(
+    root: Mapping[str, Any], place: tuple[int, int], path: Path
+) -> dict[str, Any]:
     """Return an old chunk's tree with the keys that chunks have today.
 
     Raises:
@@ -169,7 +171,9 @@ def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) ->
     for nbt in root["sections"]:
         if isinstance(nbt, dict) and "Palette" not in nbt:
             continue  # It holds light alone.
-        found = section_of(nbt, "Palette", "BlockStates", place, path, version, straddles=straddles)
+        found = read_section(
+            nbt, "Palette", "BlockStates", place, path, version, straddles=straddles
+        )
         if found is not None:
             yield found
 
@@ -230,18 +234,12 @@ class OldChunkWriter:
     def _section(self, y: int, entries: list[dict[str, Any]], words: np.ndarray) -> dict[str, Any]:
         section: dict[str, Any] = {"Y": Byte(y), "Palette": entries}
         if self._version < FIRST_WITHOUT_GAPS or not len(words):
-            words = words_before_1_16(words, len(entries))
+            words = straddle_section_words(words, len(entries))
         section["BlockStates"] = words.view(np.int64)
         if self._version < FIRST_1_14:
             section["BlockLight"] = np.zeros(_LIGHT_BYTES, np.int8)
             section["SkyLight"] = np.full(_LIGHT_BYTES, -1, np.int8)
         return section
-
-
-PALETTES = ("palette", "Palette")  # Since 1.18, and before.
-MAX_KNOWN = 100_000  # Texts of states of one world, some of them the same in other orders.
-VOID_BIOME = "minecraft:the_void"
-CHUNK_LIMITS = NbtLimits(depth=64, values=500_000, bytes=16 << 20)
 
 
 class ChunkWriter:
@@ -252,7 +250,7 @@ class ChunkWriter:
         self._entries = [write_nbt(entry)[3:] for entry in self._packer.entries]
         self._height = states.shape[1]
         self._version = version
-        self._biomes = _named(COMPOUND, "biomes", write_nbt({"palette": [VOID_BIOME]})[3:])
+        self._biomes = _named_tag(COMPOUND, "biomes", write_nbt({"palette": [VOID_BIOME]})[3:])
 
     def chunk(
         self,
@@ -293,7 +291,7 @@ class ChunkWriter:
             "PostProcessing": [],
             "block_entities": [dict(entity) for entity in block_entities],
         }
-        head = _named(LIST, "sections", bytes([COMPOUND]) + len(sections).to_bytes(4, "big"))
+        head = _named_tag(LIST, "sections", bytes([COMPOUND]) + len(sections).to_bytes(4, "big"))
         return b"".join([write_nbt(root)[:-1], head, *sections, bytes([END])])
 
     def _section(self, y: int, origin: np.ndarray) -> bytes | None:
@@ -302,13 +300,13 @@ class ChunkWriter:
             return None
         met, words = packed
         parts = [
-            _named(BYTE, "Y", (y & 255).to_bytes(1, "big")),
-            _named(COMPOUND, "block_states", b""),
-            _named(LIST, "palette", bytes([COMPOUND]) + len(met).to_bytes(4, "big")),
+            _named_tag(BYTE, "Y", (y & 255).to_bytes(1, "big")),
+            _named_tag(COMPOUND, "block_states", b""),
+            _named_tag(LIST, "palette", bytes([COMPOUND]) + len(met).to_bytes(4, "big")),
             *[self._entries[number] for number in met],
         ]
         if len(words):
-            parts += [_named(LONGS, "data", len(words).to_bytes(4, "big"))]
+            parts += [_named_tag(LONGS, "data", len(words).to_bytes(4, "big"))]
             parts += [words.astype(">u8").tobytes()]
         return b"".join([*parts, bytes([END]), self._biomes, bytes([END])])
 
@@ -329,14 +327,16 @@ class _ChunkReader(NbtReader):
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
         """Read a list's elements; of a palette those seen before are not parsed again."""
         ends = np.empty(count if tag == COMPOUND and self.key in PALETTES else 0, np.int64)
-        if not len(ends) or not skip_texts(np.frombuffer(self.data, np.uint8), self.at, ends):
+        if not len(ends) or not skip_text_compounds(
+            np.frombuffer(self.data, np.uint8), self.at, ends
+        ):
             return super().elements(tag, count, depth)
         found = []
         for end in ends.tolist():
             raw = self.data[self.at : end]
             if raw not in self._known:
-                if len(self._known) >= MAX_KNOWN:
-                    raise LimitError(self.path, f"holds over {MAX_KNOWN:,} block states")
+                if len(self._known) >= MAX_STATE_TEXTS:
+                    raise LimitError(self.path, f"holds over {MAX_STATE_TEXTS:,} block states")
                 self._known[raw] = state_text(self.compound(depth + 1))
             found.append(self._known[raw])
             self.at = end
@@ -369,7 +369,7 @@ def read_chunk(
         raise InputError(path, f"{reason}; {advice}, or give a --box that was played in since")
     is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
     if is_old:
-        root = flattened(root, place, path)
+        root = upgrade_old_chunk(root, place, path)
     if (root.get("xPos"), root.get("zPos")) != place:
         stated = (root.get("xPos"), root.get("zPos"))
         raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
@@ -386,11 +386,11 @@ def _sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> It
         blocks = section.get("block_states")
         if blocks is not None:
             height = section.get("Y")
-            found = section_of(blocks, "palette", "data", place, path, version, y=height)
+            found = read_section(blocks, "palette", "data", place, path, version, y=height)
             if found is not None:
                 yield found
 
 
-def _named(tag: int, name: str, payload: bytes) -> bytes:
+def _named_tag(tag: int, name: str, payload: bytes) -> bytes:
     raw = name.encode("ascii")
     return bytes([tag]) + len(raw).to_bytes(2, "big") + raw + payload

@@ -1,4 +1,8 @@
-"""Chunks of 1.18 and later with some blocks changed, everything else in them kept as it is."""
+"""Edit chunks of 1.18 and later in place: all else in them and in their region files is preserved.
+
+Reading a whole world and writing it again would repack each of its chunks, and lose what a mod
+keeps there. Here the table is rebuilt, and the records of untouched chunks are copied.
+"""
 
 import struct
 import zlib
@@ -15,8 +19,8 @@ from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.bit_packing import (
     SECTION,
     pack_section,
+    repack_section_words,
     unpack_section,
-    words_of_today,
 )
 from world2minecraft.minecraft.nbt import Byte, Long, NbtLimits, NbtReader
 from world2minecraft.minecraft.state_nbt import state_entry, state_text
@@ -29,16 +33,18 @@ from world2minecraft.minecraft.worlds.anvil import (
     unpack_chunk,
 )
 
-# Region files with some chunks replaced: every other chunk keeps its bytes as they lie there.
-#
-# Reading a whole world and writing it again would pack each of its chunks anew, and lose what a mod
-# keeps there. Here the table is made anew, and the records of untouched chunks are copied.
-
-Place = tuple[int, int]
 MAX_EDITED_BYTES = 128 << 20  # It is held three times; regions of players have 2 to 20 MB.
 LEVEL = 1  # As anvil.pack_region: a third of the time of 6, and most of a file is padding.
-MOST_SECTORS = 255  # A longer record lies in a file of its own.
-_HEAD = struct.Struct(">IB")
+MAX_SECTORS = 255  # A longer record lies in a file of its own.
+_RECORD_HEADER = struct.Struct(">IB")
+FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
+FULL = ("minecraft:full", "full")
+LIMITS = NbtLimits(depth=512, values=2_000_000, bytes=64 << 20)
+LIGHT_KEYS = ("BlockLight", "SkyLight")
+VOID_BIOMES = {"palette": ["minecraft:the_void"]}
+
+
+Place = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -81,13 +87,13 @@ class RegionFile:
         for place, data in sorted(chunks.items()):
             packed, name = zlib.compress(data, LEVEL), outside_name(place)
             was_outside = bool(records.get(place, b"\0")[0] & EXTERNAL)
-            if len(packed) + _HEAD.size > MOST_SECTORS * SECTOR:
+            if len(packed) + _RECORD_HEADER.size > MAX_SECTORS * SECTOR:
                 changed[name], records[place] = packed, bytes([ZLIB | EXTERNAL])
                 continue
             records[place] = bytes([ZLIB]) + packed
             if was_outside:
                 changed[name] = None
-        return {self.path.name: _packed(records, self.times), **changed}
+        return {self.path.name: _pack_region(records, self.times), **changed}
 
 
 def read_region_file(path: Path) -> RegionFile:
@@ -120,16 +126,16 @@ def outside_name(place: Place) -> str:
 
 def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     start, sectors = (location >> 8) * SECTOR, location & 255
-    if start < 2 * SECTOR or not sectors or start + _HEAD.size > len(data):
+    if start < 2 * SECTOR or not sectors or start + _RECORD_HEADER.size > len(data):
         raise DamagedFileError(path, f"chunk {place} lies on the head or beyond the end")
-    length = _HEAD.unpack_from(data, start)[0]
+    length = _RECORD_HEADER.unpack_from(data, start)[0]
     record = data[start + 4 : start + 4 + length]
     if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
         raise DamagedFileError(path, f"chunk {place} says {length:,} bytes and holds fewer")
     return record
 
 
-def _packed(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes:
+def _pack_region(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes:
     table = np.zeros((2, 1024), ">u4")
     body: list[bytes] = []
     sector = 2
@@ -142,13 +148,6 @@ def _packed(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes
         body.append(whole)
         sector += len(whole) // SECTOR
     return b"".join([table.tobytes(), *body])
-
-
-FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
-FULL = ("minecraft:full", "full")
-LIMITS = NbtLimits(depth=512, values=2_000_000, bytes=64 << 20)
-LIGHT_KEYS = ("BlockLight", "SkyLight")
-VOID_BIOMES = {"palette": ["minecraft:the_void"]}
 
 
 @dataclass
@@ -176,7 +175,7 @@ class _Reader(NbtReader):
     must_end = False  # The game ignores bytes after a chunk, and other servers leave some there.
 
 
-def open_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
+def parse_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
     """Return the tree of a chunk; None where the game has not finished making it.
 
     Args:
@@ -251,7 +250,7 @@ def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> di
             raise DamagedFileError(path, f"has a broken section ({error})") from error
         cells = np.zeros((16, 16, 16), np.uint16)
         is_sized = 1 <= len(local) <= SECTION
-        packed = words_of_today(words, len(local), straddles=False) if is_sized else None
+        packed = repack_section_words(words, len(local), straddles=False) if is_sized else None
         if packed is None:
             reason = f"{len(local)} states in {len(words)} words"
             raise DamagedFileError(path, f"section {place} has {reason}")
@@ -294,7 +293,7 @@ def set_section(root: dict[str, Any], place: int, cells: np.ndarray, numbers: St
     root["sections"].sort(key=lambda section: int(section["Y"]))
 
 
-def data_of(root: dict[str, Any], path: Path) -> list[BlockEntity]:
+def read_block_entities(root: dict[str, Any], path: Path) -> list[BlockEntity]:
     """Return the block entities of a chunk.
 
     Raises:
@@ -311,7 +310,7 @@ def data_of(root: dict[str, Any], path: Path) -> list[BlockEntity]:
     return found
 
 
-def set_data(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:
+def set_block_entities(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:
     """Make these the block entities of a chunk, in place."""
     root["block_entities"] = [
         {
@@ -323,7 +322,7 @@ def set_data(root: dict[str, Any], entities: Sequence[BlockEntity]) -> None:
     ]
 
 
-def forget_light(root: dict[str, Any]) -> None:
+def clear_light(root: dict[str, Any]) -> None:
     """Let the game make light and heights of a changed chunk anew, when it loads it.
 
     Servers that keep their light in tags of their own (Paper) look at those alone.

@@ -11,7 +11,7 @@ from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import SECTION, unpack_section
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
-from world2minecraft.minecraft.signs import signs_of_today
+from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_STATES,
@@ -118,7 +118,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_Found":
                 reason = f"the world has more than {MAX_CELLS:,} blocks"
                 raise LimitError(path, f"{reason}, or takes too much memory; give a --box of it")
             held = _block_entities(root, path)
-            found.block_entities += found.within(signs_of_today(held, root["DataVersion"]), path)
+            found.block_entities += found.within(upgrade_signs(held, root["DataVersion"]), path)
             found.entities += found.within(_entities(root.get("Entities", []), path), path)
     return found
 

@@ -28,23 +28,22 @@ def max_depth_tiles(depth, tiles):
 
 
 @lean
-def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
+def mark_free(labels, cells_to_camera, image, tiles, ends, free):
     """Mark the free cells.
 
     Args:
         labels: uint8 [X, Y, Z]; only what is 0 can be free.
-        to_camera: float64 [3, 4], region's cells to metres of the camera.
-        place: float64 [3, 4], back again.
-        lens: float64 [4], fx, fy, cx, cy.
-        depth: float32 [H, W], z-depth in metres, 0 where a ray meets nothing.
+        cells_to_camera: float64 [3, 4], region's cells to metres of the camera.
+        image: ``DepthImage``.
         tiles: of ``max_depth_tiles``.
         ends: float64 [9, 3], scratch.
         free: bool [X, Y, Z], filled in place.
     """
-    height, width = depth.shape
+    intrinsics, shape = image.intrinsics, image.depth.shape
+    height, width = shape
     sizes = ends[0]
     for axis in range(3):  # Half of what a cell spans along the camera's axes.
-        own = to_camera[axis]
+        own = cells_to_camera[axis]
         sizes[axis] = (abs(own[0]) + abs(own[1]) + abs(own[2])) / 2
     for i in range(labels.shape[0]):
         for j in range(labels.shape[1]):
@@ -52,33 +51,36 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
                 free[i, j, k] = False
                 if labels[i, j, k] != 0:
                     continue
-                x, y, z = _transform(to_camera, i + 0.5, j + 0.5, k + 0.5)
+                x, y, z = _transform(cells_to_camera, i + 0.5, j + 0.5, k + 0.5)
                 if z + sizes[2] <= CROSSED_M or _outside_frustum(
-                    to_camera, lens, width, height, x, y, z
+                    cells_to_camera, intrinsics, width, height, x, y, z
                 ):
                     continue
                 if z > 0:
-                    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+                    u, v = (
+                        intrinsics[0] * x / z + intrinsics[2],
+                        intrinsics[1] * y / z + intrinsics[3],
+                    )
                     inside = 0 <= u < width and 0 <= v < height
-                    if inside and ray_crosses_cell(place, lens, depth, int(u), int(v), i, j, k):
+                    if inside and ray_crosses_cell(image, int(u), int(v), i, j, k):
                         free[i, j, k] = True
                         continue
                 nearest = z - sizes[2]
                 if nearest > CROSSED_M:
-                    box = _projected_bounds(lens, sizes, x, y, z)
-                    if not _any_tile_deeper(tiles, depth.shape, box, nearest):
+                    box = _projected_bounds(intrinsics, sizes, x, y, z)
+                    if not _any_tile_deeper(tiles, shape, box, nearest):
                         continue
-                box = _corner_bounds(to_camera, lens, ends[1:], i, j, k)
-                free[i, j, k] = _any_ray_crosses(place, lens, depth, tiles, box, i, j, k, nearest)
+                box = _corner_bounds(cells_to_camera, intrinsics, ends[1:], i, j, k)
+                free[i, j, k] = _any_ray_crosses(image, tiles, box, i, j, k, nearest)
 
 
 @inlined
-def _projected_bounds(lens, sizes, x, y, z):
+def _projected_bounds(intrinsics, sizes, x, y, z):
     """Return left, right, top and bottom, in pixels, of a box around a cell before the camera."""
     off = 1.0 / (z * (z - sizes[2]))
-    wide = lens[0] * (sizes[0] * z + abs(x) * sizes[2]) * off
-    high = lens[1] * (sizes[1] * z + abs(y) * sizes[2]) * off
-    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+    wide = intrinsics[0] * (sizes[0] * z + abs(x) * sizes[2]) * off
+    high = intrinsics[1] * (sizes[1] * z + abs(y) * sizes[2]) * off
+    u, v = intrinsics[0] * x / z + intrinsics[2], intrinsics[1] * y / z + intrinsics[3]
     return u - wide, u + wide, v - high, v + high
 
 
@@ -92,28 +94,33 @@ def _transform(matrix, x, y, z):
 
 
 @inlined
-def _outside_frustum(to_camera, lens, width, height, x, y, z):
+def _outside_frustum(cells_to_camera, intrinsics, width, height, x, y, z):
     """Tell whether a cell lies wholly beyond one side of what the camera sees."""
     low_u, high_u, low_v, high_v = 0.0, 0.0, 0.0, 0.0
     for axis in range(3):
-        ex, ey, ez = to_camera[0, axis] / 2, to_camera[1, axis] / 2, to_camera[2, axis] / 2
-        low_u += abs(lens[0] * ex + lens[2] * ez)
-        high_u += abs(lens[0] * ex + (lens[2] - width) * ez)
-        low_v += abs(lens[1] * ey + lens[3] * ez)
-        high_v += abs(lens[1] * ey + (lens[3] - height) * ez)
+        ex, ey, ez = (
+            cells_to_camera[0, axis] / 2,
+            cells_to_camera[1, axis] / 2,
+            cells_to_camera[2, axis] / 2,
+        )
+        low_u += abs(intrinsics[0] * ex + intrinsics[2] * ez)
+        high_u += abs(intrinsics[0] * ex + (intrinsics[2] - width) * ez)
+        low_v += abs(intrinsics[1] * ey + intrinsics[3] * ez)
+        high_v += abs(intrinsics[1] * ey + (intrinsics[3] - height) * ez)
     return (
-        lens[0] * x + lens[2] * z < -low_u
-        or lens[0] * x + (lens[2] - width) * z > high_u
-        or lens[1] * y + lens[3] * z < -low_v
-        or lens[1] * y + (lens[3] - height) * z > high_v
+        intrinsics[0] * x + intrinsics[2] * z < -low_u
+        or intrinsics[0] * x + (intrinsics[2] - width) * z > high_u
+        or intrinsics[1] * y + intrinsics[3] * z < -low_v
+        or intrinsics[1] * y + (intrinsics[3] - height) * z > high_v
     )
 
 
 @lean
-def ray_crosses_cell(place, lens, depth, u, v, i, j, k):
-    """Tell whether the ray of pixel (u, v) goes through cell (i, j, k) before its surface."""
+def ray_crosses_cell(image, u, v, i, j, k):
+    """Return whether the ray of pixel (u, v) crosses cell (i, j, k) before its surface."""
+    place, intrinsics, depth = image.camera_to_cells, image.intrinsics, image.depth
     end = np.float64(depth[v, u]) if depth[v, u] > 0 else np.inf
-    x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
+    x, y = (u + 0.5 - intrinsics[2]) / intrinsics[0], (v + 0.5 - intrinsics[3]) / intrinsics[1]
     begin = 0.0
     for axis in range(3):
         low = (i if axis == 0 else (j if axis == 1 else k)) - place[axis, 3]
@@ -151,12 +158,13 @@ def _any_tile_deeper(tiles, shape, box, nearest):
 
 
 @lean
-def _any_ray_crosses(place, lens, depth, tiles, box, i, j, k, nearest):
+def _any_ray_crosses(image, tiles, box, i, j, k, nearest):
     """Tell whether some pixel's ray goes through a cell; nothing of it is nearer than ``nearest``.
 
     Only pixels count that ``box`` (left, right, top, bottom) surrounds, and of those no tile whose
     rays all end before the cell.
     """
+    depth = image.depth
     u0, u1, v0, v1 = _pixels(depth.shape, box)
     if u1 < u0 or v1 < v0:
         return False
@@ -168,13 +176,13 @@ def _any_ray_crosses(place, lens, depth, tiles, box, i, j, k, nearest):
                 for u in range(max(u0, column * TILE), min(u1 + 1, (column + 1) * TILE)):
                     if 0 < depth[v, u] <= nearest:
                         continue
-                    if ray_crosses_cell(place, lens, depth, u, v, i, j, k):
+                    if ray_crosses_cell(image, u, v, i, j, k):
                         return True
     return False
 
 
 @lean
-def _corner_bounds(to_camera, lens, ends, i, j, k):
+def _corner_bounds(cells_to_camera, intrinsics, ends, i, j, k):
     """Return left, right, top and bottom, in pixels, of what of a cell is before the camera.
 
     What is nearer than ``CROSSED_M`` is cut off: a ray that is in the cell there alone is not long
@@ -183,9 +191,9 @@ def _corner_bounds(to_camera, lens, ends, i, j, k):
     box = (np.inf, -np.inf, np.inf, -np.inf)
     for corner in range(8):
         a, b, c = i + corner // 4, j + corner // 2 % 2, k + corner % 2
-        ends[corner, 0], ends[corner, 1], ends[corner, 2] = _transform(to_camera, a, b, c)
+        ends[corner, 0], ends[corner, 1], ends[corner, 2] = _transform(cells_to_camera, a, b, c)
         if ends[corner, 2] >= CROSSED_M:
-            box = _grow_bounds(box, lens, ends[corner, 0], ends[corner, 1], ends[corner, 2])
+            box = _grow_bounds(box, intrinsics, ends[corner, 0], ends[corner, 1], ends[corner, 2])
     for corner in range(8):
         for bit in (1, 2, 4):
             other = corner | bit
@@ -195,11 +203,11 @@ def _corner_bounds(to_camera, lens, ends, i, j, k):
             share = near / (near - far)
             x = ends[corner, 0] + share * (ends[other, 0] - ends[corner, 0])
             y = ends[corner, 1] + share * (ends[other, 1] - ends[corner, 1])
-            box = _grow_bounds(box, lens, x, y, CROSSED_M)
+            box = _grow_bounds(box, intrinsics, x, y, CROSSED_M)
     return box
 
 
 @inlined
-def _grow_bounds(box, lens, x, y, z):
-    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+def _grow_bounds(box, intrinsics, x, y, z):
+    u, v = intrinsics[0] * x / z + intrinsics[2], intrinsics[1] * y / z + intrinsics[3]
     return min(box[0], u), max(box[1], u), min(box[2], v), max(box[3], v)

@@ -22,6 +22,7 @@ from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, mark_free, max_depth_tiles
 from world2minecraft.minecraftocc.labels.label_kernels import (
+    DepthImage,
     count_hits,
     gather_labels,
     mark_in_frustum,
@@ -55,13 +56,12 @@ def label_image(
     view = _ImageView(voxels, region, camera, camera_to_room, depth_m)
     labels, fine, instance = view.held
     in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
-    height, width = view.depth_m.shape
-    mark_in_frustum(view.to_camera, view.lens, width, height, in_frustum)
+    depth_m = view.image.depth
+    height, width = depth_m.shape
+    mark_in_frustum(view.cells_to_camera, view.image.intrinsics, width, height, in_frustum)
     tiles = np.empty((-(-height // TILE), -(-width // TILE)), np.float32)
-    max_depth_tiles(view.depth_m, tiles)
-    mark_free(
-        labels, view.to_camera, view.place, view.lens, view.depth_m, tiles, np.empty((9, 3)), free
-    )
+    max_depth_tiles(depth_m, tiles)
+    mark_free(labels, view.cells_to_camera, view.image, tiles, np.empty((9, 3)), free)
     hits, _ = view.hits(False)
     return OccLabels(region, labels, fine, instance, in_frustum, hits, free)
 
@@ -152,11 +152,14 @@ class _ImageView:
         if depth_m.shape != size:
             raise ValueError(f"depth of {depth_m.shape} is not of a camera with {size} pixels")
         self.voxels, self.region, self.camera_to_room = voxels, region, camera_to_room
-        self.depth_m = np.ascontiguousarray(depth_m, np.float32)
-        self.lens = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
-        self.place = _place(region, camera_to_room)
+        intrinsics = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+        camera_to_cells = _camera_to_cells(region, camera_to_room)
+        self.image = DepthImage(
+            camera_to_cells, intrinsics, np.ascontiguousarray(depth_m, np.float32)
+        )
         self.held = gather_region(voxels, region)
-        self.to_camera = np.ascontiguousarray(invert(np.vstack([self.place, [0, 0, 0, 1]]))[:3])
+        cells_to_camera = invert(np.vstack([camera_to_cells, [0, 0, 0, 1]]))[:3]
+        self.cells_to_camera = np.ascontiguousarray(cells_to_camera)
 
     def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
         """Return the hits of each cell, and the cell of each pixel where that is wanted."""
@@ -164,11 +167,10 @@ class _ImageView:
             self.region if is_on_cells(self.region, self.voxels) else _box(self.region, self.voxels)
         )
         hits = np.zeros(box.shape, np.uint32)
-        cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
-        count_hits(
-            gather_region(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
-            self.depth_m, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells,
-        )  # fmt: skip
+        cells = np.empty(self.image.depth.shape if cells_wanted else (0, 0), np.int32)
+        image = self.image._replace(camera_to_cells=_camera_to_cells(box, self.camera_to_room))
+        solid = gather_region(self.voxels, box, 1)[1]
+        count_hits(solid, image, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells)
         if box is self.region:
             return hits, cells
         return _resample_hits(self.region, self.held[1], box, hits, cells)
@@ -205,7 +207,7 @@ def _to_cells_of(origin_m: np.ndarray, voxel_m: float, region: LabelRegion) -> n
     return np.ascontiguousarray(to_cells / voxel_m)
 
 
-def _place(region: LabelRegion, camera_to_room: np.ndarray) -> np.ndarray:
+def _camera_to_cells(region: LabelRegion, camera_to_room: np.ndarray) -> np.ndarray:
     """Return float64 [3, 4]: a camera, in cells of a region."""
     cells_to_room = region.region_to_room.copy()
     cells_to_room[:3, :3] *= region.voxel_m

@@ -1,15 +1,23 @@
-"""Labels and masks of a region's cells: what they hold, and which pixels they show in or meet.
+"""Labels and masks of a region's cells: what they hold, and which pixels see or cross them.
 
-Coordinates are cells of the region: cell (i, j, k) spans [i, i + 1]. ``place`` float64 [3, 4] is a
-camera's ``camera_to_region`` in cells; ``lens`` float64 [4] is fx, fy, cx, cy in pixels. ``depth``
-is z-depth in metres, 0 where a ray meets nothing.
+Coordinates are cells of the region: cell (i, j, k) spans [i, i + 1].
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
 
 OUTSIDE_LABEL = 255
+
+
+class DepthImage(NamedTuple):
+    """A depth image, and where its camera is in the cells of a region."""
+
+    camera_to_cells: np.ndarray  # float64 [3, 4]
+    intrinsics: np.ndarray  # float64 [4]: fx, fy, cx, cy
+    depth: np.ndarray  # float32 [H, W], z-depth in metres, 0 where a ray meets nothing
 
 
 @lean
@@ -49,12 +57,12 @@ def _row(matrix, row, x, y, z):
 
 
 @lean
-def mark_in_frustum(to_camera, lens, width, height, marked):
+def mark_in_frustum(cells_to_camera, intrinsics, width, height, marked):
     """Mark the cells whose middle is before the camera and falls into its image.
 
     Args:
-        to_camera: float64 [3, 4], region's cells to metres of the camera.
-        lens: of the camera.
+        cells_to_camera: float64 [3, 4], region's cells to metres of the camera.
+        intrinsics: float64 [4], fx, fy, cx, cy.
         width: pixels.
         height: pixels.
         marked: bool [X, Y, Z], filled in place.
@@ -62,16 +70,22 @@ def mark_in_frustum(to_camera, lens, width, height, marked):
     for i in range(marked.shape[0]):
         for j in range(marked.shape[1]):
             for k in range(marked.shape[2]):
-                z = _row(to_camera, 2, i + 0.5, j + 0.5, k + 0.5)
+                z = _row(cells_to_camera, 2, i + 0.5, j + 0.5, k + 0.5)
                 marked[i, j, k] = False
                 if z > 0:
-                    u = lens[0] * _row(to_camera, 0, i + 0.5, j + 0.5, k + 0.5) / z + lens[2]
-                    v = lens[1] * _row(to_camera, 1, i + 0.5, j + 0.5, k + 0.5) / z + lens[3]
+                    u = (
+                        intrinsics[0] * _row(cells_to_camera, 0, i + 0.5, j + 0.5, k + 0.5) / z
+                        + intrinsics[2]
+                    )
+                    v = (
+                        intrinsics[1] * _row(cells_to_camera, 1, i + 0.5, j + 0.5, k + 0.5) / z
+                        + intrinsics[3]
+                    )
                     marked[i, j, k] = 0 <= u < width and 0 <= v < height
 
 
 @lean
-def count_hits(solid, place, lens, depth, around, reach, memo, hits, cells):
+def count_hits(solid, image, around, reach, memo, hits, cells):
     """Count the pixels that see each cell first.
 
     A pixel's ray is followed from ``around`` before its point to as much behind it: the first solid
@@ -81,9 +95,7 @@ def count_hits(solid, place, lens, depth, around, reach, memo, hits, cells):
     Args:
         solid: uint16 [X + 2, Y + 2, Z + 2], not 0 where a cell holds something; one cell more on
             each side than are counted.
-        place: the camera, in cells.
-        lens: of the camera.
-        depth: float32 [H, W].
+        image: ``DepthImage``.
         around: metres of depth.
         reach: cells, less than half of one.
         memo: float64 [12], scratch: low and high corners of two boxes. Pixels whose way leads from
@@ -92,13 +104,14 @@ def count_hits(solid, place, lens, depth, around, reach, memo, hits, cells):
         cells: int32 [H, W], the C-order number of the cell each pixel sees, -1 for none; or of no
             size where that is not wanted.
     """
+    place, intrinsics, depth = image.camera_to_cells, image.intrinsics, image.depth
     wanted = cells.size > 0
     counts = hits.reshape(-1)
     own, run, length = -1, -1, 0
     memo[0] = np.inf
     ox, oy, oz = place[0, 3] + 1.0, place[1, 3] + 1.0, place[2, 3] + 1.0
     for v in range(depth.shape[0]):
-        y = (v + 0.5 - lens[3]) / lens[1]
+        y = (v + 0.5 - intrinsics[3]) / intrinsics[1]
         rx = place[0, 1] * y + place[0, 2]
         ry = place[1, 1] * y + place[1, 2]
         rz = place[2, 1] * y + place[2, 2]
@@ -108,7 +121,7 @@ def count_hits(solid, place, lens, depth, around, reach, memo, hits, cells):
                 if wanted:
                     cells[v, u] = -1
                 continue
-            x = (u + 0.5 - lens[2]) / lens[0]
+            x = (u + 0.5 - intrinsics[2]) / intrinsics[0]
             dx, dy, dz = place[0, 0] * x + rx, place[1, 0] * x + ry, place[2, 0] * x + rz
             px, py, pz = ox + t * dx, oy + t * dy, oz + t * dz
             dx, dy, dz = around * dx, around * dy, around * dz

@@ -14,10 +14,10 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.walk_graph import (
     SLIM,
-    Solid,
+    CollisionGrid,
     WalkGraph,
     WalkRule,
-    solid_of,
+    collision_grid,
     walk_graph,
 )
 from world2minecraft.minecraftocc.tours.headings import (
@@ -235,7 +235,7 @@ def plan_views(
     how = rule or TourRule()
     if count < 1:
         raise UsageError(f"a plan has one view or more, not {count}")
-    solid = solid_of(volume)
+    solid = collision_grid(volume)
     graph, rooms = _rooms(volume, solid, how)
     ready, kinds = scene or prepare_scene(volume), YawKindCounts()
     tourists = []
@@ -246,7 +246,9 @@ def plan_views(
     return [view for tourist in tourists for view in tourist.views()]
 
 
-def _rooms(volume: BlockVolume, solid: Solid, rule: TourRule) -> tuple[WalkGraph, list[TourRoom]]:
+def _rooms(
+    volume: BlockVolume, solid: CollisionGrid, rule: TourRule
+) -> tuple[WalkGraph, list[TourRoom]]:
     """Return where a player walks in a volume; where none fits, where a slim one would.
 
     A cluttered scan may leave no floor that is wide enough for a person, though a camera fits.

@@ -21,7 +21,7 @@ from world2minecraft.core.types import BlockVolume, Layout
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.minecraft.physics.body import HEIGHT
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
-from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
+from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
 from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
 
@@ -69,7 +69,7 @@ class TourRoom:
 
 
 def find_rooms(
-    volume: BlockVolume, graph: WalkGraph, solid: Solid, rule: TourRule
+    volume: BlockVolume, graph: WalkGraph, solid: CollisionGrid, rule: TourRule
 ) -> list[TourRoom]:
     """Return the rooms of a volume in which one can stand, in a fixed order.
 

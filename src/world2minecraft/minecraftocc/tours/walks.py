@@ -18,7 +18,7 @@ from world2minecraft.minecraft.physics.shortest_paths import (
     parts,
     shortest_path,
 )
-from world2minecraft.minecraft.physics.walk_graph import Solid, WalkGraph
+from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
 
 STOP_M2 = 2.0  # Of floor for each stop,
 STOPS = (2, 10)  # and so many of them.
@@ -34,7 +34,7 @@ class WalkArea:
     """The floor of one room: its part of the graph, and what bodies must not meet."""
 
     graph: WalkGraph
-    solid: Solid
+    solid: CollisionGrid
     corner: tuple[int, int, int]
 
     @cached_property

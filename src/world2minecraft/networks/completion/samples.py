@@ -31,7 +31,7 @@ from world2minecraft.networks.completion.virtual_views import (
 from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo import prepare_photos
-from world2minecraft.procgen.sensors.trajectory import plan_tour
+from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.reconstruction.fusion import CleanParameters, extract_grid, remove_floaters
 from world2minecraft.reconstruction.semantics.completion import hint_of
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
@@ -94,7 +94,7 @@ def make_samples(seed: int) -> list[Sample]:
     scene = prepare_photos(room)
     rng = np.random.default_rng([seed, 12])
     views = TOUR_VIEWS * (2 if len(room.layouts) > 1 else 1)
-    tour = plan_tour(room, scene.scene, PLAN_CAMERA, views, rng)
+    tour = plan_trajectory(room, scene.scene, PLAN_CAMERA, views, rng)
     samples = []
     for number, kind in enumerate(LOOKS):
         rng = np.random.default_rng([seed, 13, number])

@@ -18,7 +18,7 @@ from world2minecraft.networks.completion.sensor_noise import (
     draw_lost_pixels,
 )
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.depth_camera import jittered_pose, scale_factor, sense_depth
+from world2minecraft.procgen.sensors.depth_camera import jitter_pose, scale_factor, sense_depth
 from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
 from world2minecraft.procgen.sensors.shots import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
@@ -111,7 +111,7 @@ def _view(
     if noise.label_error is not None:
         said = corrupt_labels(labels, noise.label_error, rng)
     # A single look has no tracker: where it stands is part of the scan's misfit.
-    stated = pose if kind == "single" else jittered_pose(noise.sensor, pose, rng)
+    stated = pose if kind == "single" else jitter_pose(noise.sensor, pose, rng)
     return View(
         name=kind,
         camera_to_scan=stated,

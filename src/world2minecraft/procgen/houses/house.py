@@ -15,7 +15,7 @@ from world2minecraft.procgen.houses.plan import (
 )
 from world2minecraft.procgen.houses.rooms import furnish_cells
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style, choose_style
-from world2minecraft.procgen.rooms.floor_shapes import grown
+from world2minecraft.procgen.rooms.floor_shapes import dilate_mask
 from world2minecraft.procgen.rooms.furniture_model import shade
 from world2minecraft.procgen.rooms.openings import Hole
 from world2minecraft.procgen.rooms.placement import Item, Rug
@@ -76,7 +76,7 @@ def _paint_cell(
 ) -> None:
     """Paint the walls, the slabs and the air of one room; walls are shared by their halves."""
     air = _air(canvas, cell)
-    near, half = grown(air, SHELL), grown(air, SHELL // 2)
+    near, half = dilate_mask(air, SHELL), dilate_mask(air, SHELL // 2)
     floor = SHELL + round(cell.storey * plan.pitch_m / VOXEL_M)
     top = floor + round(plan.height_m / VOXEL_M)
     labels, colour = canvas.labels, canvas.colour

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms.floor_shapes import Box, Ground, Rect, Wall
-from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, shade, whole
+from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, round_to_step, shade
 from world2minecraft.procgen.rooms.openings import DOOR_M, HEAD_M, SILL_M, Hole
 from world2minecraft.procgen.rooms.placement import Item
 
@@ -85,39 +85,41 @@ class HousePlan:
     @property
     def pitch_m(self) -> float:
         """From floor to floor."""
-        return whole(self.height_m + SLAB_M)
+        return round_to_step(self.height_m + SLAB_M)
 
     @property
     def size_m(self) -> tuple[float, float, float]:
         """The inner box around all rooms."""
         x, y = (max(cell.rect[n] for cell in self.cells) for n in (2, 3))
-        return x, y, whole(self.pitch_m * (self.storeys - 1) + self.height_m)
+        return x, y, round_to_step(self.pitch_m * (self.storeys - 1) + self.height_m)
 
 
 def plan_house(rooms: int, storeys: int, rng: np.random.Generator) -> HousePlan:
     """Return a plan of ``rooms`` rooms, halls among them, on one or two storeys."""
     risers, rise, tread = FLIGHTS[int(rng.integers(len(FLIGHTS)))]
-    run = whole((risers - 1) * tread)
+    run = round_to_step((risers - 1) * tread)
     two = storeys == 2
-    height = whole(risers * rise - SLAB_M) if two else whole(rng.uniform(2.4, 2.7))
-    wide = whole(rng.uniform(*CORRIDOR_M))
-    below, above = (whole(rng.uniform(*SIDE_M)) for _ in range(2))
-    above = whole(run + ARRIVAL_M) if two else above
+    height = round_to_step(risers * rise - SLAB_M) if two else round_to_step(rng.uniform(2.4, 2.7))
+    wide = round_to_step(rng.uniform(*CORRIDOR_M))
+    below, above = (round_to_step(rng.uniform(*SIDE_M)) for _ in range(2))
+    above = round_to_step(run + ARRIVAL_M) if two else above
     storey_kinds = _kinds(rooms, storeys)
-    bay = whole(STAIR_M + PASSAGE_M) if two else 0.0
+    bay = round_to_step(STAIR_M + PASSAGE_M) if two else 0.0
     shared = [_sides(kinds, bay, rng) for kinds in storey_kinds]
     length = max(_taken(side, bay if n else 0.0) for pair in shared for n, side in enumerate(pair))
     has_below = any(pair[0] for pair in shared)
-    corridor_y = whole(below + WALL_M) if has_below else 0.0
-    above_y = whole(corridor_y + wide + WALL_M)
+    corridor_y = round_to_step(below + WALL_M) if has_below else 0.0
+    above_y = round_to_step(corridor_y + wide + WALL_M)
     cells = []
     for storey, (low, high) in enumerate(shared):
-        start = whole(bay + WALL_M) if two else 0.0
+        start = round_to_step(bay + WALL_M) if two else 0.0
         cells.append(_hall(storey, length, corridor_y, wide, bay, above, height))
         cells += _row(low, storey, 0.0, length, 0.0, below, height)
         cells += _row(high, storey, start, length, above_y, above, height)
     top = above_y - WALL_M
-    flight = Flight((0.0, top, STAIR_M, whole(top + run)), risers, rise, tread) if two else None
+    flight = (
+        Flight((0.0, top, STAIR_M, round_to_step(top + run)), risers, rise, tread) if two else None
+    )
     return HousePlan(tuple(cells), storeys, height, flight)
 
 
@@ -132,7 +134,7 @@ def _sides(
     kinds: tuple[str, ...], bay: float, rng: np.random.Generator
 ) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
     """Share the rooms out to both sides of the corridor, so that the sides come out as long."""
-    rooms = [(kind, whole(rng.uniform(*ALONG_M[kind]))) for kind in kinds]
+    rooms = [(kind, round_to_step(rng.uniform(*ALONG_M[kind]))) for kind in kinds]
     sides: tuple[list, list] = ([], [])
     for room in sorted(rooms, key=lambda entry: -entry[1]):
         taken = [_taken(side, bay if n else 0.0) for n, side in enumerate(sides)]
@@ -145,7 +147,7 @@ def _sides(
 
 def _taken(side: list[tuple[str, float]], bay: float) -> float:
     parts = [along for _, along in side] + ([bay] if bay else [])
-    return whole(sum(parts) + WALL_M * max(0, len(parts) - 1))
+    return round_to_step(sum(parts) + WALL_M * max(0, len(parts) - 1))
 
 
 def _hall(
@@ -154,7 +156,7 @@ def _hall(
     if not bay:
         return Cell("hall", storey, 0.0, y, Ground((length, wide, height)))
     # The bay has no wall towards the corridor.
-    size = (length, whole(wide + WALL_M + above), height)
+    size = (length, round_to_step(wide + WALL_M + above), height)
     return Cell("hall", storey, 0.0, y, Ground(size, ((bay, wide, length, size[1]),)))
 
 
@@ -175,11 +177,11 @@ def _row(
     stretch = min(free / natural, MAX_STRETCH)
     cells, x = [], start
     for n, (kind, along) in enumerate(side):
-        end = min(length, whole(x + along * stretch))
+        end = min(length, round_to_step(x + along * stretch))
         if n == len(side) - 1 and stretch < MAX_STRETCH:
             end = length
-        cells.append(Cell(kind, storey, x, y, Ground((whole(end - x), deep, height))))
-        x = whole(end + WALL_M)
+        cells.append(Cell(kind, storey, x, y, Ground((round_to_step(end - x), deep, height))))
+        x = round_to_step(end + WALL_M)
     return cells
 
 
@@ -202,7 +204,7 @@ class Gap:
             turn, at = (turn + 2) % 4, at + (-WALL_M if turn < 2 else WALL_M)
         off = (placed.x_m, placed.y_m)
         at, run = at - off[turn % 2], off[1 - turn % 2]
-        first, last = whole(self.first_m - run), whole(self.last_m - run)
+        first, last = round_to_step(self.first_m - run), round_to_step(self.last_m - run)
         walls = placed.ground.walls
         number = next(
             n
@@ -233,16 +235,18 @@ def walls_of(cell: Cell) -> tuple[Wall, ...]:
     for wall in cell.ground.walls:
         off = (cell.x_m, cell.y_m)
         run = off[1 - wall.turn % 2]
-        at = whole(wall.at_m + off[wall.turn % 2])
-        moved.append(Wall(wall.turn, at, whole(wall.first_m + run), whole(wall.last_m + run)))
+        at = round_to_step(wall.at_m + off[wall.turn % 2])
+        moved.append(
+            Wall(wall.turn, at, round_to_step(wall.first_m + run), round_to_step(wall.last_m + run))
+        )
     return tuple(moved)
 
 
 def _front_door(plan: HousePlan) -> Gap:
     """Return the front door, at the far end of the corridor of the ground storey."""
     wall = max((w for w in walls_of(plan.cells[0]) if w.turn == 2), key=lambda w: w.at_m)
-    first = whole((wall.first_m + wall.last_m - DOOR_M[0]) / 2)
-    return Gap("door", (0,), wall, first, whole(first + DOOR_M[0]), 0.0, DOOR_M[1])
+    first = round_to_step((wall.first_m + wall.last_m - DOOR_M[0]) / 2)
+    return Gap("door", (0,), wall, first, round_to_step(first + DOOR_M[0]), 0.0, DOOR_M[1])
 
 
 def _hall_door(plan: HousePlan, number: int, rng: np.random.Generator) -> Gap:
@@ -251,8 +255,10 @@ def _hall_door(plan: HousePlan, number: int, rng: np.random.Generator) -> Gap:
     turn = 3 if cell.y_m < plan.cells[hall].y_m else 1
     wall = next(w for w in walls_of(cell) if w.turn == turn)
     near = rng.random() < 0.5
-    first = whole(wall.first_m + CORNER_M if near else wall.last_m - CORNER_M - DOOR_M[0])
-    return Gap("door", (number, hall), wall, first, whole(first + DOOR_M[0]), 0.0, DOOR_M[1])
+    first = round_to_step(wall.first_m + CORNER_M if near else wall.last_m - CORNER_M - DOOR_M[0])
+    return Gap(
+        "door", (number, hall), wall, first, round_to_step(first + DOOR_M[0]), 0.0, DOOR_M[1]
+    )
 
 
 def _windows(plan: HousePlan, number: int, rng: np.random.Generator) -> list[Gap]:
@@ -266,10 +272,12 @@ def _windows(plan: HousePlan, number: int, rng: np.random.Generator) -> list[Gap
         if n and rng.random() < 0.4:
             continue
         small = cell.kind == "bathroom"
-        wide = whole(0.7 if small else min(rng.uniform(1.1, 1.6), wall.length_m - 0.8))
-        first = whole((wall.first_m + wall.last_m - wide) / 2 + rng.uniform(-0.2, 0.2))
+        wide = round_to_step(0.7 if small else min(rng.uniform(1.1, 1.6), wall.length_m - 0.8))
+        first = round_to_step((wall.first_m + wall.last_m - wide) / 2 + rng.uniform(-0.2, 0.2))
         sill = BATH_SILL_M if small else SILL_M
-        gaps.append(Gap("window", (number,), wall, first, whole(first + wide), sill, HEAD_M))
+        gaps.append(
+            Gap("window", (number,), wall, first, round_to_step(first + wide), sill, HEAD_M)
+        )
     return gaps
 
 
@@ -290,15 +298,17 @@ def _doorway(plan: HousePlan, number: int) -> list[Gap]:
     if not beside or a.kind not in SOCIAL or b.kind not in SOCIAL:
         return []
     wall = next(w for w in walls_of(a) if w.turn == 2)
-    first = whole((wall.first_m + wall.last_m - OPEN_M) / 2)
-    gap = Gap("doorway", (number, number + 1), wall, first, whole(first + OPEN_M), 0.0, DOOR_M[1])
+    first = round_to_step((wall.first_m + wall.last_m - OPEN_M) / 2)
+    gap = Gap(
+        "doorway", (number, number + 1), wall, first, round_to_step(first + OPEN_M), 0.0, DOOR_M[1]
+    )
     return [gap]
 
 
-def stairs(flight: Flight, wood: Colour) -> Model:
+def stairs_model(flight: Flight, wood: Colour) -> Model:
     """A flight whose front, +x, is where one begins to climb; its last riser is the slab's edge."""
     treads = flight.risers - 1
-    d, w, h = (whole(v) for v in (treads * flight.tread_m, STAIR_M, treads * flight.rise_m))
+    d, w, h = (round_to_step(v) for v in (treads * flight.tread_m, STAIR_M, treads * flight.rise_m))
     parts = []
     for n in range(treads):
         top, near = flight.rise_m * (n + 1), d / 2 - n * flight.tread_m
@@ -308,13 +318,13 @@ def stairs(flight: Flight, wood: Colour) -> Model:
     return Model("stairs", OBJS, (d, w, h), tuple(parts))
 
 
-def railing(length_m: float, wood: Colour) -> Model:
+def railing_model(length_m: float, wood: Colour) -> Model:
     """A rail on posts along its left-right axis."""
-    d, w, h = RAIL_THICK_M, whole(length_m), RAIL_M
+    d, w, h = RAIL_THICK_M, round_to_step(length_m), RAIL_M
     count = max(2, round(w / (POST_GAP_M + RAIL_THICK_M)) + 1)
     parts = [Part((-d / 2, -w / 2, h - 0.06, d / 2, w / 2, h), wood, "wood")]
     for n in range(count):
-        y = -w / 2 + whole((w - RAIL_THICK_M) * n / (count - 1))
+        y = -w / 2 + round_to_step((w - RAIL_THICK_M) * n / (count - 1))
         parts.append(Part((-d / 2, y, 0.0, d / 2, y + RAIL_THICK_M, h - 0.06), (236, 234, 228)))
     return Model("railing", OBJS, (d, w, h), tuple(parts))
 
@@ -324,17 +334,17 @@ def stairwell(plan: HousePlan, flight: Flight) -> Box:
     x0, y0, x1, y1 = flight.rect
     # The first step over which the ceiling would be too low, and one before it.
     first = max(0, int((plan.height_m - HEADROOM_M) / flight.rise_m) - 1)
-    start = whole(y0 + first * flight.tread_m)
+    start = round_to_step(y0 + first * flight.tread_m)
     return x0, start, plan.height_m, x1, y1, plan.pitch_m
 
 
 def stair_items(plan: HousePlan, flight: Flight, wood: Colour) -> tuple[list[Item], list[Item]]:
     """Return what belongs to the stairs on the ground storey and on the upper one."""
     x0, y0, x1, y1 = flight.rect
-    steps = Item(stairs(flight, wood), (x0 + x1) / 2, (y0 + y1) / 2, 0.0, 270.0)
+    steps = Item(stairs_model(flight, wood), (x0 + x1) / 2, (y0 + y1) / 2, 0.0, 270.0)
     _, start, _, _, end, level = stairwell(plan, flight)
     half = RAIL_THICK_M / 2
-    along = Item(railing(end - start, wood), x1 + half, (start + end) / 2, level, 0.0)
-    across = railing(x1 + RAIL_THICK_M - x0, wood)
+    along = Item(railing_model(end - start, wood), x1 + half, (start + end) / 2, level, 0.0)
+    across = railing_model(x1 + RAIL_THICK_M - x0, wood)
     ahead = Item(across, (x0 + x1) / 2 + half, start - half, level, 270.0)
     return [steps], [along, ahead]

@@ -22,12 +22,12 @@ from world2minecraft.procgen.rooms.placement import (
     Item,
     Plan,
     Rug,
+    boxes_intersect,
     chairs_around,
-    overlap,
+    paths_are_clear,
     pendant_over,
     picture_anywhere,
-    snapped,
-    ways_are_clear,
+    snap_to_voxels,
 )
 from world2minecraft.procgen.rooms.recipes import KINDS
 
@@ -90,7 +90,9 @@ def _stands(plan: Plan, item: Item) -> bool:
     box = item.box_m
     tall = item.model.name == "fridge"
     kept = [other for other in plan.reserved if tall or other[2] < LOW_M]
-    return plan.fits(item, may_block=True) and not any(overlap(box, other) for other in kept)
+    return plan.fits(item, may_block=True) and not any(
+        boxes_intersect(box, other) for other in kept
+    )
 
 
 def _hang(plan: Plan, style: Style, corner: Item, cooker: Item, sink: Item) -> None:
@@ -100,7 +102,7 @@ def _hang(plan: Plan, style: Style, corner: Item, cooker: Item, sink: Item) -> N
         hung.append((storage.wall_cabinet(base.model.size_m[1], style.front), base, 1.44))
     for model, base, z_m in hung:
         back = (model.size_m[0] - base.model.size_m[0]) / 2
-        plan.add(snapped(Item(model, *base.point(back, 0.0), z_m, base.yaw_deg)))
+        plan.add(snap_to_voxels(Item(model, *base.point(back, 0.0), z_m, base.yaw_deg)))
 
 
 def _table(plan: Plan, style: Style) -> None:
@@ -109,7 +111,7 @@ def _table(plan: Plan, style: Style) -> None:
     model = seating.table("kitchen_table", 0.8, float(rng.choice([0.9, 1.2])), 0.74, style.wood)
     for _ in range(TABLE_TRIES):
         x, y = (side * rng.uniform(0.25, 0.75) for side in plan.size_m[:2])
-        item = snapped(Item(model, x, y, 0.0, 90.0 * int(rng.integers(2))))
+        item = snap_to_voxels(Item(model, x, y, 0.0, 90.0 * int(rng.integers(2))))
         chair = seating.chair(style.wood, style.cloth)
         before = len(plan.items)
         board = plan.add(item)
@@ -124,7 +126,7 @@ def _table(plan: Plan, style: Style) -> None:
 
 
 @dataclass(frozen=True)
-class Turned:
+class RoomFrame:
     """A room's own frame: the room of the house turned back by ``turns`` quarters."""
 
     cell: Cell
@@ -196,7 +198,7 @@ def furnish_cells(
         holes = [hole for _, hole in own]
         held, flat = _furnish(plan, cell, holes, leaves, styles[number], clutter, (*seed, number))
         front = [hole for gap, hole in own if gap.kind == "door" and len(gap.cells) == 1]
-        bare = Turned(cell, 0)
+        bare = RoomFrame(cell, 0)
         held += [
             bare.item(door_item(Plan(bare.ground, np.random.default_rng(0)), hole, WHITE), 0.0)
             for hole in front
@@ -236,14 +238,14 @@ def _try_cell(
     style: Style,
     clutter: float,
     rng: np.random.Generator,
-) -> tuple[Turned, Plan, tuple[Rug, ...]] | None:
+) -> tuple[RoomFrame, Plan, tuple[Rug, ...]] | None:
     """Furnish a room once; None where the recipe does not fit or blocks a way."""
     frame, room = _opened(plan, cell, holes, leaves, style, rng)
     recipe = furnish_galley if cell.kind == "kitchen" else KINDS[cell.kind].furnish
     rugs = recipe(room, style)
     inner = [frame.hole(hole) for hole in holes]
     steps = [_step_in(room, hole) for hole in inner if hole.kind != "window"]
-    if rugs is None or not ways_are_clear(room, *steps, body_m=WIDE_BODY_M):
+    if rugs is None or not paths_are_clear(room, *steps, body_m=WIDE_BODY_M):
         return None
     hang_curtains(room, tuple(inner), style.curtain)
     scatter(room, clutter, rng, steps)
@@ -257,9 +259,9 @@ def _opened(
     leaves: list[bool],
     style: Style,
     rng: np.random.Generator,
-) -> tuple[Turned, Plan]:
+) -> tuple[RoomFrame, Plan]:
     """Return the room with no more than its stairs and door leaves, and what they keep free."""
-    frame = Turned(cell, int(rng.integers(4)) if not cell.ground.blocks else 0)
+    frame = RoomFrame(cell, int(rng.integers(4)) if not cell.ground.blocks else 0)
     room = Plan(frame.ground, rng)
     _take_stairs(room, plan, cell, style)
     for hole, has_leaf in zip(holes, leaves, strict=True):

@@ -1,8 +1,15 @@
 """What stands in a bathroom, in the sizes that fittings are sold in."""
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.furniture_model import Bar, Colour, Model, Part, shade, whole
-from world2minecraft.procgen.rooms.solid_voxels import modelled
+from world2minecraft.procgen.rooms.furniture_model import (
+    Bar,
+    Colour,
+    Model,
+    Part,
+    round_to_step,
+    shade,
+)
+from world2minecraft.procgen.rooms.solid_voxels import make_model
 
 FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
 CERAMIC: Colour = (242, 243, 242)
@@ -25,7 +32,7 @@ def toilet() -> Model:
 
 def washstand(front: Colour, *, width: float = 0.8) -> Model:
     """A basin on a cupboard with two drawers, its rim at 0.86 m, and a tap."""
-    d, w, h = 0.52, whole(width), 1.02
+    d, w, h = 0.52, round_to_step(width), 1.02
     light = shade(front, 1.06)
     parts = (
         Part((-d / 2, -w / 2 + 0.04, 0.24, d / 2 - 0.04, w / 2 - 0.04, 0.74), front),
@@ -42,7 +49,7 @@ def washstand(front: Colour, *, width: float = 0.8) -> Model:
 
 def mirror(width: float) -> Model:
     """A mirror on the wall, as high as faces are."""
-    d, w, h = 0.04, whole(width), 0.70
+    d, w, h = 0.04, round_to_step(width), 0.70
     parts = (
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), STEEL),
         Part((0.0, -w / 2 + 0.02, 0.02, d / 2, w / 2 - 0.02, h - 0.02), (198, 214, 220)),
@@ -52,7 +59,7 @@ def mirror(width: float) -> Model:
 
 def bathtub(length: float) -> Model:
     """A tub, 0.75 m wide and 0.58 m high, with its back long side at the wall."""
-    d, w, h = 0.76, whole(length), 0.58
+    d, w, h = 0.76, round_to_step(length), 0.58
     water = shade(CERAMIC, 0.86)
     parts = (
         Part((-d / 2, -w / 2, 0.0, d / 2, w / 2, 0.22), CERAMIC),
@@ -69,7 +76,7 @@ def bathtub(length: float) -> Model:
 
 def shower(side: float = 0.92) -> Model:
     """A shower: a tray, glass on two sides, a pipe with its head. Its back is the pipe's wall."""
-    d, h = whole(side), 2.0
+    d, h = round_to_step(side), 2.0
     half = d / 2
     parts = (
         Part((-half, -half, 0.0, half, half, 0.06), CERAMIC),
@@ -105,4 +112,4 @@ def towel(colour: Colour) -> Model:
         Bar((0.0, -0.30, 0.62), (0.0, 0.30, 0.62), 0.011, STEEL),
         Part((-0.04, -0.24, 0.0, 0.04, 0.16, 0.64), colour, "fabric"),
     )
-    return modelled("towel", OBJS, parts)
+    return make_model("towel", OBJS, parts)

@@ -6,9 +6,15 @@ at a door still reaches the room.
 
 import numpy as np
 
-from world2minecraft.procgen.rooms.clutter_models import ODD, ON_BEDS, ON_FLOORS, ON_TABLES, Maker
+from world2minecraft.procgen.rooms.clutter_models import (
+    IRREGULAR,
+    ON_BEDS,
+    ON_FLOORS,
+    ON_TABLES,
+    ModelFactory,
+)
 from world2minecraft.procgen.rooms.furniture_model import Model
-from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
+from world2minecraft.procgen.rooms.placement import Item, Plan, paths_are_clear
 
 Doors = list[tuple[float, float]]
 WIDE_BODY_M, NARROW_BODY_M = 0.32, 0.24  # Half a person's width, with and without ease.
@@ -44,11 +50,11 @@ def scatter(plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors
     """
     if clutter <= 0:
         return
-    wide = ways_are_clear(plan, *doors_m, body_m=WIDE_BODY_M)
+    wide = paths_are_clear(plan, *doors_m, body_m=WIDE_BODY_M)
     body_m = WIDE_BODY_M if wide else NARROW_BODY_M
     _turn_seats(plan, clutter, rng, doors_m, body_m)
     for _ in range(round(clutter * ODD_THINGS * rng.uniform(0.6, 1.2))):
-        _lay(plan, ODD, rng, doors_m, body_m)
+        _lay(plan, IRREGULAR, rng, doors_m, body_m)
     for base in list(plan.items):
         _cover(plan, base, clutter, rng)
     area = plan.size_m[0] * plan.size_m[1]
@@ -71,14 +77,14 @@ def _turn_seats(
             if not plan.fits(moved, may_block=True, among=others):
                 continue
             plan.items[n] = moved
-            if ways_are_clear(plan, *doors_m, body_m=body_m):
+            if paths_are_clear(plan, *doors_m, body_m=body_m):
                 break
             plan.items[n] = seat
 
 
 def _lay(
     plan: Plan,
-    makers: tuple[Maker, ...],
+    makers: tuple[ModelFactory, ...],
     rng: np.random.Generator,
     doors_m: Doors,
     body_m: float,
@@ -88,7 +94,7 @@ def _lay(
     for _ in range(TRIES):
         if plan.add(_floor_spot(plan, model, rng)) is None:
             continue
-        if ways_are_clear(plan, *doors_m, body_m=body_m):
+        if paths_are_clear(plan, *doors_m, body_m=body_m):
             return
         plan.items.pop()
 
@@ -121,7 +127,7 @@ def _cover(plan: Plan, base: Item, clutter: float, rng: np.random.Generator) -> 
 
 
 def _put_upon(
-    plan: Plan, base: Item, makers: tuple[Maker, ...], top_m: float, rng: np.random.Generator
+    plan: Plan, base: Item, makers: tuple[ModelFactory, ...], top_m: float, rng: np.random.Generator
 ) -> None:
     model = makers[int(rng.integers(len(makers)))](rng)
     depth, width, _ = base.model.size_m

@@ -10,15 +10,22 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms import decor
-from world2minecraft.procgen.rooms.furniture_model import Bar, Colour, Model, Part, shade, whole
-from world2minecraft.procgen.rooms.play_and_hall import BRIGHT, bright
-from world2minecraft.procgen.rooms.solid_voxels import modelled
+from world2minecraft.procgen.rooms.children_and_hall import BRIGHT_COLOURS, bright_colour
+from world2minecraft.procgen.rooms.furniture_model import (
+    Bar,
+    Colour,
+    Model,
+    Part,
+    round_to_step,
+    shade,
+)
+from world2minecraft.procgen.rooms.solid_voxels import make_model
 
 CHAIR, FURN, OBJS = (int(c) for c in (SemanticClass.CHAIR, SemanticClass.FURN, SemanticClass.OBJS))
 CLOTHES: tuple[Colour, ...] = (
     (62, 76, 108), (188, 180, 168), (150, 70, 66), (84, 110, 92), (206, 160, 92), (70, 70, 76),
 )  # fmt: skip
-Maker = Callable[[np.random.Generator], Model]
+ModelFactory = Callable[[np.random.Generator], Model]
 WOOD: Colour = (176, 128, 82)
 METAL: Colour = (92, 96, 102)
 
@@ -29,25 +36,25 @@ def _pick(rng: np.random.Generator, colours: tuple[Colour, ...]) -> Colour:
 
 def cup(rng: np.random.Generator) -> Model:
     """A mug with its handle."""
-    colour = _pick(rng, BRIGHT)
+    colour = _pick(rng, BRIGHT_COLOURS)
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, 0.10), colour, form="drum")
-    return modelled("cup", OBJS, (body, Bar((0, 0.05, 0.03), (0, 0.05, 0.07), 0.012, colour)))
+    return make_model("cup", OBJS, (body, Bar((0, 0.05, 0.03), (0, 0.05, 0.07), 0.012, colour)))
 
 
 def bottle(rng: np.random.Generator) -> Model:
     """A bottle of glass or plastic."""
     colour = _pick(rng, ((52, 96, 62), (96, 60, 40), (120, 170, 200), (200, 70, 60)))
-    high = whole(rng.uniform(0.24, 0.32))
+    high = round_to_step(rng.uniform(0.24, 0.32))
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, high - 0.1), colour, form="drum")
     neck = Part((-0.02, -0.02, high - 0.1, 0.02, 0.02, high), shade(colour, 1.1), form="drum")
-    return modelled("bottle", OBJS, (body, neck))
+    return make_model("bottle", OBJS, (body, neck))
 
 
 def plate(rng: np.random.Generator) -> Model:
     """A plate with something on it."""
     food = _pick(rng, ((206, 120, 60), (120, 150, 70), (180, 60, 50)))
     rim = Part((-0.12, -0.12, 0, 0.12, 0.12, 0.02), (240, 240, 236), form="drum")
-    return modelled(
+    return make_model(
         "plate", OBJS, (rim, Part((-0.06, -0.05, 0.0, 0.05, 0.06, 0.06), food, form="ball"))
     )
 
@@ -57,7 +64,7 @@ def laptop(rng: np.random.Generator) -> Model:
     grey = (168, 172, 178)
     screen = Part((-0.14, -0.17, 0.02, -0.12, 0.17, 0.24), (40, 44, 52))
     shown = Part((-0.12, -0.15, 0.04, -0.115, 0.15, 0.22), (96, 140, 190))
-    return modelled(
+    return make_model(
         "laptop", OBJS, (Part((-0.12, -0.17, 0, 0.12, 0.17, 0.02), grey), screen, shown)
     )
 
@@ -69,24 +76,27 @@ def shoes(rng: np.random.Generator) -> Model:
         parts.append(Part((x - 0.14, y - 0.05, 0, x + 0.14, y + 0.05, 0.03), shade(colour, 0.6)))
         parts.append(Part((x - 0.14, y - 0.05, 0, x + 0.0, y + 0.05, 0.11), colour, form="ball"))
         parts.append(Part((x - 0.08, y - 0.05, 0, x + 0.14, y + 0.05, 0.08), colour, form="ball"))
-    return modelled("shoes", OBJS, parts)
+    return make_model("shoes", OBJS, parts)
 
 
 def bag(rng: np.random.Generator) -> Model:
     """A school bag or a rucksack that stands on the floor."""
-    colour = _pick(rng, BRIGHT + CLOTHES)
+    colour = _pick(rng, BRIGHT_COLOURS + CLOTHES)
     parts = (
         Part((-0.12, -0.17, 0, 0.10, 0.17, 0.44), colour, "fabric", form="ball"),
         Part((-0.10, -0.15, 0, 0.08, 0.15, 0.24), colour, "fabric"),
         Part((0.06, -0.11, 0.04, 0.14, 0.11, 0.20), shade(colour, 0.8), "fabric"),
         Bar((-0.02, -0.06, 0.42), (-0.02, 0.06, 0.46), 0.015, shade(colour, 0.6)),
     )
-    return modelled("bag", OBJS, parts)
+    return make_model("bag", OBJS, parts)
 
 
 def carton(rng: np.random.Generator) -> Model:
     """A cardboard box of any common size."""
-    sides = [whole(rng.uniform(low, high)) for low, high in ((0.24, 0.4), (0.28, 0.6), (0.2, 0.4))]
+    sides = [
+        round_to_step(rng.uniform(low, high))
+        for low, high in ((0.24, 0.4), (0.28, 0.6), (0.2, 0.4))
+    ]
     return decor.crate((sides[0], sides[1], sides[2]), (190, 152, 106))
 
 
@@ -104,19 +114,19 @@ def laundry(rng: np.random.Generator) -> Model:
 def ball(rng: np.random.Generator) -> Model:
     """A ball to play with."""
     r = float(rng.uniform(0.08, 0.12))
-    part = Part((-r, -r, 0, r, r, 2 * r), _pick(rng, BRIGHT), form="ball")
-    return modelled("ball", OBJS, (part,))
+    part = Part((-r, -r, 0, r, r, 2 * r), _pick(rng, BRIGHT_COLOURS), form="ball")
+    return make_model("ball", OBJS, (part,))
 
 
 def bricks(rng: np.random.Generator) -> Model:
     """Building bricks: a small tower and two that fell."""
     parts = [
-        Part((-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), _pick(rng, BRIGHT))
+        Part((-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), _pick(rng, BRIGHT_COLOURS))
         for n in range(int(rng.integers(2, 5)))
     ]
     for x, y in ((0.12, 0.06), (-0.06, 0.14)):
-        parts.append(Part((x, y, 0, x + 0.1, y + 0.06, 0.06), _pick(rng, BRIGHT)))
-    return modelled("bricks", OBJS, parts)
+        parts.append(Part((x, y, 0, x + 0.1, y + 0.06, 0.06), _pick(rng, BRIGHT_COLOURS)))
+    return make_model("bricks", OBJS, parts)
 
 
 def teddy(rng: np.random.Generator) -> Model:
@@ -130,10 +140,10 @@ def teddy(rng: np.random.Generator) -> Model:
         Part((x - r, y - r, z - r, x + r, y + r, z + r), fur, "fabric", form="ball")
         for x, y, z, r in balls
     ]
-    return modelled("teddy", OBJS, parts)
+    return make_model("teddy", OBJS, parts)
 
 
-def potted(rng: np.random.Generator) -> Model:
+def potted_plant(rng: np.random.Generator) -> Model:
     """A small plant in its pot for a table or a sill."""
     green: Colour = (60 + int(rng.integers(40)), 130, 62)
     high = float(rng.uniform(0.24, 0.36))
@@ -141,7 +151,7 @@ def potted(rng: np.random.Generator) -> Model:
         Part((-0.07, -0.07, 0, 0.07, 0.07, 0.12), (190, 112, 80), form="drum"),
         Part((-0.11, -0.11, 0.10, 0.11, 0.11, high), green, "fabric", form="ball"),
     )
-    return modelled("potted_plant", OBJS, parts)
+    return make_model("potted_plant", OBJS, parts)
 
 
 def _grounded(name: str, parts: list[Part]) -> Model:
@@ -151,30 +161,39 @@ def _grounded(name: str, parts: list[Part]) -> Model:
         x0, y0, z0, x1, y1, z1 = part.box_m
         # The upper half of a low, wide ball: as if it had sunk into the floor.
         kept.append(Part((x0, y0, max(z0, 0.0), x1, y1, z1), part.colour, part.grain, part.form))
-    return modelled(name, OBJS, kept)
+    return make_model(name, OBJS, kept)
 
 
-ON_TABLES: tuple[Maker, ...] = (cup, bottle, plate, laptop, decor.book_pile, potted, cup, carton)
-ON_BEDS: tuple[Maker, ...] = (teddy, laundry, decor.book_pile, bag)
-ON_FLOORS: tuple[Maker, ...] = (
+ON_TABLES: tuple[ModelFactory, ...] = (
+    cup,
+    bottle,
+    plate,
+    laptop,
+    decor.book_pile,
+    potted_plant,
+    cup,
+    carton,
+)
+ON_BEDS: tuple[ModelFactory, ...] = (teddy, laundry, decor.book_pile, bag)
+ON_FLOORS: tuple[ModelFactory, ...] = (
     shoes, bag, carton, laundry, ball, bricks, teddy, decor.book_pile, shoes, bottle,
 )  # fmt: skip
 
 
 def beanbag(rng: np.random.Generator) -> Model:
     """A beanbag: a sack to sit in, 0.9 m across, higher at its back."""
-    cloth = bright(rng)
+    cloth = bright_colour(rng)
     parts = (
         Part((-0.45, -0.44, 0.0, 0.43, 0.44, 0.5), cloth, "fabric", form="ball"),
         Part((-0.40, -0.34, 0.0, 0.36, 0.34, 0.2), cloth, "fabric", form="drum"),
         Part((-0.46, -0.34, 0.2, 0.0, 0.34, 0.82), shade(cloth, 1.06), "fabric", form="ball"),
     )
-    return modelled("beanbag", CHAIR, parts)
+    return make_model("beanbag", CHAIR, parts)
 
 
 def rocking_horse(rng: np.random.Generator) -> Model:
     """A rocking horse of 0.9 m on two curved runners."""
-    coat, mane = (214, 186, 142), bright(rng)
+    coat, mane = (214, 186, 142), bright_colour(rng)
     parts: list[Part | Bar] = []
     for y in (-0.13, 0.13):
         for a, b in ((-0.45, -0.15), (-0.15, 0.15), (0.15, 0.45)):
@@ -190,7 +209,7 @@ def rocking_horse(rng: np.random.Generator) -> Model:
         Bar((-0.32, 0.0, 0.54), (-0.46, 0.0, 0.30), 0.03, mane),
         Part((-0.14, -0.14, 0.58, 0.14, 0.14, 0.67), mane, form="ball"),
     ]
-    return modelled("rocking_horse", OBJS, parts)
+    return make_model("rocking_horse", OBJS, parts)
 
 
 def easel(rng: np.random.Generator) -> Model:
@@ -201,10 +220,10 @@ def easel(rng: np.random.Generator) -> Model:
         Bar((-0.42, 0.0, 0.0), (0.0, 0.0, 1.5), 0.02, WOOD, "wood"),
         Bar((0.16, -0.36, 0.66), (0.16, 0.36, 0.66), 0.025, WOOD, "wood"),
         Part((0.12, -0.30, 0.68, 0.15, 0.30, 1.28), (240, 238, 230)),
-        Part((0.15, -0.2, 0.8, 0.17, 0.02, 1.04), bright(rng), form="ball"),
-        Part((0.15, -0.02, 0.9, 0.17, 0.22, 1.16), bright(rng), form="ball"),
+        Part((0.15, -0.2, 0.8, 0.17, 0.02, 1.04), bright_colour(rng), form="ball"),
+        Part((0.15, -0.02, 0.9, 0.17, 0.22, 1.16), bright_colour(rng), form="ball"),
     ]
-    return modelled("easel", OBJS, parts)
+    return make_model("easel", OBJS, parts)
 
 
 def guitar(rng: np.random.Generator) -> Model:
@@ -220,12 +239,12 @@ def guitar(rng: np.random.Generator) -> Model:
         Bar((0.0, -0.05, 0.1), (0.12, -0.16, 0.02), 0.014, METAL),
         Bar((0.0, 0.05, 0.1), (0.12, 0.16, 0.02), 0.014, METAL),
     ]
-    return modelled("guitar", OBJS, parts)
+    return make_model("guitar", OBJS, parts)
 
 
 def bicycle(rng: np.random.Generator) -> Model:
     """A bicycle on its stand: wheels of 0.66 m, 1.7 m long."""
-    paint, parts = bright(rng), []
+    paint, parts = bright_colour(rng), []
     for middle in (-0.5, 0.5):
         corners = np.linspace(0, 2 * np.pi, 17)
         rim = [(middle + 0.31 * np.cos(a), 0.0, 0.335 + 0.31 * np.sin(a)) for a in corners]
@@ -248,7 +267,7 @@ def bicycle(rng: np.random.Generator) -> Model:
         Bar((-0.06, -0.12, 0.22), (-0.06, 0.12, 0.38), 0.018, METAL),
         Bar((-0.16, 0.0, 0.30), (-0.22, 0.18, 0.012), 0.012, METAL),
     ]
-    return modelled("bicycle", OBJS, parts)
+    return make_model("bicycle", OBJS, parts)
 
 
 def _at(point: tuple[float, ...]) -> tuple[float, float, float]:
@@ -271,13 +290,13 @@ def spiral_shelf(rng: np.random.Generator) -> Model:
         if rng.random() < 0.6:
             x, y = 0.22 * float(np.cos(a)), 0.22 * float(np.sin(a))
             box = (x - 0.05, y - 0.05, z + 0.02, x + 0.05, y + 0.05, z + 0.13)
-            parts.append(Part(box, bright(rng), form="ball"))
-    return modelled("spiral_shelf", FURN, parts)
+            parts.append(Part(box, bright_colour(rng), form="ball"))
+    return make_model("spiral_shelf", FURN, parts)
 
 
-def blob(rng: np.random.Generator) -> Model:
+def sculpture(rng: np.random.Generator) -> Model:
     """A sculpture of balls that grow into each other: no two are alike."""
-    tone: Colour = (200, 196, 188) if rng.random() < 0.5 else bright(rng)
+    tone: Colour = (200, 196, 188) if rng.random() < 0.5 else bright_colour(rng)
     parts, place = [], np.array([0.0, 0.0, 0.22])
     for _ in range(6):
         r = float(rng.uniform(0.12, 0.24))
@@ -285,7 +304,7 @@ def blob(rng: np.random.Generator) -> Model:
         box = (x - r, y - r, max(0.0, z - r), x + r, y + r, z + r)
         parts.append(Part(box, tone, form="ball"))
         place = place + rng.uniform((-0.16, -0.16, 0.0), (0.16, 0.16, 0.2))
-    return modelled("sculpture", OBJS, parts)
+    return make_model("sculpture", OBJS, parts)
 
 
 def cat_tree(rng: np.random.Generator) -> Model:
@@ -300,19 +319,21 @@ def cat_tree(rng: np.random.Generator) -> Model:
         Part((-0.30, -0.30, 1.26, 0.06, 0.06, 1.34), cloth, "fabric", form="drum"),
         Part((-0.28, -0.02, 0.06, 0.02, 0.28, 0.36), shade(cloth, 0.85), "fabric", form="drum"),
     ]
-    return modelled("cat_tree", FURN, parts)
+    return make_model("cat_tree", FURN, parts)
 
 
 def gym_ball(rng: np.random.Generator) -> Model:
     """A big ball to sit on, 0.65 m across."""
-    return modelled(
-        "gym_ball", OBJS, (Part((-0.32, -0.32, 0, 0.32, 0.32, 0.65), bright(rng), form="ball"),)
+    return make_model(
+        "gym_ball",
+        OBJS,
+        (Part((-0.32, -0.32, 0, 0.32, 0.32, 0.65), bright_colour(rng), form="ball"),),
     )
 
 
 def floor_vase(rng: np.random.Generator) -> Model:
     """A big vase with dry twigs."""
-    clay = bright(rng)
+    clay = bright_colour(rng)
     parts: list[Part | Bar] = [
         Part((-0.16, -0.16, 0.0, 0.16, 0.16, 0.5), clay, form="ball"),
         Part((-0.07, -0.07, 0.4, 0.07, 0.07, 0.6), clay, form="drum"),
@@ -321,10 +342,10 @@ def floor_vase(rng: np.random.Generator) -> Model:
     for _ in range(6):
         x, y = (float(value) for value in rng.uniform(-0.24, 0.24, 2))
         parts.append(Bar((0, 0, 0.56), (x, y, float(rng.uniform(0.9, 1.3))), 0.011, (150, 120, 84)))
-    return modelled("floor_vase", OBJS, parts)
+    return make_model("floor_vase", OBJS, parts)
 
 
-ODD: tuple[Maker, ...] = (
-    beanbag, rocking_horse, easel, guitar, bicycle, spiral_shelf, blob, cat_tree, gym_ball,
+IRREGULAR: tuple[ModelFactory, ...] = (
+    beanbag, rocking_horse, easel, guitar, bicycle, spiral_shelf, sculpture, cat_tree, gym_ball,
     floor_vase,
 )  # fmt: skip

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, shade, whole
+from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, round_to_step, shade
 
 TVS, OBJS = int(SemanticClass.TVS), int(SemanticClass.OBJS)
 BLACK: Colour = (26, 27, 30)
@@ -12,8 +12,8 @@ LIGHT: Colour = (255, 240, 205)
 
 def tv(width: float) -> Model:
     """A flat television on a foot."""
-    d, w = 0.24, whole(width)
-    h = whole(w * 0.58) + 0.06
+    d, w = 0.24, round_to_step(width)
+    h = round_to_step(w * 0.58) + 0.06
     parts = (
         Part((-d / 2, -0.28, 0, d / 2, 0.28, 0.02), BLACK),
         Part((-0.02, -0.06, 0.02, 0.02, 0.06, 0.08), BLACK),
@@ -60,7 +60,7 @@ def table_lamp(foot: Colour) -> Model:
 
 def pendant(drop: float, colour: Colour) -> Model:
     """A lamp that hangs from the ceiling by ``drop`` metres."""
-    d, h = 0.40, whole(drop)
+    d, h = 0.40, round_to_step(drop)
     parts = (
         Part((-0.02, -0.02, 0.20, 0.02, 0.02, h), BLACK),
         Part((-d / 2, -d / 2, 0.04, d / 2, d / 2, 0.22), colour),
@@ -71,8 +71,8 @@ def pendant(drop: float, colour: Colour) -> Model:
 
 def plant(height: float, rng: np.random.Generator) -> Model:
     """A plant in a pot: a stem and a bush of leaf boxes in several greens."""
-    d, h = 0.52, whole(height)
-    pot = whole(0.28)
+    d, h = 0.52, round_to_step(height)
+    pot = round_to_step(0.28)
     clay: Colour = (186, 108, 76) if rng.random() < 0.5 else (226, 222, 214)
     parts = [
         Part((-0.16, -0.16, 0, 0.16, 0.16, pot), clay),
@@ -83,8 +83,8 @@ def plant(height: float, rng: np.random.Generator) -> Model:
         Part((-0.14, -0.14, h - 0.24, 0.14, 0.14, h), (80, 142, 70), "fabric"),
     ]
     for _ in range(7):
-        x, y = (whole(float(value)) for value in rng.uniform(-0.18, 0.12, 2))
-        z = whole(pot + 0.08 + float(rng.random()) * (h - pot - 0.3))
+        x, y = (round_to_step(float(value)) for value in rng.uniform(-0.18, 0.12, 2))
+        z = round_to_step(pot + 0.08 + float(rng.random()) * (h - pot - 0.3))
         green: Colour = (50 + int(rng.integers(40)), 104 + int(rng.integers(44)), 56)
         parts.append(Part((x, y, z, x + 0.12, y + 0.12, z + 0.08), green, "fabric"))
     return Model("plant", OBJS, (d, d, h), tuple(parts))
@@ -92,7 +92,7 @@ def plant(height: float, rng: np.random.Generator) -> Model:
 
 def picture(width: float, height: float, rng: np.random.Generator) -> Model:
     """A framed picture: a plain landscape of three bands and a sun."""
-    d, w, h = 0.04, whole(width), whole(height)
+    d, w, h = 0.04, round_to_step(width), round_to_step(height)
     skies: tuple[Colour, ...] = ((150, 190, 214), (226, 196, 160), (190, 204, 196))
     lands: tuple[Colour, ...] = ((84, 116, 90), (176, 112, 74), (66, 92, 120))
     sky, land = skies[int(rng.integers(3))], lands[int(rng.integers(3))]
@@ -101,16 +101,19 @@ def picture(width: float, height: float, rng: np.random.Generator) -> Model:
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), frame),
         Part((0.0, -w / 2 + 0.04, 0.04, d / 2, w / 2 - 0.04, h - 0.04), (240, 238, 232)),
         Part((0.0, -w / 2 + 0.08, 0.08, d / 2, w / 2 - 0.08, h - 0.08), sky),
-        Part((0.0, -w / 2 + 0.08, 0.08, d / 2, w / 2 - 0.08, whole(h * 0.45)), land),
-        Part((0.0, -w / 2 + 0.08, 0.08, d / 2, 0.0, whole(h * 0.3)), shade(land, 0.8)),
-        Part((0.0, 0.04, whole(h * 0.58), d / 2, 0.14, whole(h * 0.58) + 0.1), (244, 214, 130)),
+        Part((0.0, -w / 2 + 0.08, 0.08, d / 2, w / 2 - 0.08, round_to_step(h * 0.45)), land),
+        Part((0.0, -w / 2 + 0.08, 0.08, d / 2, 0.0, round_to_step(h * 0.3)), shade(land, 0.8)),
+        Part(
+            (0.0, 0.04, round_to_step(h * 0.58), d / 2, 0.14, round_to_step(h * 0.58) + 0.1),
+            (244, 214, 130),
+        ),
     )
     return Model("picture", OBJS, (d, w, h), parts)
 
 
 def curtain(width: float, height: float, colour: Colour) -> Model:
     """A curtain in folds."""
-    d, w, h = 0.10, whole(width), whole(height)
+    d, w, h = 0.10, round_to_step(width), round_to_step(height)
     parts = []
     for n, y in enumerate(np.arange(-w / 2, w / 2 - 0.01, 0.06)):
         back = -d / 2 + (0.04 if n % 2 else 0.0)
@@ -122,7 +125,7 @@ def curtain(width: float, height: float, colour: Colour) -> Model:
 
 def crate(size: tuple[float, float, float], colour: Colour) -> Model:
     """A moving box with tape across its top."""
-    d, w, h = (whole(length) for length in size)
+    d, w, h = (round_to_step(length) for length in size)
     parts = (
         Part((-d / 2, -w / 2, 0, d / 2, w / 2, h), colour),
         Part((-d / 2, -0.04, h - 0.02, d / 2, 0.04, h), shade(colour, 1.25)),
@@ -199,11 +202,11 @@ def hood() -> Model:
 
 def door(width: float, height: float, colour: Colour) -> Model:
     """A closed door leaf with panels and a handle, set into its wall."""
-    d, w, h = 0.06, whole(width), whole(height)
+    d, w, h = 0.06, round_to_step(width), round_to_step(height)
     parts = [Part((-d / 2, -w / 2, 0, d / 2 - 0.02, w / 2, h), colour, "wood")]
     for low, high in ((0.16, h * 0.42), (h * 0.5, h - 0.16)):
         for a, b in ((-w / 2 + 0.1, -0.04), (0.04, w / 2 - 0.1)):
-            box = (d / 2 - 0.04, a, whole(low), d / 2 - 0.02, b, whole(high))
+            box = (d / 2 - 0.04, a, round_to_step(low), d / 2 - 0.02, b, round_to_step(high))
             parts.append(Part(box, shade(colour, 0.86), "wood"))
     grip = (d / 2 - 0.02, w / 2 - 0.16, 1.02, d / 2, w / 2 - 0.04, 1.06)
     return Model("door", OBJS, (d, w, h), (*parts, Part(grip, (150, 150, 152))))

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.procgen.rooms.furniture_model import whole
+from world2minecraft.procgen.rooms.furniture_model import round_to_step
 
 TOUCH_M = 1e-6  # Boxes may share a face.
 
@@ -159,7 +159,7 @@ class Ground:
         return level
 
 
-def grown(mask: np.ndarray, steps: int) -> np.ndarray:
+def dilate_mask(mask: np.ndarray, steps: int) -> np.ndarray:
     """Return a bool mask [X, Y] with all squares up to ``steps`` away, corners counted."""
     wider = np.zeros(mask.shape, bool)
     ndimage.binary_dilation(mask, np.ones((2 * steps + 1,) * 2, bool), output=wider)
@@ -217,12 +217,12 @@ def box_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 
 def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     """Return an L: sides a fifth longer than a box's, a corner of a third of each missing."""
-    width, depth = (whole(1.22 * side) for side in size_m[:2])
-    gone_x = whole(width * rng.uniform(0.28, 0.4))
-    gone_y = whole(depth * rng.uniform(0.28, 0.4))
+    width, depth = (round_to_step(1.22 * side) for side in size_m[:2])
+    gone_x = round_to_step(width * rng.uniform(0.28, 0.4))
+    gone_y = round_to_step(depth * rng.uniform(0.28, 0.4))
     x, y = (bool(rng.integers(2)) for _ in range(2))
     block = (
-        *(whole(width - gone_x) if x else 0.0, whole(depth - gone_y) if y else 0.0),
+        *(round_to_step(width - gone_x) if x else 0.0, round_to_step(depth - gone_y) if y else 0.0),
         *(width if x else gone_x, depth if y else gone_y),
     )
     return Ground((width, depth, size_m[2]), (block,))
@@ -233,37 +233,37 @@ def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     width, depth, height = size_m
     drawn = int(rng.integers(3))
     if drawn == 0:
-        leg = whole(rng.uniform(0.8, 1.3))
+        leg = round_to_step(rng.uniform(0.8, 1.3))
         cut = Cut(bool(rng.integers(2)), bool(rng.integers(2)), leg)
         return Ground(size_m, cuts=(cut,))
     if drawn == 1:
-        wide, deep = whole(rng.uniform(1.0, 1.5)), whole(rng.uniform(0.3, 0.46))
-        wide = min(wide, whole(0.5 * width))
+        wide, deep = round_to_step(rng.uniform(1.0, 1.5)), round_to_step(rng.uniform(0.3, 0.46))
+        wide = min(wide, round_to_step(0.5 * width))
         first = _between(width - wide, 0.9, rng)
         return Ground(size_m, ((first, depth - deep, first + wide, depth),))
-    deep, wide = whole(rng.uniform(0.5, 0.9)), whole(rng.uniform(1.6, 2.2))
-    wide = min(wide, whole(0.6 * width))
+    deep, wide = round_to_step(rng.uniform(0.5, 0.9)), round_to_step(rng.uniform(1.6, 2.2))
+    wide = min(wide, round_to_step(0.6 * width))
     first = _between(width - wide, 0.6, rng)
     sides: tuple[Rect, ...] = (
         (0.0, depth, first, depth + deep), (first + wide, depth, width, depth + deep),
     )  # fmt: skip
-    return Ground((width, whole(depth + deep), height), sides)
+    return Ground((width, round_to_step(depth + deep), height), sides)
 
 
 def _between(free_m: float, margin_m: float, rng: np.random.Generator) -> float:
     """Return where something begins that leaves ``free_m`` of a wall, a margin at both ends."""
     margin_m = min(margin_m, 0.5 * free_m)
-    return whole(rng.uniform(margin_m, free_m - margin_m))
+    return round_to_step(rng.uniform(margin_m, free_m - margin_m))
 
 
 def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     """Return an attic: one or two sides under a roof of 35 to 50 degrees above a knee wall."""
     width, depth, height = size_m
     axis = 0 if width >= depth else 1
-    knee = whole(rng.uniform(0.9, 1.4))
-    reach = whole((height - knee) / np.tan(np.radians(rng.uniform(35, 50))))
+    knee = round_to_step(rng.uniform(0.9, 1.4))
+    reach = round_to_step((height - knee) / np.tan(np.radians(rng.uniform(35, 50))))
     both = rng.random() < 0.5
-    reach = min(reach, whole(0.42 * min(width, depth)))  # In the middle one stands upright.
+    reach = min(reach, round_to_step(0.42 * min(width, depth)))  # In the middle one stands upright.
     roofs = [Roof(3 - axis, knee, reach)]
     if both:
         roofs.append(Roof(1 - axis, knee, reach))
@@ -273,10 +273,10 @@ def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
 def columns_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     """Return a room with one or two square columns, off its middle."""
     width, depth, _ = size_m
-    side = whole(rng.uniform(0.28, 0.4))
+    side = round_to_step(rng.uniform(0.28, 0.4))
     blocks = []
     for share_x in (0.3, 0.72)[: 1 + int(rng.integers(2))]:
-        x, y = whole(width * share_x), whole(depth * rng.uniform(0.24, 0.34))
+        x, y = round_to_step(width * share_x), round_to_step(depth * rng.uniform(0.24, 0.34))
         blocks.append((x, y, x + side, y + side))
     return Ground(size_m, tuple(blocks))
 
@@ -301,7 +301,7 @@ def shaped_ground(shape: str, size_m: Size, rng: np.random.Generator) -> Ground:
     return SHAPES[shape](size_m, rng)
 
 
-def shape_of_seed(seed: int) -> str:
+def draw_shape(seed: int) -> str:
     """Return the shape that a seed draws where none is asked for."""
     return sorted(SHAPES)[int(np.random.default_rng([seed, 1 << 20]).integers(len(SHAPES)))]
 

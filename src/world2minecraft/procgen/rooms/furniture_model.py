@@ -54,7 +54,7 @@ class Model:
     parts: tuple[Part | Bar, ...]
 
 
-def moved(part: Part | Bar, shift: tuple[float, ...]) -> Part | Bar:
+def translate_part(part: Part | Bar, shift: tuple[float, ...]) -> Part | Bar:
     """Return a part moved in its model's frame by ``shift``, x y z in metres."""
 
     def put(point: tuple[float, ...]) -> tuple[float, float, float]:
@@ -66,7 +66,7 @@ def moved(part: Part | Bar, shift: tuple[float, ...]) -> Part | Bar:
     return replace(part, box_m=(*put(part.box_m[:3]), *put(part.box_m[3:])))
 
 
-def whole(length_m: float) -> float:
+def round_to_step(length_m: float) -> float:
     """Round a length to a multiple of 2 cm."""
     return round(length_m / STEP_M) * STEP_M
 

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.types import Opening
 from world2minecraft.procgen.rooms.decor import curtain, door
 from world2minecraft.procgen.rooms.floor_shapes import Ground
-from world2minecraft.procgen.rooms.furniture_model import Colour, whole
+from world2minecraft.procgen.rooms.furniture_model import Colour, round_to_step
 from world2minecraft.procgen.rooms.placement import Item, Plan
 
 DOOR_M = (0.90, 2.04)
@@ -46,12 +46,12 @@ def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
     order = [int(wall) for wall in rng.permutation(walls)]
     side = plan.ground.walls[order[0]]
     near = rng.random() < 0.5
-    first = side.first_m + whole(0.2 if near else side.length_m - 0.2 - DOOR_M[0])
+    first = side.first_m + round_to_step(0.2 if near else side.length_m - 0.2 - DOOR_M[0])
     holes = [Hole("door", order[0], first, first + DOOR_M[0], 0.0, DOOR_M[1])]
     for wall in order[1 : 2 + int(rng.integers(2))]:
         side = plan.ground.walls[wall]
-        wide = min(whole(rng.uniform(1.1, 1.6)), whole(side.length_m - 0.5))
-        first = side.first_m + whole(side.length_m / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
+        wide = min(round_to_step(rng.uniform(1.1, 1.6)), round_to_step(side.length_m - 0.5))
+        first = side.first_m + round_to_step(side.length_m / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
         holes.append(Hole("window", wall, first, first + wide, SILL_M, HEAD_M))
     for hole in holes:
         reserve_before(plan, hole)

@@ -15,8 +15,8 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.furniture.layout_checks import overlap_depth_m
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms import decor
-from world2minecraft.procgen.rooms.floor_shapes import TOUCH_M, Box, Ground, Rect, grown
-from world2minecraft.procgen.rooms.furniture_model import STEP_M, Colour, Model, whole
+from world2minecraft.procgen.rooms.floor_shapes import TOUCH_M, Box, Ground, Rect, dilate_mask
+from world2minecraft.procgen.rooms.furniture_model import STEP_M, Colour, Model, round_to_step
 
 TRIES = 40
 SQUARE_M = 0.1
@@ -60,14 +60,14 @@ class Item:
         return self.x_m + float(turned[0]), self.y_m + float(turned[1])
 
 
-def overlap(a: Box, b: Box) -> bool:
+def boxes_intersect(a: Box, b: Box) -> bool:
     """Tell whether two boxes share more than a face."""
     return all(a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3))
 
 
-def meet(a: Item, b: Item) -> bool:
+def items_intersect(a: Item, b: Item) -> bool:
     """Tell whether two items share more than a face, as they are turned."""
-    if not overlap(a.box_m, b.box_m):
+    if not boxes_intersect(a.box_m, b.box_m):
         return False
     if a.yaw_deg % 90 == 0 and b.yaw_deg % 90 == 0:
         return True
@@ -96,7 +96,7 @@ class Plan:
         """
         side = self.ground.walls[wall]
         x, y = side.point(along_m, model.size_m[0] / 2 + gap_m)
-        return snapped(Item(model, x, y, z_m, 90.0 * side.turn))
+        return snap_to_voxels(Item(model, x, y, z_m, 90.0 * side.turn))
 
     def fits(self, item: Item, *, may_block: bool = False, among: list[Item] | None = None) -> bool:
         """Tell whether an item lies in the room and meets nothing (nor a reserved place).
@@ -112,8 +112,8 @@ class Plan:
         kept = [] if may_block else self.reserved
         return (
             inside
-            and not any(overlap(box, other) for other in kept)
-            and not any(meet(item, other) for other in others)
+            and not any(boxes_intersect(box, other) for other in kept)
+            and not any(items_intersect(item, other) for other in others)
         )
 
     def add(self, item: Item | None, *, may_block: bool = False) -> Item | None:
@@ -170,7 +170,7 @@ class Plan:
         for n in self.rng.permutation(len(spots)):
             x, y = spots[int(n)]
             yaw = 0.0 if x < width / 2 else 180.0  # Its front looks into the room.
-            placed = self.add(snapped(Item(model, x, y, 0.0, yaw)))
+            placed = self.add(snap_to_voxels(Item(model, x, y, 0.0, yaw)))
             if placed:
                 return placed
         return None
@@ -182,7 +182,7 @@ class Plan:
         away = anchor.model.size_m[0] / 2 + gap_m + model.size_m[0] / 2
         x, y = anchor.point(away, left_m)
         yaw = anchor.yaw_deg + (180.0 if facing else 0.0)
-        return self.add(snapped(Item(model, x, y, anchor.z_m, yaw % 360)), may_block=True)
+        return self.add(snap_to_voxels(Item(model, x, y, anchor.z_m, yaw % 360)), may_block=True)
 
     def add_upon(
         self, model: Model, base: Item, front_m: float, left_m: float, *, top_m: float | None = None
@@ -190,7 +190,7 @@ class Plan:
         """Put a model on top of another, at a place of the other's frame, facing as it does."""
         x, y = base.point(front_m, left_m)
         top = base.z_m + (base.model.size_m[2] if top_m is None else top_m)
-        return self.add(snapped(Item(model, x, y, top, base.yaw_deg)), may_block=True)
+        return self.add(snap_to_voxels(Item(model, x, y, top, base.yaw_deg)), may_block=True)
 
     def reserve_beside(self, item: Item, width_m: float) -> None:
         """Keep the floor on both sides of an item free."""
@@ -208,10 +208,10 @@ class Plan:
         return (min(ax, bx), min(ay, by), item.z_m, max(ax, bx), max(ay, by), item.z_m + 1.8)
 
     def _is_free(self, box: Box) -> bool:
-        return not any(overlap(box, other.box_m) for other in self.items)
+        return not any(boxes_intersect(box, other.box_m) for other in self.items)
 
 
-def snapped(item: Item) -> Item:
+def snap_to_voxels(item: Item) -> Item:
     """Move an item by under 2 cm, so that its box begins on whole voxels."""
     x0, y0, z0, *_ = item.box_m
 
@@ -223,7 +223,7 @@ def snapped(item: Item) -> Item:
     )
 
 
-def ways_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.24) -> bool:
+def paths_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.24) -> bool:
     """Tell whether a person who comes in at a door reaches most of the free floor.
 
     The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person. All
@@ -252,7 +252,7 @@ def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.n
     free &= (y > body_m) & (y < plan.size_m[1] - body_m)
     if plan.ground.blocks or plan.ground.cuts or plan.ground.roofs:
         low = plan.ground.built(x, y) | (plan.ground.ceiling_m(x, y) < 1.8)
-        free &= ~grown(low, 2)
+        free &= ~dilate_mask(low, 2)
     pits = [(a, b, 0.0, c, d, 1.0) for a, b, c, d in plan.pits]
     for x0, y0, z0, x1, y1, z1 in [*(item.box_m for item in plan.items), *pits]:
         if z0 < 1.9 and z1 > 0.05:
@@ -274,14 +274,14 @@ def chairs_around(plan: Plan, board: Item, chair: Model, *, ends: bool) -> None:
         away = (depth if is_long else width) / 2 + gap + chair.size_m[0] / 2
         x, y = board.point(side * away, place) if is_long else board.point(place, side * away)
         turn = (180.0 if side > 0 else 0.0) if is_long else (-90.0 if side > 0 else 90.0)
-        plan.add(snapped(Item(chair, x, y, 0.0, (board.yaw_deg + turn) % 360)))
+        plan.add(snap_to_voxels(Item(chair, x, y, 0.0, (board.yaw_deg + turn) % 360)))
 
 
 def pendant_over(plan: Plan, board: Item, colour: Colour) -> None:
     """Hang a lamp over the middle of a table."""
     lamp = decor.pendant(plan.size_m[2] - 1.6, colour)
     drop = plan.size_m[2] - lamp.size_m[2]
-    plan.add(snapped(Item(lamp, board.x_m, board.y_m, drop, 0.0)), may_block=True)
+    plan.add(snap_to_voxels(Item(lamp, board.x_m, board.y_m, drop, 0.0)), may_block=True)
 
 
 def pictures_over(plan: Plan, below: Item, z_m: float, count: int = 2) -> None:
@@ -304,4 +304,10 @@ def rug_around(item: Item, front_m: float, aside_m: float, colour: Colour) -> Ru
     """Return a rug that reaches out from under an item."""
     x0, y0, _, x1, y1, _ = item.box_m
     grow_x, grow_y = (front_m, aside_m) if round(item.yaw_deg) % 180 == 0 else (aside_m, front_m)
-    return (whole(x0 - grow_x), whole(y0 - grow_y), whole(x1 + grow_x), whole(y1 + grow_y), colour)
+    return (
+        round_to_step(x0 - grow_x),
+        round_to_step(y0 - grow_y),
+        round_to_step(x1 + grow_x),
+        round_to_step(y1 + grow_y),
+        colour,
+    )

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.procgen.rooms import bathroom as washing
+from world2minecraft.procgen.rooms import children_and_hall as playing
 from world2minecraft.procgen.rooms import decor, seating, storage
-from world2minecraft.procgen.rooms import play_and_hall as playing
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
-from world2minecraft.procgen.rooms.furniture_model import Model, whole
+from world2minecraft.procgen.rooms.furniture_model import Model, round_to_step
 from world2minecraft.procgen.rooms.placement import (
     Item,
     Plan,
@@ -24,7 +24,7 @@ from world2minecraft.procgen.rooms.placement import (
     picture_anywhere,
     pictures_over,
     rug_around,
-    snapped,
+    snap_to_voxels,
 )
 
 BASE_KINDS = ("bed", "dining", "kitchen", "living", "study")
@@ -71,7 +71,7 @@ def _beside_low_table(plan: Plan, low: Item, easy: Model) -> None:
     for side in (1, -1) if plan.rng.random() < 0.5 else (-1, 1):
         away = low.model.size_m[1] / 2 + 0.34 + easy.size_m[0] / 2
         x, y = low.point(0.12, side * away)
-        if plan.add(snapped(Item(easy, x, y, 0.0, (low.yaw_deg - side * 90) % 360))):
+        if plan.add(snap_to_voxels(Item(easy, x, y, 0.0, (low.yaw_deg - side * 90) % 360))):
             return
 
 
@@ -90,7 +90,7 @@ def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     for side in (1, -1):
         aside = side * (width / 2 + stand.size_m[1] / 2 + 0.04)
         x, y = bed.point(back, aside)
-        placed = plan.add(snapped(Item(stand, x, y, 0.0, bed.yaw_deg)), may_block=False)
+        placed = plan.add(snap_to_voxels(Item(stand, x, y, 0.0, bed.yaw_deg)), may_block=False)
         if placed:
             plan.add_upon(decor.table_lamp(style.dark_wood), placed, -0.04, 0.0)
     plan.reserve_beside(bed, 0.5)
@@ -119,7 +119,7 @@ def furnish_kitchen(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     table = seating.table("kitchen_table", 0.8, width, 0.74, style.wood)
     along, away = 0.62 * plan.size_m[1 - wall % 2], 0.68 * plan.size_m[wall % 2]
     x, y = (along, away) if wall == 1 else (away, along)
-    board = plan.add(snapped(Item(table, x, y, 0.0, 90.0 * wall)))
+    board = plan.add(snap_to_voxels(Item(table, x, y, 0.0, 90.0 * wall)))
     if board is None:
         return None
     chairs_around(plan, board, seating.chair(style.wood, style.cloth), ends=False)
@@ -179,7 +179,7 @@ def furnish_dining(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     table = seating.table("dining_table", 0.9, length, 0.74, style.wood)
     yaw = 90.0 if along_x else 0.0
     item = Item(table, plan.size_m[0] / 2, plan.size_m[1] / 2, 0.0, yaw)
-    board = plan.add(snapped(item))
+    board = plan.add(snap_to_voxels(item))
     if board is None:
         return None
     chairs_around(plan, board, seating.chair(style.wood, style.cloth), ends=True)
@@ -278,7 +278,7 @@ def furnish_hall(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     hung = plan.add_at_walls(playing.coats(rng, style.wood), walls, z_m=0.94)
     if hung is not None:
         ahead = hung.point(0.08, 0.0)
-        plan.add(snapped(Item(playing.bench(style.wood), *ahead, 0.0, hung.yaw_deg)))
+        plan.add(snap_to_voxels(Item(playing.bench(style.wood), *ahead, 0.0, hung.yaw_deg)))
     plan.add_at_walls(decor.picture(0.5, 0.6, rng), walls, z_m=1.4)
     plan.add_in_corner(decor.waste_bin((70, 78, 92)))
     middle = plan.ground.walls[1].point(plan.size_m[0] / 2, plan.size_m[1] / 2)
@@ -315,7 +315,7 @@ def furnish_office(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
         plan.add_upon(playing.printer(), chest, 0.0, 0.1)
     table = seating.table("meeting_table", 0.9, 1.2, 0.74, WHITE)
     middle = (plan.size_m[0] * rng.uniform(0.4, 0.6), plan.size_m[1] * rng.uniform(0.4, 0.6))
-    board = plan.add(snapped(Item(table, *middle, 0.0, 90.0 * int(rng.integers(2)))))
+    board = plan.add(snap_to_voxels(Item(table, *middle, 0.0, 90.0 * int(rng.integers(2)))))
     if board is not None:
         chairs_around(plan, board, seating.chair(style.dark_wood, style.cloth), ends=False)
     plan.add_at_walls(playing.whiteboard(), walls, along=(0.5, 0.3, 0.7), z_m=0.94)
@@ -344,7 +344,10 @@ def furnish_children(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     rng = plan.rng
     walls = shuffled_walls(plan)
     bed = plan.add_at_walls(
-        seating.bed(0.9, style.wood, playing.bright(rng)), walls, along=(0.0, 1.0), clear_m=0.3
+        seating.bed(0.9, style.wood, playing.bright_colour(rng)),
+        walls,
+        along=(0.0, 1.0),
+        clear_m=0.3,
     )
     if bed is None:
         return None
@@ -354,15 +357,15 @@ def furnish_children(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
         seating.desk(1.1, style.wood, WHITE), walls[1:], along=(0.5, 0.3, 0.7), clear_m=0.7
     )
     if desk is not None:
-        plan.add_before(seating.chair(style.wood, playing.bright(rng)), desk, 0.06)
+        plan.add_before(seating.chair(style.wood, playing.bright_colour(rng)), desk, 0.06)
         plan.add_upon(decor.table_lamp(style.dark_wood), desk, -0.16, 0.36)
         plan.add_upon(decor.book_pile(rng), desk, 0.0, -0.3)
     plan.add_at_walls(playing.toy_shelf(style.wood, rng), walls, along=(0.5,), clear_m=0.4)
     table = seating.table("play_table", 0.5, 0.6, 0.46, style.wood)
     middle = (plan.size_m[0] * rng.uniform(0.4, 0.6), plan.size_m[1] * rng.uniform(0.4, 0.6))
-    low = plan.add(snapped(Item(table, *middle, 0.0, 0.0)))
+    low = plan.add(snap_to_voxels(Item(table, *middle, 0.0, 0.0)))
     if low is not None:
-        chairs_around(plan, low, playing.stool(playing.bright(rng)), ends=False)
+        chairs_around(plan, low, playing.stool(playing.bright_colour(rng)), ends=False)
     pictures_over(plan, bed, 1.3, count=1)
     x, y = plan.size_m[0] / 2, plan.size_m[1] / 2
     return ((x - 0.9, y - 0.7, x + 0.9, y + 0.7, style.second_cloth),)
@@ -393,6 +396,9 @@ KINDS: dict[str, Kind] = {
 
 def random_size(kind: Kind, rng: np.random.Generator) -> tuple[float, float, float]:
     """Return inner sides and height of a room of a kind, multiples of 2 cm."""
-    short, long = whole(rng.uniform(*kind.short_m)), whole(rng.uniform(*kind.long_m))
-    height = whole(rng.uniform(2.4, 2.7))
+    short, long = (
+        round_to_step(rng.uniform(*kind.short_m)),
+        round_to_step(rng.uniform(*kind.long_m)),
+    )
+    height = round_to_step(rng.uniform(2.4, 2.7))
     return (long, short, height) if rng.random() < 0.6 else (short, long, height)

@@ -9,12 +9,7 @@ from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.procgen.rooms import voxelization as voxels
 from world2minecraft.procgen.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, choose_style
-from world2minecraft.procgen.rooms.floor_shapes import (
-    SHAPES,
-    open_walls,
-    shape_of_seed,
-    shaped_ground,
-)
+from world2minecraft.procgen.rooms.floor_shapes import SHAPES, draw_shape, open_walls, shaped_ground
 from world2minecraft.procgen.rooms.openings import (
     Hole,
     choose_openings,
@@ -22,7 +17,7 @@ from world2minecraft.procgen.rooms.openings import (
     door_step_m,
     hang_curtains,
 )
-from world2minecraft.procgen.rooms.placement import Item, Plan, ways_are_clear
+from world2minecraft.procgen.rooms.placement import Item, Plan, paths_are_clear
 from world2minecraft.procgen.rooms.recipes import BASE_KINDS, KINDS, random_size
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
@@ -82,10 +77,10 @@ def generate_room(
         raise ValueError(f"seed must be 0 or more, not {seed}")
     if not 0 <= clutter <= 1:
         raise ValueError(f"clutter must be from 0 to 1, not {clutter}")
-    kind = kind_of_seed(seed) if kind is None else kind
+    kind = draw_kind(seed) if kind is None else kind
     if kind not in KINDS:
         raise UnknownNameError("room kind", kind, KINDS)
-    shape = shape_of_seed(seed) if shape is None else shape
+    shape = draw_shape(seed) if shape is None else shape
     if shape not in SHAPES:
         raise UnknownNameError("room shape", shape, SHAPES)
     for attempt in range(ATTEMPTS):
@@ -95,7 +90,7 @@ def generate_room(
     raise World2MinecraftError(f"seed {seed} gives no {kind} room; try another seed")
 
 
-def kind_of_seed(seed: int) -> str:
+def draw_kind(seed: int) -> str:
     """Return the kind of room that a seed draws where none is asked for."""
     return sorted(BASE_KINDS)[int(np.random.default_rng(seed).integers(len(BASE_KINDS)))]
 
@@ -110,7 +105,7 @@ def _try_room(
     rugs = recipe.furnish(plan, style)
     # Box rooms keep the narrower way that old seeds were drawn with.
     body_m = NARROW_BODY_M if shape == "box" and kind in BASE_KINDS else WIDE_BODY_M
-    if rugs is None or not ways_are_clear(plan, door_step_m(plan, holes[0]), body_m=body_m):
+    if rugs is None or not paths_are_clear(plan, door_step_m(plan, holes[0]), body_m=body_m):
         return None
     hang_curtains(plan, holes, style.curtain)
     scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), [door_step_m(plan, holes[0])])

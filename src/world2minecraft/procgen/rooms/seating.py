@@ -5,7 +5,14 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, legs, shade, whole
+from world2minecraft.procgen.rooms.furniture_model import (
+    Colour,
+    Model,
+    Part,
+    legs,
+    round_to_step,
+    shade,
+)
 
 CHAIR, BED = int(SemanticClass.CHAIR), int(SemanticClass.BED)
 SOFA, TABLE = int(SemanticClass.SOFA), int(SemanticClass.TABLE)
@@ -55,7 +62,7 @@ def armchair(fabric: Colour, wood: Colour) -> Model:
 
 def sofa(width: float, fabric: Colour, pillow: Colour, wood: Colour) -> Model:
     """A sofa with arms, a cushion for each seat, and two loose pillows."""
-    d, w, h = 0.92, whole(width), 0.84
+    d, w, h = 0.92, round_to_step(width), 0.84
     parts = _upholstery(d, w, h, 3 if w > 2.0 else 2, fabric, wood)
     for y in (-w / 2 + 0.24, w / 2 - 0.62):
         parts.append(Part((-0.22, y, 0.46, -0.10, y + 0.38, 0.78), pillow, "fabric"))
@@ -82,7 +89,7 @@ def _upholstery(d: float, w: float, h: float, seats: int, fabric: Colour, wood: 
 
 def table(name: str, depth: float, width: float, height: float, wood: Colour) -> Model:
     """A table: four legs, an apron and a top."""
-    d, w, h = whole(depth), whole(width), whole(height)
+    d, w, h = round_to_step(depth), round_to_step(width), round_to_step(height)
     under = shade(wood, 0.85)
     apron = Part(
         (-d / 2 + 0.04, -w / 2 + 0.04, h - 0.10, d / 2 - 0.04, w / 2 - 0.04, h - 0.04),
@@ -96,7 +103,7 @@ def table(name: str, depth: float, width: float, height: float, wood: Colour) ->
 
 def desk(width: float, wood: Colour, body: Colour) -> Model:
     """A desk with a side panel, a drawer block and a back panel. Its front is the sitter's side."""
-    d, w, h = 0.70, whole(width), 0.74
+    d, w, h = 0.70, round_to_step(width), 0.74
     parts = [
         Part((-d / 2, -w / 2, h - 0.04, d / 2, w / 2, h), wood, "wood"),
         Part((-d / 2, -w / 2, 0, d / 2 - 0.04, -w / 2 + 0.04, h - 0.04), body),
@@ -113,7 +120,7 @@ def desk(width: float, wood: Colour, body: Colour) -> Model:
 
 def bed(width: float, wood: Colour, blanket: Colour) -> Model:
     """A bed: frame, mattress, pillows, blanket and headboard. Its front is the foot end."""
-    d, w, h = 2.10, whole(width), 1.04
+    d, w, h = 2.10, round_to_step(width), 1.04
     head = -d / 2 + 0.06
     white = (238, 236, 230)
     parts = [

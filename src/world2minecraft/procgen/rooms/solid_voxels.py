@@ -8,18 +8,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
-from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Model, Part, moved
+from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Model, Part, translate_part
 from world2minecraft.procgen.rooms.placement import Item
 
 PROBES = (-1 / 3, 0.0, 1 / 3)  # Of a voxel's side, along each axis.
 ENOUGH = 9  # Of 27: thin boards stay whole when they are turned, and nothing grows fat.
 
 
-def modelled(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
+def make_model(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
     """Return the model of parts that were drawn anywhere: its size is that of its voxels."""
     low = np.array([part.box_m for part in parts])[:, :3].min(axis=0)
     base = Item(Model(name, class_id, (STEP_M, STEP_M, STEP_M), ()), 0.0, 0.0, 0.0, 0.0)
-    begun = [moved(part, tuple((-low).tolist())) for part in parts]
+    begun = [translate_part(part, tuple((-low).tolist())) for part in parts]
     cells = []
     for part in begun:
         first, filled = solid_cells(base, part)
@@ -30,7 +30,9 @@ def modelled(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
     middle[2] = first[2] * STEP_M
     size = tuple(float(side) for side in (last - first) * STEP_M)
     shift = tuple((-middle).tolist())
-    return Model(name, class_id, (size[0], size[1], size[2]), tuple(moved(p, shift) for p in begun))
+    return Model(
+        name, class_id, (size[0], size[1], size[2]), tuple(translate_part(p, shift) for p in begun)
+    )
 
 
 def is_plain(item: Item, part: Part | Bar) -> bool:

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, shade, whole
+from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, round_to_step, shade
 
 FURN = int(SemanticClass.FURN)
 STEEL: Colour = (176, 180, 184)
@@ -18,14 +18,14 @@ BOOKS: tuple[Colour, ...] = (
 
 def bookshelf(width: float, height: float, wood: Colour, rng: np.random.Generator) -> Model:
     """An open shelf with boards and a row of books on each."""
-    d, w, h = 0.32, whole(width), whole(height)
+    d, w, h = 0.32, round_to_step(width), round_to_step(height)
     dark = shade(wood, 0.82)
     parts = [
         Part((-d / 2, -w / 2, 0, d / 2, -w / 2 + 0.04, h), wood, "wood"),
         Part((-d / 2, w / 2 - 0.04, 0, d / 2, w / 2, h), wood, "wood"),
         Part((-d / 2, -w / 2 + 0.04, 0, -d / 2 + 0.02, w / 2 - 0.04, h), dark, "wood"),
     ]
-    boards = [0.06 + whole(0.36) * n for n in range(int((h - 0.10) / 0.36) + 1)]
+    boards = [0.06 + round_to_step(0.36) * n for n in range(int((h - 0.10) / 0.36) + 1)]
     for z in [*boards, h]:
         parts.append(Part((-d / 2, -w / 2, z - 0.04, d / 2, w / 2, z), wood, "wood"))
     for z in boards[:-1] if h - boards[-1] < 0.3 else boards:
@@ -52,7 +52,7 @@ def cabinet(
     name: str, size: tuple[float, float, float], columns: int, rows: int, body: Colour, top: Colour
 ) -> Model:
     """A closed piece with a field of doors or drawers with handles: wardrobe, dresser, TV board."""
-    d, w, h = (whole(length) for length in size)
+    d, w, h = (round_to_step(length) for length in size)
     parts = [
         Part((-d / 2, -w / 2, 0.06, d / 2 - 0.04, w / 2, h - 0.04), shade(body, 0.92), "wood"),
         Part((-d / 2, -w / 2 + 0.02, 0.0, d / 2 - 0.06, w / 2 - 0.02, 0.06), shade(body, 0.5)),
@@ -71,17 +71,17 @@ def _front(x: float, a: float, b: float, low: float, high: float, colour: Colour
     panel = Part((x - 0.02, a + 0.01, low + 0.01, x, b - 0.01, high - 0.01), colour, "wood")
     grip: Colour = (84, 84, 86)
     if high - low > 0.45:
-        middle, edge = (low + high) / 2, whole(b - 0.06)
+        middle, edge = (low + high) / 2, round_to_step(b - 0.06)
         box = (x, edge - 0.02, middle - 0.10, x + 0.02, edge, middle + 0.10)
     else:
-        middle, level = (a + b) / 2, whole(high - 0.06)
+        middle, level = (a + b) / 2, round_to_step(high - 0.06)
         box = (x, middle - 0.08, level - 0.02, x + 0.02, middle + 0.08, level)
     return [panel, Part(box, grip)]
 
 
 def counter(width: float, front: Colour, worktop: Colour, *, sink: bool = False) -> Model:
     """A kitchen base run: plinth, doors with handles, a dark worktop; at will a sink and tap."""
-    d, w, h = 0.64, whole(width), 0.90
+    d, w, h = 0.64, round_to_step(width), 0.90
     parts = [
         Part((-d / 2, -w / 2, 0, d / 2 - 0.10, w / 2, 0.10), DARK),
         Part((-d / 2, -w / 2, 0.10, d / 2 - 0.06, w / 2, 0.86), shade(front, 0.9)),
@@ -125,7 +125,7 @@ def oven(front: Colour, worktop: Colour) -> Model:
 
 def wall_cabinet(width: float, front: Colour) -> Model:
     """A kitchen cupboard that hangs on the wall."""
-    d, w, h = 0.36, whole(width), 0.70
+    d, w, h = 0.36, round_to_step(width), 0.70
     parts = [Part((-d / 2, -w / 2, 0, d / 2 - 0.04, w / 2, h), shade(front, 0.9))]
     doors = max(1, round(w / 0.5))
     edges = np.linspace(-w / 2, w / 2, doors + 1)

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
-from world2minecraft.procgen.rooms.floor_shapes import Ground, Rect, Wall, grown
+from world2minecraft.procgen.rooms.floor_shapes import Ground, Rect, Wall, dilate_mask
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.procgen.rooms.openings import RECESS_M, Hole
 from world2minecraft.procgen.rooms.placement import Item, Rug
@@ -107,7 +107,7 @@ def _outside(labels: np.ndarray) -> np.ndarray:
     """
     floor = np.zeros(labels.shape[:2], bool)
     floor[SHELL:-SHELL, SHELL:-SHELL] = labels[SHELL:-SHELL, SHELL:-SHELL, SHELL] == 0
-    parts, _ = label_components(~grown(floor, SHELL), corners=False)
+    parts, _ = label_components(~dilate_mask(floor, SHELL), corners=False)
     rim = np.concatenate([parts[0], parts[-1], parts[:, 0], parts[:, -1]])
     return np.isin(parts, np.unique(rim[rim > 0]))
 

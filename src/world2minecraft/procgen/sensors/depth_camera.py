@@ -44,7 +44,7 @@ PHONES = ("photo", "photos", "video")  # Without depth; ``photo`` alone states i
 SENSORS = {"rgbd": Sensor(), "clean": CLEAN} | dict.fromkeys(PHONES, CLEAN)
 
 
-def sensor(name: str) -> Sensor:
+def find_sensor(name: str) -> Sensor:
     """Return a sensor by name.
 
     Raises:
@@ -76,10 +76,10 @@ def sense_depth(
     focal_px = fx_px * NATIVE_WIDTH_PX / depth_m.shape[1]
     noise = rng.standard_normal(depth_m.shape, np.float32)
     sensed = depth_m + noise * axial_sigma_m(model, depth_m)
-    sensed = disparity_steps(model, sensed, focal_px)
+    sensed = quantize_disparity(model, sensed, focal_px)
     lost = (depth_m <= 0) | (sensed < model.range_m[0]) | (sensed > model.range_m[1])
     if model.edge_px:
-        lost |= edges(depth_m)
+        lost |= depth_edges(depth_m)
     lost |= _holes(model, depth_m.shape, rng)
     chance = np.maximum(_below(luminance, model.dark_below), _below(cosine, model.grazing_cosine))
     lost |= rng.random(depth_m.shape, np.float32) < chance
@@ -91,7 +91,7 @@ def axial_sigma_m(model: Sensor, depth_m: np.ndarray) -> np.ndarray:
     return np.float32(model.sigma_m) + np.float32(model.sigma_growth) * (depth_m - 0.4) ** 2
 
 
-def disparity_steps(model: Sensor, depth_m: np.ndarray, focal_px: float) -> np.ndarray:
+def quantize_disparity(model: Sensor, depth_m: np.ndarray, focal_px: float) -> np.ndarray:
     """Round depth so that its disparity is a whole number of steps."""
     if not model.disparity_step_px:
         return depth_m
@@ -100,7 +100,7 @@ def disparity_steps(model: Sensor, depth_m: np.ndarray, focal_px: float) -> np.n
     return reach / np.maximum(steps, 1)
 
 
-def edges(depth_m: np.ndarray) -> np.ndarray:
+def depth_edges(depth_m: np.ndarray) -> np.ndarray:
     """Tell which pixels lie at a depth edge: one of their four neighbours is far off."""
     found = np.zeros(depth_m.shape, bool)
     for axis in (0, 1):
@@ -125,9 +125,7 @@ def _below(values: np.ndarray, limit: float) -> np.ndarray:
     return np.clip((limit - values) / np.float32(limit / 2), 0, 1)
 
 
-def jittered_pose(
-    model: Sensor, camera_to_room: np.ndarray, rng: np.random.Generator
-) -> np.ndarray:
+def jitter_pose(model: Sensor, camera_to_room: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the pose that the sensor's tracker states: off by its jitter along each axis."""
     shift = rng.standard_normal(3) * model.jitter_m
     angles = np.radians(rng.standard_normal(3) * model.jitter_deg)

@@ -26,7 +26,7 @@ DOORWAY_M, SLAB_M = 0.4, 0.6  # Walls, and what stairs pass between two storeys,
 
 
 @dataclass(frozen=True, eq=False)
-class Stands:
+class NavMesh:
     """The places of a person's feet and how they are linked.
 
     ``easy`` places lie on a floor with room around the whole body; the others (a stair, a narrow
@@ -45,7 +45,7 @@ class Stands:
         return connected_components(self.links, directed=False)[1]
 
 
-def find_stands(room: Room) -> Stands:
+def build_navmesh(room: Room) -> NavMesh:
     """Return where a person can stand in a room or a house; there may be no place at all."""
     squares = _squares(room)
     below = np.zeros((*squares.shape[:2], squares.shape[2] + 1), np.int32)
@@ -58,7 +58,7 @@ def find_stands(room: Room) -> Stands:
         values[kept] for values in (spots, places_m, storey_room, on_floor)
     )
     easy = on_floor & _is_free_around(room, below, spots, ANKLE_M)
-    return Stands(places_m, easy, storey_room, _links(room, spots, easy))
+    return NavMesh(places_m, easy, storey_room, _links(room, spots, easy))
 
 
 def _squares(room: Room) -> np.ndarray:

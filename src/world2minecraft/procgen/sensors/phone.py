@@ -21,15 +21,10 @@ from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import Camera, View
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.photo import (
-    TexturedScene,
-    developed,
-    exposed,
-    prepare_textured,
-)
-from world2minecraft.procgen.sensors.shots import FrameTruth, Shooting, Shot, room_to_scan
-from world2minecraft.procgen.sensors.trajectory import eyes_m, plan_walk
-from world2minecraft.procgen.sensors.view_planning import Gaze
+from world2minecraft.procgen.sensors.photo import TexturedScene, develop, expose, prepare_textured
+from world2minecraft.procgen.sensors.shots import FrameTruth, ScanSettings, Shot, room_to_scan
+from world2minecraft.procgen.sensors.trajectory import camera_positions_m, plan_walk
+from world2minecraft.procgen.sensors.view_planning import ViewPlanner
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
 TURN = np.radians([14.0, 6.0])  # Of yaw and pitch at most, from one photo to the next.
@@ -46,10 +41,10 @@ MOMENTS = 4  # Rays of a pixel, each at its own moment.
 
 
 @dataclass(frozen=True, eq=False)
-class Film:
+class CameraTrack:
     """Where the camera is and looks at each of F moments, and evenly in between."""
 
-    eyes_m: np.ndarray  # float64 [F, 3]
+    camera_positions_m: np.ndarray  # float64 [F, 3]
     angles: np.ndarray  # float64 [F, 2], yaw (it may exceed a full turn) and pitch in radians
 
     def pose(self, moment: float) -> np.ndarray:
@@ -67,7 +62,7 @@ class Film:
         return look_at(eye, eye + np.array(ahead))
 
 
-def plan_film(
+def plan_camera_track(
     room: Room,
     scene: VoxelScene,
     camera: Camera,
@@ -75,7 +70,7 @@ def plan_film(
     rng: np.random.Generator,
     *,
     smooth: bool,
-) -> Film:
+) -> CameraTrack:
     """Return how a room is filmed in so many pictures.
 
     Args:
@@ -87,10 +82,10 @@ def plan_film(
         smooth: whether it is a video, without jerks; photos are taken one by one.
     """
     walk = plan_walk(room, pictures, rng)
-    eyes = eyes_m(walk.feet_m, rng)
+    eyes = camera_positions_m(walk.feet_m, rng)
     every = LOOK_PICTURES if smooth else LOOK_PHOTOS
     looks = np.unique(np.append(np.arange(0, pictures, every), pictures - 1))
-    gaze = Gaze(scene, camera, walk.pace_m * every, (LOOK_TURN[0], LOOK_TURN[1]))
+    gaze = ViewPlanner(scene, camera, walk.pace_m * every, (LOOK_TURN[0], LOOK_TURN[1]))
     seen = np.array([gaze.turn(eyes[n]) for n in looks])
     seen[:, 0] = np.unwrap(seen[:, 0])
     angles = np.column_stack([np.interp(np.arange(pictures), looks, seen[:, n]) for n in (0, 1)])
@@ -99,21 +94,21 @@ def plan_film(
             ndimage.gaussian_filter1d(track, SMOOTH_PICTURES, axis=0, mode="nearest")
             for track in (eyes, angles)
         )
-    return Film(eyes, angles)
+    return CameraTrack(eyes, angles)
 
 
-def phone_shots(room: Room, how: Shooting) -> Iterator[Shot]:
+def phone_shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
     """Yield a phone's pictures of a room, one at a time, in the order of the walk."""
     scene = prepare_textured(room)
     rng = np.random.default_rng([how.seed, 1])
     video = how.sensor == "video"
-    film = plan_film(room, scene.photos.scene, how.camera, how.planned, rng, smooth=video)
+    film = plan_camera_track(room, scene.photos.scene, how.camera, how.planned, rng, smooth=video)
     to_scan = room_to_scan(how.seed)
     return (_shot(scene, how, film, to_scan, number) for number in range(how.taken))
 
 
 def _shot(
-    scene: TexturedScene, how: Shooting, film: Film, to_scan: np.ndarray, number: int
+    scene: TexturedScene, how: ScanSettings, film: CameraTrack, to_scan: np.ndarray, number: int
 ) -> Shot:
     video = how.sensor == "video"
     true = film.pose(number)
@@ -122,8 +117,8 @@ def _shot(
         off = (np.arange(MOMENTS) - (MOMENTS - 1) / 2) * SHUTTER / MOMENTS
         during = np.array([film.pose(number + part) for part in off])
     rng = np.random.default_rng([how.seed, 3, number])
-    light = exposed(scene, how.camera, during)
-    colour = developed(light, rng, drift=0.0 if video else 1.0)
+    light = expose(scene, how.camera, during)
+    colour = develop(light, rng, drift=0.0 if video else 1.0)
     name = f"frame-{number:06d}"
     view = View(name, to_scan @ true, colour=colour, colour_camera=how.camera)
     return Shot(view, FrameTruth(name, true, 1.0))

@@ -271,7 +271,7 @@ def prepare_textured(room: Room, strength: float = 1.0) -> TexturedScene:
     )
 
 
-def exposed(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) -> np.ndarray:
+def expose(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) -> np.ndarray:
     """Return what falls on the chip, float32 [H, W, 3] of 0 to 255, without noise.
 
     Args:
@@ -293,7 +293,7 @@ def exposed(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) -
     return total / np.float32(len(OFFSETS_PX))
 
 
-def developed(light: np.ndarray, rng: np.random.Generator, drift: float = 1.0) -> np.ndarray:
+def develop(light: np.ndarray, rng: np.random.Generator, drift: float = 1.0) -> np.ndarray:
     """Return the picture that a phone makes of the light, uint8 [H, W, 3].
 
     Args:

@@ -1,6 +1,6 @@
 """The pictures of a virtual scan, one at a time: what the camera hands over, and what is true.
 
-A ``Shooting`` says how a room is scanned; ``room_shots`` plans the tour and takes its pictures.
+A ``ScanSettings`` says how a room is scanned; ``room_shots`` plans the tour and takes its pictures.
 No picture is kept, so a scan of thousands takes no more memory than one of ten.
 """
 
@@ -17,13 +17,13 @@ from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import (
     PHONES,
     Sensor,
-    jittered_pose,
+    find_sensor,
+    jitter_pose,
     scale_factor,
     sense_depth,
-    sensor,
 )
 from world2minecraft.procgen.sensors.photo import Photo, PhotoScene, prepare_photos, take_photo
-from world2minecraft.procgen.sensors.trajectory import plan_tour
+from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 
 FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
 MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.
@@ -34,14 +34,14 @@ PATCH_PX = 8  # Label errors come in patches: a segmenter errs by regions.
 
 
 @dataclass(frozen=True)
-class Shooting:
+class ScanSettings:
     """How a room is scanned; ``scan_room`` explains the fields.
 
     Raises:
         UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
     """
 
-    sensor: str = "rgbd"
+    find_sensor: str = "rgbd"
     frames: int | None = None
     seed: int = 0
     with_labels: bool = False
@@ -52,7 +52,7 @@ class Shooting:
     height: int = 480
 
     def __post_init__(self):
-        sensor(self.sensor)
+        find_sensor(self.sensor)
         if self.frames is not None and self.frames < 1:
             raise ValueError(f"frames must be 1 or more, not {self.frames}")
         if not 0 <= self.label_error <= 1:
@@ -107,11 +107,11 @@ class Shot(NamedTuple):
     truth: FrameTruth
 
 
-def room_shots(room: Room, how: Shooting) -> Iterator[Shot]:
+def room_shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
     """Yield the shots of a depth sensor's scan, one at a time, in the order of the walk."""
     scene = prepare_photos(room)
     rng = np.random.default_rng([how.seed, 1])
-    poses = plan_tour(room, scene.scene, how.camera, how.planned, rng)[: how.taken]
+    poses = plan_trajectory(room, scene.scene, how.camera, how.planned, rng)[: how.taken]
     to_scan = room_to_scan(how.seed)
     return (_shot(room, scene, how, pose, to_scan, n) for n, pose in enumerate(poses))
 
@@ -133,7 +133,7 @@ def room_to_scan(seed: int) -> np.ndarray:
 def _shot(
     room: Room,
     scene: PhotoScene,
-    how: Shooting,
+    how: ScanSettings,
     camera_to_room: np.ndarray,
     to_scan: np.ndarray,
     number: int,
@@ -141,11 +141,11 @@ def _shot(
     # The scale has a source of its own: with and without it the noise is the same.
     scale = scale_factor(how.depth_scale_sigma, np.random.default_rng([how.seed, 4, number]))
     rng = np.random.default_rng([how.seed, 3, number])
-    model, camera = sensor(how.sensor), how.camera
+    model, camera = find_sensor(how.sensor), how.camera
     photo = take_photo(scene, camera, camera_to_room)
     luminance = photo.colour.astype(np.float32) @ LUMINANCE
     depth_m = sense_depth(model, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
-    stated = jittered_pose(model, camera_to_room, rng)
+    stated = jitter_pose(model, camera_to_room, rng)
     view = View(
         name=f"frame-{number:06d}",
         camera_to_scan=to_scan @ stated,

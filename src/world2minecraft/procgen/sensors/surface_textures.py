@@ -19,7 +19,7 @@ FLOOR_SEED = 40  # Of what is no thing; those of things follow.
 
 
 @njit
-def mixed(a, b, c, d):
+def hash_to_unit(a, b, c, d):
     """Return a number from 0 to 1 that belongs to four whole numbers."""
     h = (a * 73856093) ^ (b * 19349663) ^ (c * 83492791) ^ (d * 49979687)
     h = ((h ^ (h >> 15)) * 1274126177) & 0x7FFFFFFF
@@ -51,8 +51,8 @@ def noise(x, y, z, wave, foot, seed):
         for dj in range(2):
             share = (a if di else 1 - a) * (b if dj else 1 - b)
             if share > 0:
-                low = mixed(i + di, j + dj, k, seed)
-                total += share * (low + c * (mixed(i + di, j + dj, k + 1, seed) - low))
+                low = hash_to_unit(i + di, j + dj, k, seed)
+                total += share * (low + c * (hash_to_unit(i + di, j + dj, k + 1, seed) - low))
     return fade * (2.0 * total - 1.0)
 
 
@@ -127,18 +127,18 @@ def _cloth(material, seed, x, y, z, face, foot):
         return plain
     axis = face // 2
     u, v = (y if axis == 0 else x), (y if axis == 2 else z)
-    step = 0.05 + 0.06 * mixed(seed, 1, 0, 0)
+    step = 0.05 + 0.06 * hash_to_unit(seed, 1, 0, 0)
     if foot > step / 2:
         return plain
-    kind = int(3 * mixed(seed, 2, 0, 0))
+    kind = int(3 * hash_to_unit(seed, 2, 0, 0))
     i, j = int(u / step), int(v / step)
     a, b = u / step - i - 0.5, v / step - j - 0.5
     if kind == 0:
-        marked = a * a + b * b < 0.06 + 0.1 * mixed(i, j, seed, 3)
+        marked = a * a + b * b < 0.06 + 0.1 * hash_to_unit(i, j, seed, 3)
     elif kind == 1:
-        marked = abs(a) < 0.1 + 0.2 * mixed(i, seed, 4, 0)
+        marked = abs(a) < 0.1 + 0.2 * hash_to_unit(i, seed, 4, 0)
     else:
-        marked = abs(a) < 0.12 or abs(b) < 0.08 + 0.1 * mixed(j, seed, 5, 0)
+        marked = abs(a) < 0.12 or abs(b) < 0.08 + 0.1 * hash_to_unit(j, seed, 5, 0)
     return plain * (0.78 if marked else 1.04)
 
 
@@ -149,7 +149,7 @@ def _rug(x, y, z, foot):
     i, j = int(x / step), int(y / step)
     a, b = abs(x / step - i - 0.5), abs(y / step - j - 0.5)
     ring = a + b
-    kind = mixed(i, j, 6, 0)
+    kind = hash_to_unit(i, j, 6, 0)
     value = 1.0
     if ring < 0.46:
         value = 0.76 if kind < 0.5 else 1.2
@@ -168,11 +168,11 @@ def _text(seed, x, y, z, face, foot):
     """Rows of dark dashes, as on the backs of books, labels and screens."""
     axis = face // 2
     u, v = (y if axis == 0 else x), (y if axis == 2 else z)
-    block = mixed(int(u / 0.06), int(v / 0.08), seed, 7)
+    block = hash_to_unit(int(u / 0.06), int(v / 0.08), seed, 7)
     value = 0.84 + 0.3 * block
     if block > 0.35 and foot < 0.012:
         row = v / 0.014
-        inked = mixed(int(u / 0.009), int(row), seed, 8) > 0.4
+        inked = hash_to_unit(int(u / 0.009), int(row), seed, 8) > 0.4
         if inked and row - int(row) < 0.55:
             value *= 0.62 if block < 0.8 else 1.3
     return value * (1 + 0.04 * noise(x, y, z, 0.02, foot, 24))
@@ -190,29 +190,36 @@ def poster(u, v, plane, foot, found):
         found: changed where one hangs there.
     """
     cell = int(u / POSTER_STEP_M)
-    if mixed(cell, plane, 9, 0) > POSTER_SHARE:
+    if hash_to_unit(cell, plane, 9, 0) > POSTER_SHARE:
         return False
-    wide, high = 0.35 + 0.4 * mixed(cell, plane, 10, 0), 0.4 + 0.4 * mixed(cell, plane, 11, 0)
-    a = u - cell * POSTER_STEP_M - (POSTER_STEP_M - wide) * (0.1 + 0.8 * mixed(cell, plane, 12, 0))
-    b = v - 1.15 - 0.25 * mixed(cell, plane, 13, 0)
+    wide, high = (
+        0.35 + 0.4 * hash_to_unit(cell, plane, 10, 0),
+        0.4 + 0.4 * hash_to_unit(cell, plane, 11, 0),
+    )
+    a = (
+        u
+        - cell * POSTER_STEP_M
+        - (POSTER_STEP_M - wide) * (0.1 + 0.8 * hash_to_unit(cell, plane, 12, 0))
+    )
+    b = v - 1.15 - 0.25 * hash_to_unit(cell, plane, 13, 0)
     if not (0 <= a < wide and 0 <= b < high):
         return False
     rim = min(a, wide - a, b, high - b)
-    seed = int(1048575 * mixed(cell, plane, 14, 0))
+    seed = int(1048575 * hash_to_unit(cell, plane, 14, 0))
     if rim < 0.012:
-        _paint(found, 0.18 + 0.7 * (mixed(seed, 14, 0, 0) > 0.6), seed, 0.05)
+        _paint(found, 0.18 + 0.7 * (hash_to_unit(seed, 14, 0, 0) > 0.6), seed, 0.05)
     elif rim < 0.04:
         _paint(found, 0.92, seed, 0.02)
     elif b < 0.16 and a < 0.7 * wide and foot < 0.012:
         row = b / 0.02
-        inked = mixed(int(a / 0.008), int(row), seed, 15) > 0.35 and row - int(row) < 0.5
+        inked = hash_to_unit(int(a / 0.008), int(row), seed, 15) > 0.35 and row - int(row) < 0.5
         _paint(found, 0.2 if inked else 0.9, seed, 0.03)
     else:
         broad = noise(a + 3, b + 3, 0.5, 0.16, foot, seed)
         field = broad + 0.6 * noise(a + 3, b + 3, 0.5, 0.05, foot, seed + 1)
         step = int((field + 2.0) * 2.2)
         grain = 0.06 * noise(a + 3, b + 3, 0.5, 0.012, foot, 25)
-        _paint(found, 0.25 + 0.6 * mixed(step, seed, 16, 0) + grain, seed * 7 + step, 0.5)
+        _paint(found, 0.25 + 0.6 * hash_to_unit(step, seed, 16, 0) + grain, seed * 7 + step, 0.5)
     return True
 
 
@@ -220,5 +227,5 @@ def poster(u, v, plane, foot, found):
 def _paint(found, light, seed, colourful):
     """Write a colour of a lightness of 0 to 1 and a hue that belongs to the seed."""
     for n in range(3):
-        hue = (mixed(seed, 17 + n, 0, 0) - 0.5) * colourful
+        hue = (hash_to_unit(seed, 17 + n, 0, 0) - 0.5) * colourful
         found[n] = 255.0 * min(max(light + hue, 0.02), 0.98)

@@ -15,8 +15,8 @@ from scipy.spatial import KDTree
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Layout, Opening
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.navmesh import STEP_M, Stands, find_stands
-from world2minecraft.procgen.sensors.view_planning import Gaze
+from world2minecraft.procgen.sensors.navmesh import STEP_M, NavMesh, build_navmesh
+from world2minecraft.procgen.sensors.view_planning import ViewPlanner
 from world2minecraft.rendering.voxel_camera import VoxelScene
 
 STOPS_PER_M2 = 1.2  # Of free floor; four at least, so that a place is seen from several sides.
@@ -31,16 +31,16 @@ YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 
 
 @dataclass(frozen=True, eq=False)
-class Walk:
+class WalkPath:
     """Where the feet are at each of F moments, evenly spread over the time of the walk."""
 
     feet_m: np.ndarray  # float64 [F, 3]
     pace_m: float  # The way, or what a stay stands for, from one moment to the next.
 
 
-def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> Walk:
+def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> WalkPath:
     """Return a walk through all rooms, ``moments`` long; ``rng`` draws at which door it begins."""
-    places_m, stays = _way(room, find_stands(room), rng)
+    places_m, stays = _way(room, build_navmesh(room), rng)
     steps = np.linalg.norm(np.diff(places_m, axis=0), axis=1)
     steps[steps > JUMP_M] = 0.0  # Where no way leads one is carried, and takes no picture.
     leave = np.cumsum(stays + np.concatenate([[0.0], steps]))
@@ -49,10 +49,10 @@ def plan_walk(room: Room, moments: int, rng: np.random.Generator) -> Walk:
     wanted = (np.arange(moments) + 0.5) / moments * times[-1]
     twice = places_m.repeat(2, axis=0)
     feet_m = np.column_stack([np.interp(wanted, times, twice[:, n]) for n in range(3)])
-    return Walk(feet_m, float(times[-1]) / moments)
+    return WalkPath(feet_m, float(times[-1]) / moments)
 
 
-def _way(room: Room, stands: Stands, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _way(room: Room, stands: NavMesh, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return the places of the way, float64 [N, 3], and how long one stays at each, in metres."""
     stops = _all_stops(room, stands, rng)
     if not stops:
@@ -76,7 +76,7 @@ def _middles(room: Room) -> np.ndarray:
     )  # fmt: skip
 
 
-def _all_stops(room: Room, stands: Stands, rng: np.random.Generator) -> list[int]:
+def _all_stops(room: Room, stands: NavMesh, rng: np.random.Generator) -> list[int]:
     """Return the stops of all rooms in the order of the walk, as indices of places."""
     free = {n: _free_of(stands, n) for n in range(len(room.layouts))}
     left = {n: places for n, places in free.items() if len(places)}
@@ -95,7 +95,7 @@ def _all_stops(room: Room, stands: Stands, rng: np.random.Generator) -> list[int
     return stops
 
 
-def _free_of(stands: Stands, number: int) -> np.ndarray:
+def _free_of(stands: NavMesh, number: int) -> np.ndarray:
     """Return the easy places of a room that hang together, the largest part of them."""
     places = np.flatnonzero(stands.easy & (stands.storey_room == number))
     if not len(places):
@@ -105,7 +105,7 @@ def _free_of(stands: Stands, number: int) -> np.ndarray:
 
 
 def _entrance(
-    room: Room, stands: Stands, free: dict[int, np.ndarray], rng: np.random.Generator
+    room: Room, stands: NavMesh, free: dict[int, np.ndarray], rng: np.random.Generator
 ) -> int:
     """Return the place nearest to a door of the first room that has one, on the lowest floor."""
     layouts = room.layouts
@@ -123,7 +123,7 @@ def _doors(layout: Layout) -> list[Opening]:
     return [opening for opening in layout.openings if opening.kind != "window"]
 
 
-def _stops(stands: Stands, places: np.ndarray, first: int) -> list[int]:
+def _stops(stands: NavMesh, places: np.ndarray, first: int) -> list[int]:
     """Return stops among the places of a room, far from each other, in the order of a short way."""
     points = stands.places_m[places, :2]
     wanted = round(STOPS_PER_M2 * len(places) * STEP_M**2)
@@ -153,7 +153,7 @@ def _short_order(points: np.ndarray, chosen: list[int]) -> list[int]:
     return order
 
 
-def _path(stands: Stands, start: int, end: int) -> list[int]:
+def _path(stands: NavMesh, start: int, end: int) -> list[int]:
     """Return the places after ``start`` up to ``end`` on the shortest way."""
     _, before = dijkstra(stands.links, directed=False, indices=start, return_predecessors=True)
     way, at = [end], int(before[end])
@@ -163,14 +163,14 @@ def _path(stands: Stands, start: int, end: int) -> list[int]:
     return way[::-1]
 
 
-def _smoothed(stands: Stands, way_m: np.ndarray) -> np.ndarray:
+def _smoothed(stands: NavMesh, way_m: np.ndarray) -> np.ndarray:
     """Round the corners of a way; where that would leave the free floor, it stays as it was."""
     smooth = ndimage.uniform_filter1d(way_m, round(SMOOTH_M / STEP_M), axis=0, mode="nearest")
     gap, _ = KDTree(stands.places_m).query(smooth)
     return np.where((gap < STEP_M)[:, None], smooth, way_m)
 
 
-def plan_tour(
+def plan_trajectory(
     room: Room, scene: VoxelScene, camera: Camera, frames: int, rng: np.random.Generator
 ) -> np.ndarray:
     """Return the poses of a tour, float64 [frames, 4, 4], ``camera_to_room``.
@@ -183,9 +183,9 @@ def plan_tour(
         rng: draws the door where the walk begins, the height of the eye and the hand's unrest.
     """
     walk = plan_walk(room, frames, rng)
-    gaze = Gaze(scene, camera, walk.pace_m)
+    gaze = ViewPlanner(scene, camera, walk.pace_m)
     poses = np.empty((frames, 4, 4))
-    for n, eye_m in enumerate(eyes_m(walk.feet_m, rng)):
+    for n, eye_m in enumerate(camera_positions_m(walk.feet_m, rng)):
         yaw, pitch = gaze.turn(eye_m)
         yaw += rng.uniform(-YAW_SPREAD, YAW_SPREAD)
         pitch += rng.uniform(-PITCH_SPREAD, PITCH_SPREAD)
@@ -194,7 +194,7 @@ def plan_tour(
     return poses
 
 
-def eyes_m(feet_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def camera_positions_m(feet_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the places of the camera over the feet, float64 [F, 3]."""
     waves = rng.uniform(0, 2 * np.pi) + np.linspace(0, 4 * np.pi, len(feet_m))
     height = np.clip(rng.uniform(*EYE_M) + SWAY_M * np.sin(waves), *EYE_M)

@@ -24,7 +24,7 @@ NEAR_M, GOOD_M, FAR_M = 0.5, 2.6, 4.5  # Nothing nearer counts; all up to good; 
 FAR_WORTH = 0.25
 SQUARE_COSINE = 0.5  # Surfaces seen more askew than by 60 degrees count less.
 NEW_SIDE = np.array([1.0, 0.35, 0.15, 0.08])  # By the sides from which it was seen before.
-AGAIN = 0.15  # What each look from a side leaves of the worth of the next from there.
+REPEAT_WORTH = 0.15  # What each look from a side leaves of the worth of the next from there.
 TURN_PER_M = np.radians(300.0)  # How far one turns while walking a metre, or staying as long.
 TURN_LIMITS = np.radians([6.0, 100.0])
 CLASS_WORTH = np.ones(12)
@@ -33,7 +33,7 @@ CLASS_WORTH[[int(SemanticClass.WALL), int(SemanticClass.WINDOW)]] = 0.8
 CLASS_WORTH[5:] = 2.0  # Furniture and things.
 
 
-class Gaze:
+class ViewPlanner:
     """The memory of what was seen. One object follows one walk."""
 
     def __init__(
@@ -108,7 +108,7 @@ class Gaze:
         seen = self._seen[patch]
         here = np.take_along_axis(seen, side[..., None], axis=-1)[..., 0]
         others = (seen > 0).sum(axis=-1) - (here > 0)
-        return NEW_SIDE[np.minimum(others, SIDES - 1)] * AGAIN ** here.astype(np.float64)
+        return NEW_SIDE[np.minimum(others, SIDES - 1)] * REPEAT_WORTH ** here.astype(np.float64)
 
     def _windows(self, value: np.ndarray) -> np.ndarray:
         """Return the sum of each picture's window, float64 [pitches, yaws]."""

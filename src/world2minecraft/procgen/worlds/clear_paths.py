@@ -7,18 +7,18 @@ the floor, is not put.
 import numpy as np
 
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom, person_blocks
+from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom, person_size_blocks
 
 KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,
 KEPT_PLACES = 0.95  # and of the places where a person fits that one must still come to.
 
 
-class Ways:
+class ClearPaths:
     """Which columns of each room are taken, and whether its ways are free."""
 
     def __init__(self, house: BlockHouse):
         self.house = house
-        self.body, self.head = person_blocks(house.blocks_per_metre)
+        self.body, self.head = person_size_blocks(house.blocks_per_metre)
         self.taken = [~room.floor(house.size) for room in house.rooms]
         # The first corners of places where a person must be able to stand.
         self.ends: list[list[tuple[int, int]]] = [[] for _ in house.rooms]

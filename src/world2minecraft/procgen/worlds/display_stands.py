@@ -17,7 +17,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.minecraft.block_states import known_blocks
-from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
+from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.house import BlockRoom
 from world2minecraft.procgen.worlds.shell import FACINGS
 
@@ -45,16 +45,16 @@ class Ware:
 
 
 @cache
-def table() -> dict[str, Any]:
+def mount_table() -> dict[str, Any]:
     """Return the table of blocks that stand otherwise than on a board."""
     source = files("world2minecraft.procgen.worlds") / "data" / "wares.json"
     return json.loads(source.read_text("utf-8"))
 
 
 @cache
-def wares() -> tuple[Ware, ...]:
+def load_wares() -> tuple[Ware, ...]:
     """Return all wares, sorted by name."""
-    raw = table()
+    raw = mount_table()
     told: dict[str, Ware] = {}
     for mount in MOUNTS[1:]:
         for states in raw[mount]:
@@ -73,12 +73,12 @@ def wares() -> tuple[Ware, ...]:
 @cache
 def _pile(mount: str) -> list[Ware]:
     if mount != HOME:
-        return [ware for ware in wares() if ware.mount == mount]
-    likes = table()[HOME]
+        return [ware for ware in load_wares() if ware.mount == mount]
+    likes = mount_table()[HOME]
     return [ware for ware in _pile("board") if any(fnmatch(ware.name, like) for like in likes)]
 
 
-class Deck:
+class WareDeck:
     """Wares in a shuffled order, dealt one after another, so that a series shows them all.
 
     Args:
@@ -93,7 +93,7 @@ class Deck:
         for mount in (*MOUNTS, HOME):
             pile = _pile(mount)
             self._piles[mount] = [pile[int(n)] for n in rng.permutation(len(pile))]
-            every = sum(ware.mount == "board" for ware in wares())
+            every = sum(ware.mount == "board" for ware in load_wares())
             self._next[mount] = round(start * len(pile) / every) if len(pile) < every else start
 
     def deal(self, mount: str) -> Ware:
@@ -103,10 +103,10 @@ class Deck:
         return pile[(self._next[mount] - 1) % len(pile)]
 
 
-class Show:
+class StandBuilder:
     """Sets wares, and what they stand on, in the rooms of one house."""
 
-    def __init__(self, furnisher: Furnisher, deck: Deck, rng: np.random.Generator):
+    def __init__(self, furnisher: Furnisher, deck: WareDeck, rng: np.random.Generator):
         self.furnisher, self.deck, self.rng = furnisher, deck, rng
         self.canvas = furnisher.canvas
 
@@ -206,7 +206,9 @@ class Show:
                 return 1
         return 0
 
-    def put_on(self, thing: Thing, mounts: Sequence[str] = ("board",), most: int = 3) -> int:
+    def put_on(
+        self, thing: PlacedFurniture, mounts: Sequence[str] = ("board",), most: int = 3
+    ) -> int:
         """Set wares on top of a thing, with air between; return how many."""
         held = 0
         spots = [

@@ -14,8 +14,8 @@ from world2minecraft.furniture import BlockDesign, template
 from world2minecraft.furniture.block_designs import block_size, lay_template
 from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.clear_paths import Ways
-from world2minecraft.procgen.worlds.furniture_choice import designs_for, dressed
+from world2minecraft.procgen.worlds.clear_paths import ClearPaths
+from world2minecraft.procgen.worlds.furniture_choice import designs_for, recolour_design
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.styles import RoomLook
 
@@ -30,7 +30,7 @@ Corner = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
-class Thing:
+class PlacedFurniture:
     """A piece of furniture in its place: its box of blocks of the house and its front."""
 
     instance: int
@@ -49,8 +49,8 @@ class Furnisher:
     canvas: WorldCanvas
     house: BlockHouse
     looks: tuple[RoomLook, ...]
-    ways: Ways
-    things: list[Thing] = field(default_factory=list)
+    ways: ClearPaths
+    things: list[PlacedFurniture] = field(default_factory=list)
     count: int = 0
     kept: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas: must stay air.
 
@@ -62,7 +62,7 @@ class Furnisher:
         self.count += 1
         return self.count
 
-    def of(self, instance: int) -> Thing:
+    def of(self, instance: int) -> PlacedFurniture:
         """Return a thing by its number."""
         return next(thing for thing in self.things if thing.instance == instance)
 
@@ -100,7 +100,7 @@ class Furnisher:
             ]  # fmt: skip
         size = np.array([span.clip(v) for span, v in zip(made.size_m, size_m, strict=True)])
         found = lay_template(made, block_size(size, self.house.blocks_per_metre), None, turns)
-        return None if found is None else dressed(found, made, self.looks[room.number], rng)
+        return None if found is None else recolour_design(found, made, self.looks[room.number], rng)
 
     def put_at_wall(
         self,
@@ -166,7 +166,7 @@ class Furnisher:
                 return placed
         return 0
 
-    def put_on(self, names: Sequence[str], thing: Thing, rng: np.random.Generator) -> int:
+    def put_on(self, names: Sequence[str], thing: PlacedFurniture, rng: np.random.Generator) -> int:
         """Set one of some small designs on top of a thing; 0 where nothing is free there."""
         room = self.house.rooms[thing.room]
         name = names[int(rng.integers(len(names)))]
@@ -256,7 +256,9 @@ class Furnisher:
         for (x, y, z), block in zip(at.tolist(), found.blocks, strict=True):
             self.canvas.set(self.canvas.at(x, y, z), block.state, class_id, instance, name)
         low, high = at.min(axis=0).tolist(), (at.max(axis=0) + 1).tolist()
-        thing = Thing(instance, name, class_id, room.number, tuple(low), tuple(high), turns)
+        thing = PlacedFurniture(
+            instance, name, class_id, room.number, tuple(low), tuple(high), turns
+        )
         self.things.append(thing)
         return instance
 
@@ -287,7 +289,7 @@ class Furnisher:
         filled = np.flatnonzero(self.canvas.states[x, y, : top + 1])
         return int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
 
-    def _carries(self, place: list[int], found: BlockDesign, thing: Thing) -> bool:
+    def _carries(self, place: list[int], found: BlockDesign, thing: PlacedFurniture) -> bool:
         """Whether each block of a design's foot would stand on a block of the thing."""
         foot = self._cells(found)
         foot = foot[foot[:, 2] == 0] + np.array(place) - [0, 0, 1]

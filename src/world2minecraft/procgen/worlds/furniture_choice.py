@@ -106,7 +106,7 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "washstand": ("pedestal_basin", "vanity", "sink_unit"),
     "whiteboard": ("projector_screen",),
 }  # fmt: skip
-OF_CHOICE = 0.8  # How often a material that follows the room is the room's first.
+FIRST_CHOICE_SHARE = 0.8  # How often a material that follows the room is the room's first.
 
 
 def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
@@ -119,7 +119,7 @@ def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
     return DESIGNS.get(name, ())
 
 
-def dressed(
+def recolour_design(
     design: BlockDesign, template: Template, look: RoomLook, rng: np.random.Generator
 ) -> BlockDesign:
     """Return a design with those of its materials in the room's that take a colour."""
@@ -134,7 +134,7 @@ def dressed(
             shape for n in own if (shape := shape_of(blocks[n].state, material.kind))
         )
         value = values.setdefault(material.kind, _value(material, look, rng))
-        swatch = next((s for s in swatches_of(material.kind, shapes) if s.value == value), None)
+        swatch = next((s for s in find_swatches(material.kind, shapes) if s.value == value), None)
         for n in own:
             shape = shape_of(blocks[n].state, material.kind)
             if shape and swatch:
@@ -142,7 +142,7 @@ def dressed(
     return BlockDesign(tuple(blocks), design.size, design.materials)
 
 
-def swatches_of(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
+def find_swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
     """Return the materials of a kind that have all the shapes, those not chosen by colour too."""
     offered = {s.value: s for s in list_swatches(kind, shapes)}
     for value, blocks in kinds()[kind].blocks.items():
@@ -152,7 +152,7 @@ def swatches_of(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
 
 
 def _value(material: Material, look: RoomLook, rng: np.random.Generator) -> str:
-    first = rng.random() < OF_CHOICE
+    first = rng.random() < FIRST_CHOICE_SHARE
     return {
         "wood": look.wood if first else look.second_wood,
         "cloth": look.cloth if first else look.second_cloth,

@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.display_stands import Deck
+from world2minecraft.procgen.worlds.display_stands import WareDeck
 from world2minecraft.procgen.worlds.house import BlockHouse
 
 DEEP_M = 2.5  # From the outer wall to the hedge.
@@ -105,7 +105,7 @@ def garden_blocks(blocks_per_metre: float) -> int:
 
 
 def put_garden(
-    canvas: WorldCanvas, house: BlockHouse, style: str, deck: Deck, rng: np.random.Generator
+    canvas: WorldCanvas, house: BlockHouse, style: str, deck: WareDeck, rng: np.random.Generator
 ) -> str:
     """Set the garden around a house whose shell stands; return which kind it is."""
     names = SUITS.get(style, ANYWHERE)
@@ -171,7 +171,7 @@ def _plant(
     garden: Garden,
     away: np.ndarray,
     level: int,
-    deck: Deck,
+    deck: WareDeck,
     rng: np.random.Generator,
 ) -> None:
     """Plant wares that need soil, each with its own soil let into the ground."""

@@ -91,11 +91,11 @@ class BlockHouse:
     blocks_per_metre: float
 
 
-def person_blocks(blocks_per_metre: float) -> tuple[int, int]:
+def person_size_blocks(blocks_per_metre: float) -> tuple[int, int]:
     """Return how many blocks, wide and high, a person takes up who walks from block to block.
 
     Example:
-        >>> person_blocks(4.0)
+        >>> person_size_blocks(4.0)
         (3, 8)
     """
     half = WIDTH * blocks_per_metre / 2
@@ -113,7 +113,7 @@ def plan_block_house(
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
     scale = blocks_per_metre
-    height = max(person_blocks(scale)[1] + 1, round(plan.height_m * scale))
+    height = max(person_size_blocks(scale)[1] + 1, round(plan.height_m * scale))
     placed = tuple(_room(number, cell, height, scale) for number, cell in enumerate(plan.cells))
     size = max(room.high[0] for room in placed), max(room.high[1] for room in placed)
     cut = tuple(_gap(gap, placed, plan.cells, scale) for gap in gaps)
@@ -149,7 +149,7 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
     at = int(np.floor((gap.wall.at_m - inward * WALL_M / 2) * scale + 1e-9))
     start_m = (cell.x_m, cell.y_m)[along]
     first = room.low[along] + round((gap.first_m - start_m) * scale)
-    person = person_blocks(scale) if gap.kind != "window" else (1, 1)
+    person = person_size_blocks(scale) if gap.kind != "window" else (1, 1)
     width = max(person[0], round((gap.last_m - gap.first_m) * scale))
     least, most = (
         max(rooms[n].low[along] for n in gap.cells),
@@ -186,7 +186,7 @@ def _flight(
     if plan.flight is None:
         return None
     x0, _, x1, _ = plan.flight.rect
-    hall, (wide, high) = rooms[0], person_blocks(scale)
+    hall, (wide, high) = rooms[0], person_size_blocks(scale)
     bay, corridor_end = hall.blocked[0][:2]
     across = max(wide, min(round((x1 - x0) * scale), bay - hall.low[0] - RAIL - wide))
     # Rows from the hole's first to the first step; the rail is a row before the hole.

@@ -10,9 +10,9 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms.recipes import KINDS
-from world2minecraft.procgen.worlds.display_stands import HOME, Show
-from world2minecraft.procgen.worlds.dressing import hang_one
-from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
+from world2minecraft.procgen.worlds.decoration import hang_one
+from world2minecraft.procgen.worlds.display_stands import HOME, StandBuilder
+from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
 
 BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
@@ -40,7 +40,7 @@ RIMS = (
 )  # fmt: skip
 # Which kind a room of a metric house may become, and how often.
 PICTURES = ("picture", "portrait")
-BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
+KIND_CHANGES: dict[str, tuple[tuple[str, float], ...]] = {
     "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
     "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
     "dining": (
@@ -53,11 +53,11 @@ BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
     "bed": (("children", 0.08),),
     "bathroom": (("laundry", 0.12),),
 }  # fmt: skip
-SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
-SHOWING_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
+WARE_KINDS = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
+WARE_KIND_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
 MANY_ROOMS = 8  # So many have two.
-SPARE = ("children", "dining", "study", "office")  # of these, where it has one.
-MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
+CONVERTIBLE_KINDS = ("children", "dining", "study", "office")  # of these, where it has one.
+EXTRA_DESIGNS: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
     "living": (
         "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
         "grandfather_clock", "corner_sofa", "indoor_tree", "bust", "globe_lamp", "arc_lamp",
@@ -100,11 +100,11 @@ SHELF_M = 1.3
 
 
 @dataclass(frozen=True)
-class Task:
+class RecipeContext:
     """What a recipe works with."""
 
     furnisher: Furnisher
-    show: Show
+    show: StandBuilder
     room: BlockRoom
     rng: np.random.Generator
 
@@ -112,14 +112,14 @@ class Task:
         """Return one of some words."""
         return choices[int(self.rng.integers(len(choices)))]
 
-    def wall(self, *names: str, above_m: float | None = None) -> Thing | None:
+    def wall(self, *names: str, above_m: float | None = None) -> PlacedFurniture | None:
         """Set one of some designs at a wall."""
         scale = self.furnisher.house.blocks_per_metre
         above = None if above_m is None else round(above_m * scale)
         number = self.furnisher.put_at_wall(names, self.room, self.rng, above=above)
         return self.furnisher.of(number) if number else None
 
-    def free(self, *names: str) -> Thing | None:
+    def free(self, *names: str) -> PlacedFurniture | None:
         """Set one of some designs anywhere on the floor."""
         number = self.furnisher.put_free(names, self.room, self.rng)
         return self.furnisher.of(number) if number else None
@@ -129,12 +129,12 @@ class Task:
         for n in range(count):
             hang_one(self.furnisher, self.room, name, (n + 0.5) / count, self.rng)
 
-    def on(self, thing: Thing | None, *names: str) -> None:
+    def on(self, thing: PlacedFurniture | None, *names: str) -> None:
         """Set one of some small designs on a thing."""
         if thing is not None:
             self.furnisher.put_on(names, thing, self.rng)
 
-    def seats(self, table: Thing | None, most: int, *names: str) -> None:
+    def seats(self, table: PlacedFurniture | None, most: int, *names: str) -> None:
         """Set seats of one design around a table, looking at it."""
         if table is None:
             return
@@ -163,7 +163,7 @@ class Task:
         return held
 
 
-def _shop(task: Task) -> None:
+def _shop(task: RecipeContext) -> None:
     task.racks(4)
     counter = task.free("counter", "table_bar", "kitchen_island")
     pillar = task.one(*PILLARS, "barrel", "hay_block", "stripped_spruce_log[axis=y]")
@@ -176,7 +176,7 @@ def _shop(task: Task) -> None:
     task.show.hang_on_walls(task.room, 6, 7)
 
 
-def _storage(task: Task) -> None:
+def _storage(task: RecipeContext) -> None:
     task.racks(2, (0, 2, 4, 6))
     for _ in range(4):
         box = task.wall("crate", "box", "pantry_rack", "blanket_chest", "locker")
@@ -189,7 +189,7 @@ def _storage(task: Task) -> None:
     task.show.hang_on_walls(task.room, 4, 6)
 
 
-def _greenhouse(task: Task) -> None:
+def _greenhouse(task: RecipeContext) -> None:
     rim = task.one(*RIMS)
     task.show.put_trough(task.room, rim, "water", (3, 4))
     for size in ((2, 5), (5, 2), (2, 4), (3, 3)):
@@ -202,7 +202,7 @@ def _greenhouse(task: Task) -> None:
     task.show.hang_from_ceiling(task.room, 8)
 
 
-def _workshop(task: Task) -> None:
+def _workshop(task: RecipeContext) -> None:
     bench = task.wall("table_trestle", "desk_drawers", "dining_table_steel")
     task.on(bench, "desk_lamp", "lantern_lamp")
     task.seats(bench, 1, "stool_lab", "stool")
@@ -216,7 +216,7 @@ def _workshop(task: Task) -> None:
     task.show.hang_on_walls(task.room, 8, 5)
 
 
-def _library(task: Task) -> None:
+def _library(task: RecipeContext) -> None:
     for _ in range(6):
         task.wall("bookcase", "bookcase", "bookcase_low", "cube_shelf", "display_cabinet")
     desk = task.free("desk_partners", "round_table", "desk")
@@ -229,7 +229,7 @@ def _library(task: Task) -> None:
     task.racks(1, (3, 5))
 
 
-def _music(task: Task) -> None:
+def _music(task: RecipeContext) -> None:
     piano = task.free("grand_piano") or task.wall("piano")
     task.seats(piano, 1, "stool_piano")
     task.wall("sofa_chesterfield", "sofa_two_seats", "sofa_leather")
@@ -239,7 +239,7 @@ def _music(task: Task) -> None:
     task.racks(1, (2, 4))
 
 
-def _games(task: Task) -> None:
+def _games(task: RecipeContext) -> None:
     task.free("pool_table", "table_tennis")
     bar = task.wall("table_bar", "counter")
     task.seats(bar, 2, "stool_bar")
@@ -251,7 +251,7 @@ def _games(task: Task) -> None:
     task.show.hang_on_walls(task.room, 5, 6)
 
 
-def _laundry(task: Task) -> None:
+def _laundry(task: RecipeContext) -> None:
     for _ in range(3):
         task.wall("washing_machine", "washer_dryer", "washing_machine")
     task.wall("sink_unit", "pedestal_basin")
@@ -260,7 +260,7 @@ def _laundry(task: Task) -> None:
     task.racks(1, (5,))
 
 
-def _cafe(task: Task) -> None:
+def _cafe(task: RecipeContext) -> None:
     bar = task.wall("counter", "table_bar")
     task.seats(bar, 2, "stool_bar")
     if bar is not None:
@@ -274,7 +274,7 @@ def _cafe(task: Task) -> None:
         task.wall("display_cabinet", "plant", "palm")
 
 
-def _gallery(task: Task) -> None:
+def _gallery(task: RecipeContext) -> None:
     pillar = task.one(*PILLARS)
     for _ in range(14):
         task.show.put_plinth(task.room, pillar, 2 + int(task.rng.integers(3)))
@@ -285,30 +285,30 @@ def _gallery(task: Task) -> None:
     task.show.hang_on_walls(task.room, 6, 6)
 
 
-OWN: dict[str, Callable[[Task], None]] = {
+BLOCK_RECIPES: dict[str, Callable[[RecipeContext], None]] = {
     "shop": _shop, "storage": _storage, "greenhouse": _greenhouse, "workshop": _workshop,
     "library": _library, "music": _music, "games": _games, "laundry": _laundry, "cafe": _cafe,
     "gallery": _gallery,
 }  # fmt: skip
 
 
-def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
+def assign_room_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
     """Return a house of which some rooms are of further kinds; one at least shows wares."""
     rooms = []
     for room in house.rooms:
         kind, draw = room.kind, rng.random()
-        for name, share in BECOMES.get(room.kind, ()):
+        for name, share in KIND_CHANGES.get(room.kind, ()):
             draw -= share
             if draw < 0:
                 kind = name
                 break
         rooms.append(replace(room, kind=kind))
     wanted = 1 + (len(rooms) >= MANY_ROOMS)
-    for _ in range(wanted - sum(room.kind in SHOWING for room in rooms)):
-        changed = [room.number for room in rooms if room.kind in SPARE]
+    for _ in range(wanted - sum(room.kind in WARE_KINDS for room in rooms)):
+        changed = [room.number for room in rooms if room.kind in CONVERTIBLE_KINDS]
         if changed:
             number = changed[int(rng.integers(len(changed)))]
-            kind = SHOWING[int(rng.choice(len(SHOWING), p=SHOWING_SHARES))]
+            kind = WARE_KINDS[int(rng.choice(len(WARE_KINDS), p=WARE_KIND_SHARES))]
             rooms[number] = replace(rooms[number], kind=kind)
     # A metric kind is furnished by the metric plan, which then must know of it.
     cells = tuple(
@@ -318,7 +318,7 @@ def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
     return replace(house, rooms=tuple(rooms), plan=replace(house.plan, cells=cells))
 
 
-def _lay_about(task: Task) -> None:
+def _lay_about(task: RecipeContext) -> None:
     """Put small things of a home on half of the low cupboards and tables of a room."""
     room, furnisher = task.room, task.furnisher
     for thing in [thing for thing in furnisher.things if thing.room == room.number]:
@@ -327,15 +327,15 @@ def _lay_about(task: Task) -> None:
             task.show.put_on(thing, (HOME,), most=1 + int(task.rng.integers(2)))
 
 
-def _high(task: Task) -> int:
+def _high(task: RecipeContext) -> int:
     """Return the layer of a shelf at the height of one's eyes."""
     return round(SHELF_M * task.furnisher.house.blocks_per_metre)
 
 
-def furnish_more(task: Task, wall_lamps: int = 0) -> None:
+def add_furniture(task: RecipeContext, wall_lamps: int = 0) -> None:
     """Set further furniture, pictures, lamps and small wares into a room of a metric kind."""
     room, rng = task.room, task.rng
-    names = MORE.get(room.kind, ())
+    names = EXTRA_DESIGNS.get(room.kind, ())
     for number in rng.permutation(len(names))[: 2 + int(rng.integers(3))].tolist():
         task.wall(names[number])
     _lay_about(task)

@@ -10,7 +10,7 @@ from world2minecraft.procgen.worlds.house import (
     BlockGap,
     BlockHouse,
     BlockRoom,
-    person_blocks,
+    person_size_blocks,
 )
 from world2minecraft.procgen.worlds.styles import RoomLook
 
@@ -157,7 +157,7 @@ def rails(house: BlockHouse) -> list[tuple[tuple[int, int], tuple[int, int]]]:
     if flight is None:
         return []
     upper = next(room for room in house.rooms if room.storey == 1)
-    wide, before = person_blocks(house.blocks_per_metre)[0], flight.hole - RAIL
+    wide, before = person_size_blocks(house.blocks_per_metre)[0], flight.hole - RAIL
     has_beside = upper.blocked[0][0] - flight.x1 >= wide + RAIL
     end = flight.x1 + RAIL * has_beside
     found = []

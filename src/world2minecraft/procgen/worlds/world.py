@@ -18,13 +18,23 @@ from world2minecraft.procgen.houses.rooms import furnish_cells
 from world2minecraft.procgen.rooms.colour_scheme import choose_style
 from world2minecraft.procgen.rooms.placement import Item
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.clear_paths import Ways
-from world2minecraft.procgen.worlds.display_stands import Deck, Show
-from world2minecraft.procgen.worlds.dressing import dress_windows, hang_lamps, hang_leaves, lay_rugs
-from world2minecraft.procgen.worlds.furnishing import Furnisher, Thing
+from world2minecraft.procgen.worlds.clear_paths import ClearPaths
+from world2minecraft.procgen.worlds.decoration import (
+    dress_windows,
+    hang_lamps,
+    hang_leaves,
+    lay_rugs,
+)
+from world2minecraft.procgen.worlds.display_stands import StandBuilder, WareDeck
+from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.garden import garden_blocks, put_garden
 from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom, plan_block_house
-from world2minecraft.procgen.worlds.recipes import OWN, Task, furnish_more, with_own_kinds
+from world2minecraft.procgen.worlds.recipes import (
+    BLOCK_RECIPES,
+    RecipeContext,
+    add_furniture,
+    assign_room_kinds,
+)
 from world2minecraft.procgen.worlds.shell import put_shell, put_stairs, rails
 from world2minecraft.procgen.worlds.styles import RoomLook, Style, draw_look, styles
 
@@ -35,7 +45,7 @@ SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for 
 DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 
 
-def reached_floors(
+def count_reachable_floor(
     volume: BlockVolume, house: BlockHouse, spawn: tuple[float, float, float]
 ) -> list[tuple[int, int]]:
     """Return for each room how many places on its floor are reached, and how many there are.
@@ -50,11 +60,11 @@ def reached_floors(
     if not len(graph):
         return [(0, 0)] * len(house.rooms)
     found = reachable(graph, graph.nearest(spawn))
-    floors = [on_floor(graph, house, room) for room in house.rooms]
+    floors = [floor_places(graph, house, room) for room in house.rooms]
     return [(int((found & floor).sum()), int(floor.sum())) for floor in floors]
 
 
-def spawn_on_foot(volume: BlockVolume, house: BlockHouse) -> Spawn:
+def find_walkable_spawn(volume: BlockVolume, house: BlockHouse) -> Spawn:
     """Return where to stand on the lowest storey, with a way to as much of the house as may be.
 
     It is the place that is nearest to the one with the best sight; that one itself where a person
@@ -62,7 +72,7 @@ def spawn_on_foot(volume: BlockVolume, house: BlockHouse) -> Spawn:
     """
     best = find_spawn(volume)
     graph = walk_graph(volume)
-    floors = np.array([on_floor(graph, house, room) for room in house.rooms])
+    floors = np.array([floor_places(graph, house, room) for room in house.rooms])
     lowest = floors[[room.storey == 0 for room in house.rooms]].any(axis=0)
     if not lowest.any():
         return best
@@ -75,7 +85,7 @@ def spawn_on_foot(volume: BlockVolume, house: BlockHouse) -> Spawn:
     return Spawn((x, y, z), best.yaw_deg)
 
 
-def on_floor(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.ndarray:
+def floor_places(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.ndarray:
     """Return which places of a graph of a house are on the floor of a room, bool [N]."""
     east, up, south = np.array(ROOM_CORNER_BLOCK)
     x = np.floor(graph.feet[:, 0]).astype(int) - east
@@ -95,7 +105,7 @@ class HouseWorld:
     design: np.ndarray  # uint16 [X, Y, Z] in block axes, into ``designs``
     designs: tuple[str, ...]
     house: BlockHouse
-    things: tuple[Thing, ...]
+    things: tuple[PlacedFurniture, ...]
     spawn: Spawn
     style: str
     light: dict[str, Any] = field(default_factory=dict)
@@ -129,14 +139,14 @@ def generate_world(
     drawn = list(styles())[int(rng.integers(len(styles())))]
     chosen = styles()[style or drawn]
     plan = plan_block_house((seed, 2), rooms, storeys, blocks_per_metre)
-    house = with_own_kinds(plan, rng)
+    house = assign_room_kinds(plan, rng)
     light = {"hour": _hour(chosen, rng), "lamps": True}
     looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
-    canvas, ways = WorldCanvas(house, garden_blocks(blocks_per_metre)), Ways(house)
+    canvas, ways = WorldCanvas(house, garden_blocks(blocks_per_metre)), ClearPaths(house)
     put_shell(canvas, house, looks)
     furnisher = Furnisher(canvas, house, looks, ways)
-    dealt = Deck(*(deck or (seed, int(rng.integers(1000)))))
-    show = Show(furnisher, dealt, np.random.default_rng([seed, rooms, storeys, 6]))
+    dealt = WareDeck(*(deck or (seed, int(rng.integers(1000)))))
+    show = StandBuilder(furnisher, dealt, np.random.default_rng([seed, rooms, storeys, 6]))
     _put_flight(furnisher, house, looks[0])
     hang_leaves(furnisher, house.gaps, rng)
     _furnish(furnisher, show, (seed, rooms, storeys, 4), _is_night(light["hour"]))
@@ -144,7 +154,7 @@ def generate_world(
     canvas.settle()
     put_lights(canvas, _footprints(canvas, house))
     volume, design, designs = canvas.finished()
-    spawn = spawn_on_foot(volume, house)
+    spawn = find_walkable_spawn(volume, house)
     things = tuple(furnisher.things)
     return HouseWorld(volume, design, designs, house, things, spawn, chosen.name, light)
 
@@ -190,25 +200,25 @@ def _is_night(hour: int) -> bool:
     return not DAWN <= hour < DUSK
 
 
-def _furnish(furnisher: Furnisher, show: Show, seed: Sequence[int], by_night: bool) -> None:
+def _furnish(furnisher: Furnisher, show: StandBuilder, seed: Sequence[int], by_night: bool) -> None:
     """Furnish each room: the metric kinds by their layout first, the others by their recipe."""
     house = furnisher.house
     rng = np.random.default_rng(seed)
     metric = [choose_style(rng) for _ in house.plan.cells]
-    own_kinds = [room.number for room in house.rooms if room.kind in OWN]
+    own_kinds = [room.number for room in house.rooms if room.kind in BLOCK_RECIPES]
     items, _ = furnish_cells(house.plan, house.gaps_m, metric, 0.0, tuple(seed), own_kinds)
     for room, held in zip(house.rooms, items, strict=True):
         own = np.random.default_rng([*seed, room.number])
-        task = Task(furnisher, show, room, own)
-        if room.kind in OWN:
+        task = RecipeContext(furnisher, show, room, own)
+        if room.kind in BLOCK_RECIPES:
             hang_lamps(furnisher, room, own, by_night=by_night)
-            OWN[room.kind](task)
+            BLOCK_RECIPES[room.kind](task)
         else:
             _put_items(furnisher, room, held, own)
             hang_lamps(furnisher, room, own, by_night=by_night)
         dress_windows(furnisher, room, own)
-        if room.kind not in OWN:
-            furnish_more(task, wall_lamps=3 if by_night else int(own.random() < 0.4))
+        if room.kind not in BLOCK_RECIPES:
+            add_furniture(task, wall_lamps=3 if by_night else int(own.random() < 0.4))
         lay_rugs(furnisher, room, own)
 
 

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.parameters import parameter
 from world2minecraft.core.types import COMPLETED, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 
@@ -21,15 +22,19 @@ MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the s
 class CleanParameters:
     """How the grid is cleaned.
 
-    floater_cells: a part joined to nothing with fewer cells is noise: 6 cells are 24 x 16 x 8 cm,
-        less than a cup with its saucer gives.
-    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner. At
-        0.64, 0.4 and 0.32 m the precision of the shared kitchen's cells, completed ones counted,
-        is 0.988, 0.990 and 0.997.
+    floater_cells: a part joined to nothing with fewer cells is noise.
+    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner.
     """
 
-    floater_cells: int = 6
-    hole_m: float = 0.32
+    floater_cells: int = parameter(
+        6, unit="cells", origin="24 x 16 x 8 cm, less than a cup with its saucer gives"
+    )
+    hole_m: float = parameter(
+        0.32,
+        unit="m",
+        origin="at 0.64, 0.4 and 0.32 m the precision of the shared kitchen's cells, completed "
+        "ones counted, is 0.988, 0.990 and 0.997",
+    )
 
     def __post_init__(self):
         if self.floater_cells < 0:

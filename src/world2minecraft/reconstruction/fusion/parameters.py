@@ -4,78 +4,104 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.parameters import names_where, parameter
 
-_ABOVE_0 = ("hit_log_odds", "limit_log_odds", "pose_m", "sure_m")
-_NOT_BELOW_0 = (
-    "network_weight",
-    "nudge_m",
-    "clear_m",
-    "clear_growth",
-    "sigma_m",
-    "sigma_growth",
-    "pose_growth",
-    "merge_m",
-    "merge_sigmas",
-)
+ABOVE_0, NOT_BELOW_0, SHARE = "above 0", "0 or more", "0 to 1"
 
 
 @dataclass(frozen=True)
 class FuseParameters:
     """How views are fused. docs/fusion.md tells what each figure does to generated rooms.
 
-    voxel_m: the paper's cell, 0.08 m.
-    hit_log_odds, free_log_odds, limit_log_odds: a trial on a synthetic room.
-    network_weight: what the log-odds of a network's grid count. At 0.05 a view that is sure adds
-        or takes 0.2: it carves as one ray does, and a look of depth at a surface outweighs four.
+    voxel_m: the cell.
+    hit_log_odds, free_log_odds, limit_log_odds: what a view that sees a surface adds to a cell,
+        what a ray that crosses it adds, and how far both may go.
+    network_weight: what the log-odds of a network's grid count.
     nudge_m: a surface point belongs to the cell of the matter behind it, this far along its
-        normal: half of the 2 cm sub-cell by which truth is counted.
-    min_share: the part of a cell's face that a view must see of it: at 0.05 edges grow, at 0.15
-        chair legs go.
-    min_points: a single point is noise.
+        normal.
+    min_share: the part of a cell's face that a view must see of it.
+    min_points: the points of a view that a cell needs.
     clear_m, clear_growth: rays stop ``clear_m + clear_growth * distance`` before their point, so
         that noise does not eat the surface.
-    solid_share: a cell is occupied where its surface leaves this share of it solid: 4 of 64
-        sub-cells, the rule by which SSCNet made its labels.
+    solid_share: a cell is occupied where its surface leaves this share of it solid.
     sigma_m, sigma_growth: the standard deviation of depth at z metres is
-        ``sigma_m + sigma_growth * (z - 0.4)^2``, what structured-light cameras are known for.
-    pose_m, pose_growth: that of a view's pose as seen at z metres: ``pose_m + pose_growth * z``;
-        0.0015 is 0.09 degrees.
+        ``sigma_m + sigma_growth * (z - 0.4)^2``.
+    pose_m, pose_growth: that of a view's pose as seen at z metres: ``pose_m + pose_growth * z``.
     merge_m, merge_sigmas: the points of two neighbouring cells along their normal are one surface
         where their planes lie nearer than ``merge_m + merge_sigmas * sigma``.
     sure_m: how far its surface must lie from the rule's edge for one log-odd of certainty.
     """
 
-    voxel_m: float = 0.08
-    hit_log_odds: float = 0.9
-    free_log_odds: float = -0.2
-    limit_log_odds: float = 6.0
-    network_weight: float = 0.05
-    nudge_m: float = 0.01
-    min_share: float = 0.1
-    min_points: int = 2
-    clear_m: float = 0.075
-    clear_growth: float = 0.0
-    solid_share: float = 0.0625
-    sigma_m: float = 0.0012
-    sigma_growth: float = 0.0019
-    pose_m: float = 0.003
-    pose_growth: float = 0.0015
-    merge_m: float = 0.016
-    merge_sigmas: float = 3.0
-    sure_m: float = 0.003
+    voxel_m: float = parameter(
+        0.08, unit="m", origin="the paper's cell", typed="--voxel 0.08", copy_of="voxel_m"
+    )
+    hit_log_odds: float = parameter(
+        0.9, unit="log-odds", origin="a trial on a synthetic room", bounds=ABOVE_0
+    )
+    free_log_odds: float = parameter(-0.2, unit="log-odds", origin="a trial on a synthetic room")
+    limit_log_odds: float = parameter(
+        6.0, unit="log-odds", origin="a trial on a synthetic room", bounds=ABOVE_0
+    )
+    network_weight: float = parameter(
+        0.05,
+        unit="share",
+        origin="a view that is sure adds or takes 0.2: it carves as one ray does, and a look of "
+        "depth at a surface outweighs four",
+        bounds=NOT_BELOW_0,
+    )
+    nudge_m: float = parameter(
+        0.01,
+        unit="m",
+        origin="half of the 2 cm sub-cell by which truth is counted",
+        bounds=NOT_BELOW_0,
+    )
+    min_share: float = parameter(
+        0.1,
+        unit="share",
+        origin="at 0.05 edges grow, at 0.15 chair legs go",
+        bounds=SHARE,
+    )
+    min_points: int = parameter(2, unit="points", origin="a single point is noise")
+    clear_m: float = parameter(
+        0.075, unit="m", origin="the noise of a sensor before a surface", bounds=NOT_BELOW_0
+    )
+    clear_growth: float = parameter(
+        0.0, unit="m per m", origin="a sensor's noise is within clear_m", bounds=NOT_BELOW_0
+    )
+    solid_share: float = parameter(
+        0.0625,
+        unit="share",
+        origin="4 of 64 sub-cells, the rule by which SSCNet made its labels",
+        bounds=SHARE,
+    )
+    sigma_m: float = parameter(
+        0.0012, unit="m", origin="known for structured-light cameras", bounds=NOT_BELOW_0
+    )
+    sigma_growth: float = parameter(
+        0.0019, unit="1/m", origin="known for structured-light cameras", bounds=NOT_BELOW_0
+    )
+    pose_m: float = parameter(0.003, unit="m", origin="poses after registration", bounds=ABOVE_0)
+    pose_growth: float = parameter(
+        0.0015, unit="m per m", origin="0.09 degrees", bounds=NOT_BELOW_0
+    )
+    merge_m: float = parameter(0.016, unit="m", origin="docs/fusion.md", bounds=NOT_BELOW_0)
+    merge_sigmas: float = parameter(
+        3.0, unit="sigmas", origin="nearly all of a surface's noise", bounds=NOT_BELOW_0
+    )
+    sure_m: float = parameter(0.003, unit="m", origin="docs/fusion.md", bounds=ABOVE_0)
 
     def __post_init__(self):
-        for name in _ABOVE_0:
+        for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
                 raise UsageError(f"fuse.{name} must be above 0, not {getattr(self, name):g}")
-        for name in _NOT_BELOW_0:
+        for name in names_where(self, bounds=NOT_BELOW_0):
             if not getattr(self, name) >= 0:
                 raise UsageError(f"fuse.{name} must be 0 or more, not {getattr(self, name):g}")
         if not self.free_log_odds <= 0:
             raise UsageError(f"fuse.free_log_odds must be 0 or less, not {self.free_log_odds:g}")
         if self.min_points < 1:
             raise UsageError(f"fuse.min_points must be 1 or more, not {self.min_points}")
-        for name in ("min_share", "solid_share"):
+        for name in names_where(self, bounds=SHARE):
             if not 0 <= getattr(self, name) <= 1:
                 given = getattr(self, name)
                 raise UsageError(f"fuse.{name} must lie between 0 and 1, not {given:g}")

@@ -3,41 +3,69 @@
 from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.parameters import names_where, parameter
+
+ABOVE_0 = "above 0"
 
 
 @dataclass(frozen=True)
 class FindParameters:
     """How objects are found. Lengths are in cells; docs/sweeps.md has the curves.
 
-    The paper gives no number. Within wide bounds none matters: the steps after the clusters part
-    what they join and join what they part.
+    The paper gives no number. Within wide bounds none matters: the passes after the clusters split
+    what they join and merge what they part.
 
-    density_kernel: k, the side of the uniform kernel; the smallest that sees a neighbourhood.
-        Object F1 at 1, 3 and 5: 0.957, 0.959, 0.956 with 2D labels.
+    density_kernel: k, the side of the uniform kernel.
     density_threshold: tau, as a share of the kernel's cells. A scan shows one-cell shells: a
-        flat one has 9/27, its straight edge 6/27, a lone pole 3/27. 0.2 takes shells with their
-        edges and leaves specks and poles to the growing step; from 0.4 on objects fall apart.
-    cluster_radius: eta, the L2 distance that joins candidates: 2 bridges a one-cell hole. At 1
-        holes part objects, at 4 neighbours merge where labels are poor.
-    min_samples: DBSCAN's core size, the candidate itself included. 4 within two cells is less
-        than any shell has and more than a bridge of noise between two objects; from 8 on thin
-        things have no core.
-    min_cells: an object of fewer cells is a speck: at 0.08 m, 8 cells are the face of a book. 5
-        finds a few cups more with 2D labels (0.962) and takes crumbs for objects with geometric
-        ones (0.761, at 8 0.780).
-    join_radius: cells without an object join one of their class this near: the height of a
-        chair's seat, for legs that a scan has torn off (measured on generated chairs).
+        flat one has 9/27, its straight edge 6/27, a lone pole 3/27.
+    cluster_radius: eta, the L2 distance that joins candidates.
+    min_samples: DBSCAN's core size, the candidate itself included.
+    min_cells: an object of fewer cells is a speck.
+    join_radius: cells without an object join one of their class this near.
     paper_compat: stop where Algorithm 1 stops: each cluster is an object whatever its size,
         and what is not connected with a cluster belongs to none.
     """
 
-    density_kernel: int = 3
-    density_threshold: float = 0.2
-    cluster_radius: float = 2.0
-    min_samples: int = 4
-    min_cells: int = 8
-    join_radius: float = 5.0
-    paper_compat: bool = False
+    density_kernel: int = parameter(
+        3,
+        unit="cells",
+        origin="the smallest that sees a neighbourhood; object F1 at 1, 3 and 5: 0.957, 0.959, "
+        "0.956 with 2D labels",
+    )
+    density_threshold: float = parameter(
+        0.2,
+        unit="share",
+        origin="takes shells with their edges and leaves specks and poles to the growing step; "
+        "from 0.4 on objects fall apart",
+    )
+    cluster_radius: float = parameter(
+        2.0,
+        unit="cells",
+        origin="bridges a one-cell hole; at 1 holes part objects, at 4 neighbours merge where "
+        "labels are poor",
+        bounds=ABOVE_0,
+    )
+    min_samples: int = parameter(
+        4,
+        unit="cells",
+        origin="less than any shell has within two cells and more than a bridge of noise between "
+        "two objects; from 8 on thin things have no core",
+        bounds=ABOVE_0,
+    )
+    min_cells: int = parameter(
+        8,
+        unit="cells",
+        origin="at 0.08 m the face of a book; 5 finds a few cups more with 2D labels (0.962) and "
+        "takes crumbs for objects with geometric ones (0.761, at 8 0.780)",
+        bounds=ABOVE_0,
+    )
+    join_radius: float = parameter(
+        5.0,
+        unit="cells",
+        origin="the height of a chair's seat, for legs that a scan has torn off; measured on "
+        "generated chairs",
+    )
+    paper_compat: bool = parameter(False)
 
     def __post_init__(self):
         if self.density_kernel < 1 or self.density_kernel % 2 == 0:
@@ -48,7 +76,7 @@ class FindParameters:
             raise UsageError(
                 f"find.density_threshold must lie between 0 and 1, not {self.density_threshold}"
             )
-        for name in ("cluster_radius", "min_samples", "min_cells"):
+        for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
                 raise UsageError(f"find.{name} must be above 0, not {getattr(self, name)}")
         if not self.join_radius >= 0:

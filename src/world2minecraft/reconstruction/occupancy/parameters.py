@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from world2minecraft.core.parameters import parameter
+
 
 @dataclass(frozen=True)
 class OccupyParameters:
@@ -13,7 +15,7 @@ class OccupyParameters:
     network: its ONNX file; that which is shipped where empty.
     """
 
-    semantics: str = ""
-    label_names: str = ""
-    mono_votes: bool = False
-    network: str = ""
+    semantics: str = parameter("")
+    label_names: str = parameter("")
+    mono_votes: bool = parameter(False)
+    network: str = parameter("")

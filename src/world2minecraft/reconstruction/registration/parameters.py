@@ -3,36 +3,50 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from world2minecraft.core.parameters import names_where, parameter
+
+ABOVE_0, BELOW_HALF = "above 0", "0 to 0.5"
+
 
 @dataclass(frozen=True)
 class RegisterParameters:
     """How poses and depth scales are refined against the map.
 
     passes: rounds of "who sees the same surface" and "move all frames"; 0 leaves the scan as it
-        is. After five a generated room's poses moved by under 0.1 mm.
+        is.
     cell_m: width of a surfel; a bit of surface that may be taken for flat.
     jitter_m, jitter_deg: how far poses are off, one sigma an axis, until the scan tells better.
     scale_sigma: how far depth scales are off, likewise; 0 never touches the depth.
     least_scale_sigma: a spread below this is no fault of the depth but of what is taken for flat.
-        Of generated scans without any, 0.1 % was found.
     held_share: the part of the surface that only judges.
     """
 
-    passes: int = 5
-    cell_m: float = 0.10
-    jitter_m: float = 0.008
-    jitter_deg: float = 0.3
-    scale_sigma: float = 0.03
-    least_scale_sigma: float = 0.003
-    held_share: float = 0.15
+    passes: int = parameter(5, origin="after five a generated room's poses moved by under 0.1 mm")
+    cell_m: float = parameter(0.10, unit="m", origin="flat within a sensor's noise", bounds=ABOVE_0)
+    jitter_m: float = parameter(
+        0.008, unit="m", origin="a first guess; docs/alignment.md", bounds=ABOVE_0
+    )
+    jitter_deg: float = parameter(
+        0.3, unit="degrees", origin="a first guess; docs/alignment.md", bounds=ABOVE_0
+    )
+    scale_sigma: float = parameter(
+        0.03, unit="share", origin="a first guess; docs/alignment.md", bounds=BELOW_HALF
+    )
+    least_scale_sigma: float = parameter(
+        0.003,
+        unit="share",
+        origin="of generated scans without any, 0.1 % was found",
+        bounds=BELOW_HALF,
+    )
+    held_share: float = parameter(0.15, unit="share", origin="docs/alignment.md", bounds=BELOW_HALF)
 
     def __post_init__(self):
         if not 0 <= self.passes <= 20:
             raise ValueError(f"passes must be 0 to 20, not {self.passes}")
-        for name in ("cell_m", "jitter_m", "jitter_deg"):
+        for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} must be above 0, not {getattr(self, name)}")
-        for name in ("scale_sigma", "least_scale_sigma", "held_share"):
+        for name in names_where(self, bounds=BELOW_HALF):
             if not 0 <= getattr(self, name) < 0.5:
                 raise ValueError(f"{name} must be 0 to 0.5, not {getattr(self, name)}")
 

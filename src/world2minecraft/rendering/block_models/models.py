@@ -9,8 +9,8 @@ import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.rules.light import BRIGHTEST, light_of
-from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes_of
+from world2minecraft.minecraft.rules.light import BRIGHTEST, emitted_light
+from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes
 from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     BlockModel,
@@ -305,7 +305,7 @@ def model_of(state: str) -> BlockModel:
 
 def _context_of(state: BlockState, rule: ModelRule | None) -> PartContext:
     values = values_of(state.name, _known_values(state))
-    light = BRIGHTEST if is_luminous(str(state)) else light_of(str(state))
+    light = BRIGHTEST if is_luminous(str(state)) else emitted_light(str(state))
     skin = PLAIN if rule is None or rule.skin is None else rule.skin
     return PartContext(state.name, values, skin, {} if rule is None else rule.skins, light)
 
@@ -318,7 +318,7 @@ def _known_values(state: BlockState) -> dict[str, str]:
 
 
 def _visual_elements(state: BlockState, dress: PartContext, glows: bool) -> list[Element]:
-    boxes = visual_boxes_of(str(state)).astype(float) * 16
+    boxes = visual_boxes(str(state)).astype(float) * 16
     return [box_element(box[:3], box[3:], {"glow": glows}, dress) for box in boxes.tolist()]
 
 

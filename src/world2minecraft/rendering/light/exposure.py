@@ -8,7 +8,7 @@ them were grey.
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import SHUT, SOLID, steps_of
+from world2minecraft.minecraft.rules.light import SHUT, SOLID, neighbour_steps
 from world2minecraft.rendering.light.light_field import LightField
 from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
 from world2minecraft.rendering.light.settings import LightSettings
@@ -96,7 +96,7 @@ def _cells_near_eyes(field: LightField, eyes: np.ndarray) -> np.ndarray:
     if not inside.any():
         return np.empty(0, np.int64)
     starts = np.unique(np.ravel_multi_index(tuple(cells[inside].T), field.kinds.shape))
-    kinds, steps = field.kinds.reshape(-1), steps_of(field.kinds.shape)
+    kinds, steps = field.kinds.reshape(-1), neighbour_steps(field.kinds.shape)
     return _reachable_near_surfaces(kinds, field.words, steps, starts, REACH_BLOCKS)
 
 

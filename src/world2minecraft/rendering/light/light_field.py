@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import SOLID, with_margin
+from world2minecraft.minecraft.rules.light import SOLID, pad_margin
 from world2minecraft.rendering.light.propagation import (
     flood_block,
     flood_sky,
@@ -145,7 +145,7 @@ def light_field(
         raise ValueError(f"a palette may have {MAX_STATES:,} states, not {len(palette):,}")
     reach = rounded_reach(reach)
     words, gives = light_tables(palette, hidden_lamps)
-    kinds = with_margin(states.astype(np.uint16) + np.uint16(1), 0)
+    kinds = pad_margin(states.astype(np.uint16) + np.uint16(1), 0)
     sky = flood_sky(kinds, words, reach)
     block = flood_block(kinds, words, gives, reach)
     lattice = np.zeros((3, *kinds.shape), np.uint16)

@@ -19,10 +19,10 @@ from world2minecraft.minecraft.rules.light import (
     DIMS,
     SHUT,
     SOLID,
+    emitted_light,
+    flood_light,
     lets_light_through,
-    light_of,
-    spread,
-    steps_of,
+    neighbour_steps,
 )
 
 # What block states are to light: what each gives, and which way it lets light through.
@@ -74,7 +74,7 @@ def light_tables(
     """
     words = [SHUT, *map(opacity_word, palette)]
     gives = [
-        0 if state.partition("[")[0] == HIDDEN_LAMP and not hidden_lamps else light_of(state)
+        0 if state.partition("[")[0] == HIDDEN_LAMP and not hidden_lamps else emitted_light(state)
         for state in palette
     ]
     return np.array(words, np.uint32), np.array([0, *gives], np.uint8)
@@ -113,12 +113,12 @@ def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.nd
     top = light_units(BRIGHTEST, reach)
     sky = np.full(kinds.shape, top, np.uint8)
     sky[1:-1, 1:-1, 1:-1] = 0
-    steps = steps_of(kinds.shape)
+    steps = neighbour_steps(kinds.shape)
     if sky[1:-1, 1:-1, 1:-1].size:
         _light_from_above(sky, kinds, words, top)
         flat = sky.reshape(-1)
         seeds = _light_from_sides(sky, flat, kinds.reshape(-1), words, steps, top)
-        spread(flat, kinds.reshape(-1), words, steps, seeds)
+        flood_light(flat, kinds.reshape(-1), words, steps, seeds)
     return sky
 
 
@@ -132,7 +132,7 @@ def flood_block(
     unit = np.array([light_units(level, reach) for level in range(BRIGHTEST + 1)], np.uint8)
     light = unit[gives][kinds]
     flat = light.reshape(-1)
-    spread(flat, kinds.reshape(-1), words, steps_of(kinds.shape), np.flatnonzero(flat))
+    flood_light(flat, kinds.reshape(-1), words, neighbour_steps(kinds.shape), np.flatnonzero(flat))
     return light
 
 

@@ -7,7 +7,7 @@ shines around it then spreads back in. The result is that of a whole new flood.
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.rules.light import spread, steps_of
+from world2minecraft.minecraft.rules.light import flood_light, neighbour_steps
 from world2minecraft.rendering.light.light_field import (
     MAX_STATES,
     LightField,
@@ -96,13 +96,13 @@ def _add_states(field: LightField, palette: tuple[str, ...]) -> None:
 
 def _relight(light, kinds, words, gives, low, high, top: int) -> None:
     """Renew one kind of light; ``top`` is the sky's full light, 0 for the light of blocks."""
-    flat, steps = light.reshape(-1), steps_of(light.shape)
+    flat, steps = light.reshape(-1), neighbour_steps(light.shape)
     ranges = [np.arange(a, b) for a, b in zip(low, high, strict=True)]
     cells = np.ravel_multi_index(np.meshgrid(*ranges, indexing="ij"), light.shape).reshape(-1)
     rows = kinds.reshape(-1)
     dark, edge = _darken(flat, rows, steps, cells, top)
     seeds = _find_seeds(flat, rows, words, gives, steps, dark, edge, top)
-    spread(flat, rows, words, steps, seeds)
+    flood_light(flat, rows, words, steps, seeds)
 
 
 @njit

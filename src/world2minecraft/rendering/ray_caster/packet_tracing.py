@@ -1,10 +1,12 @@
-"""Bundles of rays: what all pixels of a small tile have in common, found once for the tile.
+"""Trace packets of rays: what the pixels of a small tile share is found once for the tile.
 
 Empty boxes are convex. Where the four corner rays of a tile leave a box by the same face, all rays
-between them do, and none has met anything on the way. So a bundle goes from box to box until the
-cells before it are all full cubes, and then every pixel's hit is one plane; or until they differ,
-and then each pixel goes on alone from the box that was reached.
+between them do, and none has hit anything on the way. So a packet goes from box to box until all
+cells ahead are full cubes, and then every pixel hits one plane; or until they differ, and then
+each ray is traced alone from the box that was reached.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,50 +14,57 @@ from world2minecraft.core.jit import inlined, lean
 from world2minecraft.rendering.ray_caster.ray import OUTSIDE, away_from_zero, floor_clamped
 from world2minecraft.rendering.scene_tables import FULL, NO_FACE
 
-# What a bundle meets.
-DIVERGED = 0  # Each ray goes on alone.
-PLANE = 1  # Full cubes behind one plane.
-MISS = 2  # It leaves the grid.
-MAX_PLANE_CELLS = 64  # Cells of a plane that are looked at.
-MAX_BOXES = 64  # Of air, in a row.
+# Values of ``PacketHit.mode``.
+DIVERGED = 0  # Each ray is traced alone.
+PLANE = 1  # All rays hit full cubes behind one plane.
+MISS = 2  # All rays leave the grid.
+MAX_PLANE_CELLS = 64  # Larger parts of a plane are not tested.
+MAX_BOXES = 64  # Empty boxes that a packet crosses.
+
+
+class PacketHit(NamedTuple):
+    """How far a packet stays together: it enters the layer of cells ``layer`` by ``face``."""
+
+    mode: int
+    face: int
+    layer: int
 
 
 @lean
 def trace_packet(space, bounds, corners, cells):
-    """Return ``(mode, face, layer)`` of a bundle: the face by which it enters ``layer``.
+    """Return the ``PacketHit`` of a packet.
 
     Args:
         space: int32 [X, Y, Z].
         bounds: int16 [V, 6].
         corners: float64 [4, 6], origin and direction of the four corner rays, which all begin in
-            one box; where they do not, or where nothing is in common, the answer is
-            ``(ALONE, NO_FACE, 0)``.
+            one box; where they do not, the result is ``(DIVERGED, NO_FACE, 0)``.
         cells: int64 [4, 3]; its first two rows become the first and the last of the cells of
-            ``layer`` that the bundle covers; the others are scratch.
+            ``layer`` that the packet covers; the others are scratch.
     """
     row = _box_of_origins(space, bounds, corners)
     face, layer = NO_FACE, 0
     if row < 0:
-        return DIVERGED, NO_FACE, 0
+        return PacketHit(DIVERGED, NO_FACE, 0)
     low, high = cells[2], cells[3]
     for _ in range(MAX_BOXES):
         ahead = _common_exit(bounds, row, corners, low, high)
         if ahead == NO_FACE:
-            return DIVERGED, face, layer
+            return PacketHit(DIVERGED, face, layer)
         axis = ahead // 2
         behind = int(bounds[row, axis + 3]) if ahead % 2 == 0 else int(bounds[row, axis]) - 1
         if behind < 0 or behind >= space.shape[axis]:
-            return MISS, ahead, behind
+            return PacketHit(MISS, ahead, behind)
         low[axis], high[axis] = behind, behind
         kind = _uniform_kind(space, bounds, low, high)
         if kind != FULL and kind < 0:
-            return DIVERGED, face, layer
+            return PacketHit(DIVERGED, face, layer)
         for axis in range(3):
             cells[0, axis], cells[1, axis] = low[axis], high[axis]
         if kind == FULL:
-            return PLANE, ahead, behind
+            return PacketHit(PLANE, ahead, behind)
         row, face, layer = kind, ahead, behind
-    return DIVERGED, face, layer
+    return PacketHit(DIVERGED, face, layer)
 
 
 @inlined

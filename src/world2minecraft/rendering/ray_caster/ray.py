@@ -1,10 +1,12 @@
-"""One ray through a scene of blocks: empty boxes are crossed at a step, elements are met exactly.
+"""Intersect one ray with a scene: empty boxes are crossed in one step, elements are tested exactly.
 
 Coordinates are those of the grid: cell (i, j, k) spans [i, i + 1]. ``t`` counts in lengths of the
 direction; a direction whose camera z is 1 gives z-depth. Scalars are float64: on a CPU that costs
-no time in scalar code, and the ids come out exact. Directions have no component of exactly 0
+no time in scalar code, and ids are exact. Directions have no component of exactly 0
 (``away_from_zero``), so that their reciprocals are finite.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,16 +23,79 @@ from world2minecraft.rendering.scene_tables import (
     TURN,
 )
 
-OUTSIDE = -3  # What ``cross_air`` gives as kind where the ray has left the grid.
-SOLID = 250  # Alpha of a texel of glass from which on nothing is seen behind it.
+OUTSIDE = -3  # The kind that ``cross_air`` returns where the ray has left the grid.
+SOLID = 250  # Texels of glass with at least this alpha are opaque.
 _TINY = 1e-12
-_SLACK = 1e-9  # Cells: how far a standing box may be met outside the cell that lists it.
+_SLACK = 1e-9  # Cells: how far outside the cell that lists it a freestanding box may be met.
+
+
+class Ray(NamedTuple):
+    """Origin, direction and reciprocal direction of a ray, in the grid; see ``make_ray``."""
+
+    ox: float
+    oy: float
+    oz: float
+    dx: float
+    dy: float
+    dz: float
+    rx: float
+    ry: float
+    rz: float
+
+
+class GridCamera(NamedTuple):
+    """A camera as the kernels read it."""
+
+    pose: np.ndarray  # float64 [3, 4]: camera (z forward, metres) to grid
+    rays: np.ndarray  # float64 [4]: fx, fy, cx, cy in pixels, or pixels per metre if orthographic
+    spread: float  # 1 for a pinhole camera, 0 for parallel rays
+
+
+class Hit(NamedTuple):
+    """Where a ray is: in cell (i, j, k) at ``t``, which it entered by ``face``.
+
+    Of a surface, ``face`` is the face that is hit and ``element`` the element, -1 for a full cube.
+    ``NO_FACE`` stands for no surface, or for a ray that begins in the cell; i is -1 for a ray that
+    misses the grid.
+    """
+
+    t: float
+    i: int
+    j: int
+    k: int
+    face: int
+    element: int
+
+
+class ElementTables(NamedTuple):
+    """The fields of ``SceneTables`` that ``intersect_elements`` reads.
+
+    A call that is not inlined copies every array it is given: the whole tables cost twice as many.
+    """
+
+    looks: np.ndarray
+    look_start: np.ndarray
+    refs: np.ndarray
+    boxes: np.ndarray
+    traits: np.ndarray
+    turns: np.ndarray
+    layers: np.ndarray
+    uv: np.ndarray
+    texels: np.ndarray
+    translucent: np.ndarray
 
 
 @inlined
 def away_from_zero(d):
     """Return a direction's component, moved away from 0."""
     return d if abs(d) > _TINY else _TINY
+
+
+@inlined
+def make_ray(ox, oy, oz, dx, dy, dz):
+    """Return the ``Ray`` of an origin and a direction."""
+    dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
+    return Ray(ox, oy, oz, dx, dy, dz, 1.0 / dx, 1.0 / dy, 1.0 / dz)
 
 
 @inlined
@@ -50,6 +115,14 @@ def not_behind(cell, found, d):
 
 
 @inlined
+def ray_of_camera(camera, u, v):
+    """Return the ``Ray`` of a place (u, v) of a picture, in pixels."""
+    x, y = (u - camera.rays[2]) / camera.rays[0], (v - camera.rays[3]) / camera.rays[1]
+    ox, oy, oz, dx, dy, dz = ray_of_pixel(camera.pose, x, y, camera.spread)
+    return make_ray(ox, oy, oz, dx, dy, dz)
+
+
+@inlined
 def ray_of_pixel(pose, x, y, spread):
     """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
     sx, sy = x * (1 - spread), y * (1 - spread)
@@ -65,9 +138,10 @@ def ray_of_pixel(pose, x, y, spread):
 
 
 @lean
-def enter_grid(shape, ox, oy, oz, rx, ry, rz):
+def enter_grid(shape, ray):
     """Return ``(t, face)`` where a ray from outside enters the grid; ``NO_FACE`` if it does not."""
     nx, ny, nz = shape
+    ox, oy, oz, rx, ry, rz = ray.ox, ray.oy, ray.oz, ray.rx, ray.ry, ray.rz
     ax, bx = min(-ox * rx, (nx - ox) * rx), max(-ox * rx, (nx - ox) * rx)
     ay, by = min(-oy * ry, (ny - oy) * ry), max(-oy * ry, (ny - oy) * ry)
     az, bz = min(-oz * rz, (nz - oz) * rz), max(-oz * rz, (nz - oz) * rz)
@@ -82,23 +156,24 @@ def enter_grid(shape, ox, oy, oz, rx, ry, rz):
 
 
 @inlined
-def first_cell(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
-    """Return ``(t, i, j, k, face)`` of the first cell of a ray; i is -1 where it misses all."""
+def first_cell(shape, ray):
+    """Return the ``Hit`` of the first cell of a ray; i is -1 where it misses the grid."""
     nx, ny, nz = shape
-    if 0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz:
-        return 0.0, int(ox), int(oy), int(oz), NO_FACE
-    t, face = enter_grid(shape, ox, oy, oz, rx, ry, rz)
+    if 0 <= ray.ox < nx and 0 <= ray.oy < ny and 0 <= ray.oz < nz:
+        return Hit(0.0, int(ray.ox), int(ray.oy), int(ray.oz), NO_FACE, -1)
+    t, face = enter_grid(shape, ray)
     if face == NO_FACE:
-        return 0.0, -1, 0, 0, NO_FACE
-    i = floor_clamped(ox + t * dx, 0, nx)
-    j = floor_clamped(oy + t * dy, 0, ny)
-    k = floor_clamped(oz + t * dz, 0, nz)
-    return t, i, j, k, face
+        return Hit(0.0, -1, 0, 0, NO_FACE, -1)
+    i = floor_clamped(ray.ox + t * ray.dx, 0, nx)
+    j = floor_clamped(ray.oy + t * ray.dy, 0, ny)
+    k = floor_clamped(ray.oz + t * ray.dz, 0, nz)
+    return Hit(t, i, j, k, face, -1)
 
 
 @inner
-def cross_air(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
-    """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first that is none."""
+def cross_air(space, bounds, ray, t, i, j, k, face):
+    """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first other cell."""
+    ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
     # Whole numbers without a sign: no code for counting from the end, and one comparison each.
     while np.uint64(i) < nx and np.uint64(j) < ny and np.uint64(k) < nz:
@@ -166,15 +241,25 @@ def texel_at(uv, n, face, x, y, z, side_px):
 
 
 @inner_call
-def intersect_elements(
-    looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent, side_px,
-    i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
-):  # fmt: skip
-    """Return ``(t, face, element)`` of what a ray meets first among the elements of a cell.
+def intersect_elements(tables, side_px, i, j, k, ray, after, until):
+    """Return ``(t, face, element)`` of the first intersection with the elements of a cell.
 
-    Only what lies after ``after``; of standing boxes only what lies before ``until``, where the
-    ray leaves the cell. Where two lie at one place, the later one counts, as in the game.
+    Only intersections beyond ``after`` count, and those with freestanding boxes only before
+    ``until``, where the ray leaves the cell. Of two at one place the later one counts, as in the
+    game.
+
+    Args:
+        tables: ``ElementTables``, with textures of ``side_px``.
+        side_px: the side of a texture.
+        i: the cell; ``j`` and ``k`` alike.
+        j: see ``i``.
+        k: see ``i``.
+        ray: ``Ray``.
+        after: ``t`` up to which everything is passed.
+        until: ``t`` at which the ray leaves the cell.
     """
+    looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent = tables
+    ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     best, side, found = np.inf, NO_FACE, -1
     look = looks[i, j, k]
     for place in range(look_start[look], look_start[look + 1]):
@@ -227,8 +312,9 @@ def joins_neighbour(looks, i, j, k, face):
 
 
 @inlined
-def next_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+def next_cell(i, j, k, ray):
     """Return ``(t, i, j, k, face)`` of the next cell after one."""
+    ox, oy, oz, dx, dy, dz, rx, ry, rz = ray
     tx = ((i + 1 if dx > 0 else i) - ox) * rx
     ty = ((j + 1 if dy > 0 else j) - oy) * ry
     tz = ((k + 1 if dz > 0 else k) - oz) * rz
@@ -240,44 +326,44 @@ def next_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
 
 
 @inner
-def first_hit(
-    tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
-):  # fmt: skip
-    """Return ``(t, i, j, k, face, element)`` of the first surface from a cell on.
+def first_hit(tables, side_px, ray, start, after):
+    """Return the ``Hit`` of the first surface from a cell on.
 
-    The ray is in cell (i, j, k) at ``t``, which it entered by ``face`` (``NO_FACE`` where it
-    begins there). ``element`` is -1 for a full cube; ``face`` is the element's own, ``NO_FACE``
-    for nothing. A cube or box that holds the origin is ignored: there is no near plane.
+    ``start`` is the ``Hit`` to go on from; surfaces up to ``after`` are passed. ``face`` is the
+    element's own, ``NO_FACE`` where there is no surface. A cube or box that holds the origin is
+    ignored: there is no near plane.
     """
+    t, i, j, k, face, _ = start
     while True:
-        t, i, j, k, face, kind = cross_air(
-            tables.space, tables.bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face
-        )
+        t, i, j, k, face, kind = cross_air(tables.space, tables.bounds, ray, t, i, j, k, face)
         if kind == OUTSIDE:
-            return 0.0, 0, 0, 0, NO_FACE, -1
+            return Hit(0.0, 0, 0, 0, NO_FACE, -1)
         if kind == FULL and face != NO_FACE and t > after:
-            return t, i, j, k, face, -1
-        until, a, b, c, ahead = next_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+            return Hit(t, i, j, k, face, -1)
+        until, a, b, c, ahead = next_cell(i, j, k, ray)
         if kind == BOXES:
-            near, side, element = intersect_elements(
+            elements = ElementTables(
                 tables.looks, tables.look_start, tables.refs, tables.boxes, tables.traits,
-                tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent, side_px,
-                i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
+                tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent,
             )  # fmt: skip
+            near, side, element = intersect_elements(
+                elements, side_px, i, j, k, ray, after, until
+            )
             if side != NO_FACE:
-                return near, i, j, k, side, element
+                return Hit(near, i, j, k, side, element)
         t, i, j, k, face = until, a, b, c, ahead
 
 
 @inner
-def is_see_through(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
-    """Tell whether one sees through a hit: it is glass, and its texture is not solid there."""
+def is_see_through(tables, side_px, ray, hit):
+    """Tell whether one sees through a hit: it is glass, and its texture is not opaque there."""
+    t, i, j, k, face, element = hit
     if element < 0:
         return False
     layer, flags = tables.layers[element, face], tables.traits[element, FLAGS]
     if not (tables.translucent[layer] or flags & PANE):
         return False
-    x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+    x, y, z = ray.ox + t * ray.dx, ray.oy + t * ray.dy, ray.oz + t * ray.dz
     if not flags & ABSOLUTE:
         x, y, z = x - i, y - j, z - k
     if tables.traits[element, TURN] >= 0:

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.minecraft.block_states import BlockState
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.versions import name_in_version, new_names
-from world2minecraft.minecraft.visual_shapes import family_of, visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import find_visual_family, visual_boxes
 from world2minecraft.rendering.block_elements import (
     FACE_NAMES,
     BlockModel,
@@ -116,7 +116,7 @@ def implied_model(
         return None
     space, block = state.name.split(":")
     names = (block, *other_names(state.name))
-    family = family_of(state)
+    family = find_visual_family(state)
 
     def named(picture: str) -> str | None:
         name = f"{space}:block/{picture}"
@@ -130,7 +130,7 @@ def implied_model(
     textures = next((found for stem in stems if (found := _sides(stem, state, named))), None)
     if textures is None:
         return None
-    boxes = visual_boxes_of(str(state)).astype(float).tolist()
+    boxes = visual_boxes(str(state)).astype(float).tolist()
     is_guess = not is_known and boxes == [[0, 0, 0, 1, 1, 1]]
     if is_guess and _is_cut_out(texture_of(textures["north"])):
         return _cross(names, state, named, tint_of(0))

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.physics.walk_graph import is_door
-from world2minecraft.minecraft.visual_shapes import visual_boxes_of
+from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 # What hides the view in a volume, and which cells have something above: one truth a cell.
 #
@@ -54,7 +54,7 @@ def _measures(state: str) -> tuple[float, float]:
     """Return how high a state fills its cell for a body, and the width that hides the view."""
     if is_door(state):
         return 0.0, 0.0
-    boxes, seen = boxes_of(state), visual_boxes_of(state)
+    boxes, seen = boxes_of(state), visual_boxes(state)
     top = float(boxes[:, 4].max()) if len(boxes) else 0.0
     if not len(seen):
         return top, 0.0

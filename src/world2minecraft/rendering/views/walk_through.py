@@ -9,7 +9,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.minecraft.physics.walk_graph import is_shut, opened
+from world2minecraft.minecraft.physics.walk_graph import is_shut, open_door
 from world2minecraft.rendering.views.cameras import GamePose, Shot
 from world2minecraft.rendering.views.viewpoint_graph import WalkRoutes
 from world2minecraft.rendering.views.visibility import (
@@ -179,7 +179,7 @@ def with_open_doors(volume: BlockVolume, way: np.ndarray) -> tuple[BlockVolume, 
     near = near.reshape(-1, 3)
     near = near[((near >= 0) & (near < volume.states.shape)).all(axis=1)]
     palette = list(volume.palette)
-    open_of = {n: opened(state) for n, state in enumerate(palette) if is_shut(state)}
+    open_of = {n: open_door(state) for n, state in enumerate(palette) if is_shut(state)}
     states, count = volume.states.copy(), 0
     for place in np.unique(near, axis=0):
         number = int(states[tuple(place)])

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
 from world2minecraft.core.types import Operation
-from world2minecraft.editing.scene import Line, SceneDraft
+from world2minecraft.editing.scene import Timeline, SceneDraft
 from world2minecraft.editing.scene.journal import UNDO, SceneJournal, Step
 from world2minecraft.sceneforge.document.snapshots import (
     State,
@@ -38,7 +38,7 @@ class RecoveredScene:
 
     draft: SceneDraft
     journal: SceneJournal
-    line: Line
+    line: Timeline
     rev: int
     base: State
     fault: str = ""
@@ -57,7 +57,7 @@ def recover(folder: Path) -> RecoveredScene:
     if state.generation != journal.generation:
         is_new = not journal.generation and state is base
         fault = fault or ("" if is_new else f"{journal.file.path} is of another scene or missing")
-        return RecoveredScene(state.draft(), journal, Line(), state.rev, base, fault)
+        return RecoveredScene(state.draft(), journal, Timeline(), state.rev, base, fault)
     steps = journal.steps[state.rev - journal.start :]
     if state.rev > journal.rev:
         fault = fault or f"{journal.file.path} ends before the edits that were in it"
@@ -69,7 +69,7 @@ def recover(folder: Path) -> RecoveredScene:
 
 def rewrite_journal(
     folder: Path, found: RecoveredScene, keep_bytes: int
-) -> tuple[SceneJournal, Line, int]:
+) -> tuple[SceneJournal, Timeline, int]:
     """Begin a new journal with the newest operations of an old one.
 
     The new one's snapshots are written first, then it takes the place of the old one, so that a
@@ -99,7 +99,7 @@ def rewrite_journal(
     first = SceneDraft(found.draft.grid(), found.draft.objects.values())
     for operation in reversed(operations[: line.done]):
         first.apply(operation.inverse())
-    for draft, at, reach in ((first, start, Line()), (found.draft, rev, _renumber(line))):
+    for draft, at, reach in ((first, start, Timeline()), (found.draft, rev, _renumber(line))):
         objects = tuple(draft.objects.values())
         fields = (found.base.scan_to_room, at, generation, reach)
         write_state(snapshot_path(folder, at, generation), State(draft.grid(), objects, *fields))
@@ -181,7 +181,7 @@ def _states(folder: Path, generation: str) -> Iterator[State]:
 
 def _replay(
     state: State, journal: SceneJournal, steps: Sequence[Step]
-) -> tuple[SceneDraft, Line, int, str]:
+) -> tuple[SceneDraft, Timeline, int, str]:
     """Do steps again; return the scene, the line, how many were done and why no more."""
     draft, line = state.draft(), state.line
     for done, step in enumerate(steps):
@@ -203,7 +203,7 @@ def _effect(journal: SceneJournal, step: Step) -> Operation:
     return operation.inverse() if step.verb == UNDO else operation
 
 
-def _reachable(line: Line, journal: SceneJournal) -> Line:
+def _reachable(line: Timeline, journal: SceneJournal) -> Timeline:
     """Return the part of a line around now whose operations are there."""
     missing = [at for at, number in enumerate(line.numbers) if not journal.bytes_of(number)]
     first = max((at + 1 for at in missing if at < line.done), default=0)
@@ -211,7 +211,7 @@ def _reachable(line: Line, journal: SceneJournal) -> Line:
     return line.within(first, last)
 
 
-def _trim_line(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
+def _trim_line(line: Timeline, journal: SceneJournal, keep_bytes: int) -> Timeline:
     """Return a line without its oldest operations, so that it takes at most so many bytes."""
     first, held = len(line.numbers), 0
     while first > 0 and held + journal.bytes_of(line.numbers[first - 1]) <= keep_bytes:
@@ -220,7 +220,7 @@ def _trim_line(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
     return line.within(min(first, line.done), len(line.numbers))
 
 
-def _renumber(line: Line) -> Line:
+def _renumber(line: Timeline) -> Timeline:
     return line._replace(numbers=tuple(range(len(line.numbers))))
 
 

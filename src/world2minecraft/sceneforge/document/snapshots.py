@@ -16,11 +16,11 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, SceneObject
-from world2minecraft.editing.scene import Line, SceneDraft
+from world2minecraft.editing.scene import Timeline, SceneDraft
 from world2minecraft.editing.scene.journal import pack_objects, unpack_objects
 from world2minecraft.formats.run_arrays import GRID_ARRAYS
 
-NOTHING_DONE = Line()
+NOTHING_DONE = Timeline()
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class State:
     scan_to_room: np.ndarray  # float64 [4, 4]
     rev: int = 0
     generation: str = ""
-    line: Line = NOTHING_DONE
+    line: Timeline = NOTHING_DONE
 
     def draft(self) -> SceneDraft:
         """Return the scene to be edited."""
@@ -92,9 +92,9 @@ def snapshot_paths(folder: Path) -> Iterator[Path]:
     yield from sorted(folder.glob("snapshot-*.npz"), reverse=True)
 
 
-def _line(told: Any) -> Line:
+def _line(told: Any) -> Timeline:
     numbers, kinds = tuple(map(int, told["numbers"])), tuple(map(str, told["kinds"]))
     done = int(told["done"])
     if len(numbers) != len(kinds) or not 0 <= done <= len(numbers):
         raise ValueError("its line of edits is none")
-    return Line(numbers, kinds, done)
+    return Timeline(numbers, kinds, done)

@@ -21,7 +21,7 @@ from world2minecraft.formats.volume_formats import format_by_name, read_run_temp
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
-from world2minecraft.minecraft.server.rcon import RconClient, note_of, parse_address
+from world2minecraft.minecraft.server.rcon import RconClient, build_note_path, parse_address
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
@@ -157,7 +157,9 @@ def on_server(
     version = game_version(chosen.mc_version)
     plan = plan_build(put, version, built=affected_mask(put, air), losses=losses)
     client = RconClient(host, port, password)
-    result = LiveBuilder(client, plan, note_of(f"{host}:{port}", plan.digest), progress).run()
+    result = LiveBuilder(
+        client, plan, build_note_path(f"{host}:{port}", plan.digest), progress
+    ).run()
     lost = [[what, count] for what, count in losses]
     return {"commands": result.commands, "checked": result.checked, "lost": lost}
 

@@ -164,7 +164,7 @@ class _Job:
         clock: Callable[[], float],
     ):
         self.state, self._left, self._tell, self._clock = state, left, tell, clock
-        self._began, self._told = clock(), float("-inf")
+        self._began_s, self._last_sent_s = clock(), float("-inf")
         self._cancelled = threading.Event()
         self._stop: Callable[[], None] = lambda: None
 
@@ -193,13 +193,13 @@ class _Job:
         if self._cancelled.is_set():
             raise CancelledError
         now = self._clock()
-        share, left_s = self._left.report(stage, done, total, now - self._began)
+        share, left_s = self._left.report(stage, done, total, now - self._began_s)
         fresh = stage != self.state.stage or (total and done >= total)
         self.state = replace(
             self.state, stage=stage, done=done, total=total, note=note, share=share, left_s=left_s
         )
-        if fresh or now - self._told >= MIN_INTERVAL_S:
-            self._told = now
+        if fresh or now - self._last_sent_s >= MIN_INTERVAL_S:
+            self._last_sent_s = now
             self._tell(self.state.message())
 
     def _run(self, work: JobFunction, ended: Callable[[JobState], None]) -> None:

@@ -74,12 +74,12 @@ def _relay(process: "subprocess.Popen[bytes]", report: JobProgress) -> Any:
     report.on_cancel(lambda: stop_worker(process))
     try:
         for line in _pipe(process.stdout):
-            said = json.loads(line)
-            if "error" in said:
-                raise ReportedError(said["error"])
-            if "result" in said:
-                return said["result"]
-            report(said["stage"], said["done"], said["total"], said["note"])
+            message = json.loads(line)
+            if "error" in message:
+                raise ReportedError(message["error"])
+            if "result" in message:
+                return message["result"]
+            report(message["stage"], message["done"], message["total"], message["note"])
     finally:
         stop_worker(process)
     code = process.returncode

@@ -30,7 +30,7 @@ STATIC = Path(__file__).parents[1] / "static"
 def build_app(
     session: Session,
     *,
-    workshop: Workspace | None = None,
+    workspace: Workspace | None = None,
     token: str,
     port: int,
     hosts: Iterable[str] = (),
@@ -50,7 +50,7 @@ def build_app(
         middleware=[guard, Middleware(BodyLimit)],
         exception_handlers=EXCEPTION_HANDLERS,
     )
-    app.state.session, app.state.workshop = session, workshop
+    app.state.session, app.state.workspace = session, workspace
     return app
 
 
@@ -77,11 +77,11 @@ def session_of(request: Request) -> Session:
 
 
 async def _scene(request: Request) -> Response:
-    session, shop = session_of(request), request.app.state.workshop
+    session, workspace = session_of(request), request.app.state.workspace
     if session.editor is None:
         return JSONResponse({"error": NO_ROOM}, 404)
-    if shop is not None:
-        session.editor.has = await asyncio.to_thread(shop.beside)
+    if workspace is not None:
+        session.editor.has = await asyncio.to_thread(workspace.extras)
     return JSONResponse(await session.scene())
 
 

@@ -142,7 +142,7 @@ class BuildCache:
             key = (*what, self.session.shown, document.rev)
             if key in self._packed:
                 return document.rev, self._packed[key]
-            scene = await self.session.asked(self._held)
+            scene = await self.session.read(self._held)
             packed = await self._told(asyncio.to_thread(lambda: _gzip(make(scene))))
             self._packed[(*what, scene.shown, scene.rev)] = packed
             while len(self._packed) > MAX_CACHED:

@@ -47,34 +47,34 @@ async def _status(request: Request) -> Response:
 
 
 async def _end(request: Request) -> Response:
-    shop = get_workspace(request)
-    shop.compared = None
-    return _answer(shop)
+    workspace = get_workspace(request)
+    workspace.compared = None
+    return _answer(workspace)
 
 
 async def _truth(request: Request) -> Response:
-    shop = get_workspace(request)
-    folder = shop.truth_folder()
+    workspace = get_workspace(request)
+    folder = workspace.truth_folder()
     if folder is None:
         raise UsageError("this room has no truth; only rooms that were generated have one")
-    editor = shop.editor
+    editor = workspace.editor
     labels = await asyncio.to_thread(
         read_truth_labels, folder, editor.draft, editor.opened.scan_to_room
     )
     labels = mask_unreached(labels, editor.opened.grid.source)
-    shop.compared = Comparison("truth", labels, editor)
-    return _answer(shop)
+    workspace.compared = Comparison("truth", labels, editor)
+    return _answer(workspace)
 
 
 async def _opened(request: Request) -> Response:
-    shop = get_workspace(request)
-    shop.compared = Comparison("opened", shop.editor.opened.grid.labels, shop.editor)
-    return _answer(shop)
+    workspace = get_workspace(request)
+    workspace.compared = Comparison("opened", workspace.editor.opened.grid.labels, workspace.editor)
+    return _answer(workspace)
 
 
 async def _file(request: Request) -> Response:
-    shop = get_workspace(request)
-    editor, name = shop.editor, request.query_params.get("name", "")
+    workspace = get_workspace(request)
+    editor, name = workspace.editor, request.query_params.get("name", "")
     suffix = check_suffix(name)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
         # The file's own name tells ours from others: room.npz, occ.json.
@@ -87,24 +87,24 @@ async def _file(request: Request) -> Response:
         except World2MinecraftError as error:
             told = str(error).replace(str(place), Path(name).name[:80])
             raise UsageError(told) from error
-    shop.compared = Comparison(Path(name).name[:80], labels, editor)
-    return _answer(shop)
+    workspace.compared = Comparison(Path(name).name[:80], labels, editor)
+    return _answer(workspace)
 
 
 async def _labels(request: Request) -> Response:
-    shop = get_workspace(request)
-    if shop.compared is None or shop.compared.editor is not shop.session.editor:
+    workspace = get_workspace(request)
+    if workspace.compared is None or workspace.compared.editor is not workspace.session.editor:
         raise UsageError("nothing is compared with; choose a file or the truth first")
-    data = labels_bytes(shop.editor.draft, shop.compared.labels)
+    data = labels_bytes(workspace.editor.draft, workspace.compared.labels)
     return Response(data, media_type="application/octet-stream", headers={"X-Rev": "0"})
 
 
-def _answer(shop: Workspace) -> Response:
-    compared = shop.compared
-    is_here = compared is not None and compared.editor is shop.session.editor
+def _answer(workspace: Workspace) -> Response:
+    compared = workspace.compared
+    is_here = compared is not None and compared.editor is workspace.session.editor
     return JSONResponse(
         {
             "name": compared.name if compared is not None and is_here else "",
-            "has_truth": shop.truth_folder() is not None,
+            "has_truth": workspace.truth_folder() is not None,
         }
     )

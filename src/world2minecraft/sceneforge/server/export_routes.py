@@ -71,11 +71,11 @@ async def _options(request: Request) -> Response:
 
 
 async def _export(request: Request) -> Response:
-    shop, told = get_workspace(request), await read_json_object(request)
+    workspace, told = get_workspace(request), await read_json_object(request)
     form = exports.get_export_form(str(told.pop("form", "")))
     choice = _choice(told)
-    editor, number = shop.editor, secrets.token_hex(8)
-    target = shop.exports / number
+    editor, number = workspace.editor, secrets.token_hex(8)
+    target = workspace.exports / number
 
     def data(report: JobProgress) -> dict[str, Any]:
         target.mkdir(parents=True, exist_ok=True)
@@ -83,12 +83,12 @@ async def _export(request: Request) -> Response:
         return {"id": number, "file": path.name, "bytes": path.stat().st_size, "lost": []}
 
     def built(report: JobProgress) -> dict[str, Any]:
-        with shop.snapshot(editor) as folder:
+        with workspace.snapshot(editor) as folder:
             needs = {"form": form.id, "choice": choice, "target": str(target)}
             made = run_in_subprocess("export", folder, folder=str(folder), **needs)(report)
         return {"id": number} | made
 
-    return _start_job(shop, editor.name, built if form.built else data)
+    return _start_job(workspace, editor.name, built if form.built else data)
 
 
 async def _file(request: Request) -> Response:
@@ -105,7 +105,7 @@ def _is_export(folder: Path, number: str) -> bool:
 
 
 async def _install(request: Request) -> Response:
-    shop, told = get_workspace(request), await read_json_object(request)
+    workspace, told = get_workspace(request), await read_json_object(request)
     games = await asyncio.to_thread(exports.games_here)
     key, name = str(told.pop("game", "")), told.pop("name", "")
     if key not in games:
@@ -114,11 +114,11 @@ async def _install(request: Request) -> Response:
         raise UsageError("a world's name is a short text")
     choice, game = _choice(told), games[key]
     place = [game.name, str(game.saves), game.version]
-    return _start_subprocess_job(shop, "install", choice=choice, game=place, name=name)
+    return _start_subprocess_job(workspace, "install", choice=choice, game=place, name=name)
 
 
 async def _into_world(request: Request) -> Response:
-    shop, told = get_workspace(request), await read_json_object(request)
+    workspace, told = get_workspace(request), await read_json_object(request)
     worlds = await asyncio.to_thread(exports.worlds_here)
     key = str(told.pop("world", ""))
     if key not in worlds:
@@ -126,12 +126,12 @@ async def _into_world(request: Request) -> Response:
     place = parse_place(told)
     choice = _choice(told)
     return _start_subprocess_job(
-        shop, "into_world", choice=choice, world=str(worlds[key][1]), **place
+        workspace, "into_world", choice=choice, world=str(worlds[key][1]), **place
     )
 
 
 async def _on_server(request: Request) -> Response:
-    shop, told = get_workspace(request), await read_json_object(request)
+    workspace, told = get_workspace(request), await read_json_object(request)
     address, password = told.pop("address", ""), told.pop("password", "")
     if not isinstance(address, str) or not isinstance(password, str) or not password:
         raise UsageError("give the server's address and the password of its console")
@@ -139,7 +139,7 @@ async def _on_server(request: Request) -> Response:
     place = parse_place(told)
     choice = _choice(told)
     needs = {"address": address, "password": password}
-    return _start_subprocess_job(shop, "on_server", choice=choice, **needs, **place)
+    return _start_subprocess_job(workspace, "on_server", choice=choice, **needs, **place)
 
 
 def parse_place(told: dict[str, Any]) -> dict[str, Any]:
@@ -164,15 +164,15 @@ def _choice(told: dict[str, Any]) -> dict[str, Any]:
     return check_choice(told)
 
 
-def _start_subprocess_job(shop: Workspace, task: str, **needs: Any) -> Response:
-    editor = shop.editor
+def _start_subprocess_job(workspace: Workspace, task: str, **needs: Any) -> Response:
+    editor = workspace.editor
 
     def work(report: JobProgress) -> Any:
-        with shop.snapshot(editor) as folder:
+        with workspace.snapshot(editor) as folder:
             return run_in_subprocess(task, folder, folder=str(folder), **needs)(report)
 
-    return _start_job(shop, editor.name, work)
+    return _start_job(workspace, editor.name, work)
 
 
-def _start_job(shop: Workspace, title: str, work: JobFunction) -> Response:
-    return JSONResponse({"job": shop.jobs.start(title, work, STAGE_SECONDS)})
+def _start_job(workspace: Workspace, title: str, work: JobFunction) -> Response:
+    return JSONResponse({"job": workspace.jobs.start(title, work, STAGE_SECONDS)})

@@ -1,4 +1,4 @@
-"""What a request is about: the workshop that it is for, and the JSON object that it brings."""
+"""What a request is about: the workspace that it is for, and the JSON object that it brings."""
 
 from typing import Any
 
@@ -10,15 +10,15 @@ from world2minecraft.sceneforge.workspace import Workspace
 
 
 def get_workspace(request: Request) -> Workspace:
-    """Return the workshop of the server.
+    """Return the workspace of the server.
 
     Raises:
         UsageError: the server has none.
     """
-    shop = getattr(request.app.state, "workshop", None)
-    if shop is None:
+    workspace = getattr(request.app.state, "workspace", None)
+    if workspace is None:
         raise UsageError("this server has no start page; run w2m forge")
-    return shop
+    return workspace
 
 
 async def read_json_object(request: Request) -> dict[str, Any]:

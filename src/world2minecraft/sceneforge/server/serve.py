@@ -148,7 +148,7 @@ class ForgeServer(PageServer):
         capture: Path | None = None,
     ):
         self.session = Session(editor)
-        self.workshop = Workspace(
+        self.workspace = Workspace(
             self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
         )
         is_open = not _is_loopback(host)
@@ -157,7 +157,7 @@ class ForgeServer(PageServer):
         def build(token: str, port: int) -> ASGIApp:
             return build_app(
                 self.session,
-                workshop=self.workshop,
+                workspace=self.workspace,
                 token=token,
                 port=port,
                 hosts=named,

@@ -67,33 +67,33 @@ def routes() -> list[BaseRoute]:
 
 
 async def _overview(request: Request) -> Response:
-    shop = get_workspace(request)
+    workspace = get_workspace(request)
     known = {name: list(limits) for name, limits in LENGTHS_M.items() if name != "distance"}
     return JSONResponse(
         {
-            "home": str(shop.home),
-            "captures": [_capture_json(shop, one) for one in shop.captures.all()],
+            "home": str(workspace.home),
+            "captures": [_capture_json(workspace, one) for one in workspace.captures.all()],
             "recent": [
                 {
                     "id": f"recent-{n}",
                     "name": place.name.removesuffix(SUFFIX),
                     "folder": str(place.parent),
                 }
-                for n, place in enumerate(shop.recent())
+                for n, place in enumerate(workspace.recent())
             ],
             "demos": list(BASE_KINDS),
-            "most_bytes": shop.captures.most_bytes,
+            "most_bytes": workspace.captures.most_bytes,
             "chunk_bytes": CHUNK_BYTES,
             "scales": list(SCALES),
             "scale": DEFAULT_SCALE,
             "styles": list(STYLES),
             "known": known,
-            "wanted": shop.wanted,
+            "wanted": workspace.wanted,
         }
     )
 
 
-def _capture_json(shop: Workspace, one: CaptureFolder) -> dict[str, Any]:
+def _capture_json(workspace: Workspace, one: CaptureFolder) -> dict[str, Any]:
     complete = one.complete
     return {
         "id": one.id,
@@ -103,7 +103,7 @@ def _capture_json(shop: Workspace, one: CaptureFolder) -> dict[str, Any]:
         "elsewhere": "" if one.files else str(one.source),
         "complete": complete,
         "has_room": one.has_room,
-        "job": shop.job_of(one),
+        "job": workspace.job_of(one),
         "survey": one.survey() if complete else None,
     }
 
@@ -111,7 +111,7 @@ def _capture_json(shop: Workspace, one: CaptureFolder) -> dict[str, Any]:
 async def _announce(request: Request) -> Response:
     told = await read_json_object(request)
     title = told.get("title") if isinstance(told.get("title"), str) else ""
-    made = get_workspace(request).captures.announce(str(title), told.get("files"))
+    made = get_workspace(request).captures.create(str(title), told.get("files"))
     files = [{"path": one.path, "size": one.size} for one in made.files]
     return JSONResponse({"id": made.id, "title": made.title, "files": files})
 
@@ -135,47 +135,47 @@ async def _body(request: Request) -> AsyncIterator[bytes]:
 
 
 async def _capture(request: Request) -> Response:
-    shop, one = get_workspace(request), _named(request)
-    return JSONResponse(_capture_json(shop, one) | {"held": one.held()})
+    workspace, one = get_workspace(request), _named(request)
+    return JSONResponse(_capture_json(workspace, one) | {"held": one.received_bytes()})
 
 
 async def _forget(request: Request) -> Response:
-    shop, one = get_workspace(request), _named(request)
-    opened = getattr(getattr(shop.session.editor, "opened", None), "folder", None)
+    workspace, one = get_workspace(request), _named(request)
+    opened = getattr(getattr(workspace.session.editor, "opened", None), "folder", None)
     if opened is not None and Path(opened).resolve() == one.run.resolve():
         raise ConflictError(one.title, "its room is open; close it first")
-    number = shop.job_of(one)
-    await asyncio.to_thread(_delete_capture, shop, one.id, number)
+    number = workspace.job_of(one)
+    await asyncio.to_thread(_delete_capture, workspace, one.id, number)
     return JSONResponse({})
 
 
-def _delete_capture(shop: Workspace, capture: str, job: str | None) -> None:
+def _delete_capture(workspace: Workspace, capture: str, job: str | None) -> None:
     """End what is at work on a capture and delete it; in a thread, for both may take seconds."""
     if job is not None:
-        shop.jobs.cancel(job)
-        shop.jobs.wait(job, 10)
-    shop.captures.forget(capture)
+        workspace.jobs.cancel(job)
+        workspace.jobs.wait(job, 10)
+    workspace.captures.delete(capture)
 
 
 async def _survey(request: Request) -> Response:
-    shop, one = get_workspace(request), _named(request)
-    _check_ready(shop, one)
+    workspace, one = get_workspace(request), _named(request)
+    _check_ready(workspace, one)
     work = run_in_subprocess(
         "survey", one.source.parent, capture=str(one.source), folder=str(one.folder)
     )
-    shop.working[one.id] = number = shop.jobs.start(one.title, work, {"look": 4.0})
+    workspace.running_jobs[one.id] = number = workspace.jobs.start(one.title, work, {"look": 4.0})
     return JSONResponse({"job": number})
 
 
 async def _reconstruct(request: Request) -> Response:
-    shop, one = get_workspace(request), _named(request)
+    workspace, one = get_workspace(request), _named(request)
     choice = check_choice(await read_json_object(request))
-    _check_ready(shop, one)
+    _check_ready(workspace, one)
     work = run_in_subprocess(
         "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
     )
-    number = shop.jobs.start(one.title, work, reconstruct_stage_seconds(one.survey()))
-    shop.working[one.id] = number
+    number = workspace.jobs.start(one.title, work, reconstruct_stage_seconds(one.survey()))
+    workspace.running_jobs[one.id] = number
     return JSONResponse({"job": number})
 
 
@@ -195,15 +195,15 @@ def check_choice(told: dict[str, Any]) -> dict[str, Any]:
     return told
 
 
-def _check_ready(shop: Workspace, one: CaptureFolder) -> None:
+def _check_ready(workspace: Workspace, one: CaptureFolder) -> None:
     if not one.complete:
         raise UsageError(f"{one.title!r} has not come whole; send its files first")
-    if shop.job_of(one) is not None:
+    if workspace.job_of(one) is not None:
         raise ConflictError(one.title, "is being worked on; wait, or cancel that")
 
 
 async def _demo(request: Request) -> Response:
-    shop, told = get_workspace(request), await read_json_object(request)
+    workspace, told = get_workspace(request), await read_json_object(request)
     kind, seed = told.get("kind", BASE_KINDS[0]), told.get("seed", 5)
     if kind not in BASE_KINDS:
         raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, not {str(kind)[:40]!r}")
@@ -213,26 +213,26 @@ async def _demo(request: Request) -> Response:
     if not isinstance(frames, int) or not 3 <= frames <= 200:
         raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
     name, title = f"demo/{kind}-{seed}", f"A {kind} room"
-    if (running := shop.job_at(name)) is not None:
+    if (running := workspace.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
-    work = run_in_subprocess("demo", out=str(shop.home / name), kind=kind, seed=seed, frames=frames)
-    shop.working[name] = number = shop.jobs.start(
-        title, work, demo_stage_seconds(), _remember(shop)
+    work = run_in_subprocess("demo", out=str(workspace.home / name), kind=kind, seed=seed, frames=frames)
+    workspace.running_jobs[name] = number = workspace.jobs.start(
+        title, work, demo_stage_seconds(), _remember(workspace)
     )
     return JSONResponse({"job": number})
 
 
-def _remember(shop: Workspace) -> Any:
+def _remember(workspace: Workspace) -> Any:
     def ended(state: JobState) -> None:
-        shop.remember(Path(state.result["out"]))
+        workspace.add_recent(Path(state.result["out"]))
 
     return ended
 
 
 async def _open(request: Request) -> Response:
-    shop = get_workspace(request)
-    await shop.open(shop.room_named(str((await read_json_object(request)).get("id"))))
-    return JSONResponse({"name": shop.editor.name})
+    workspace = get_workspace(request)
+    await workspace.open(workspace.room_named(str((await read_json_object(request)).get("id"))))
+    return JSONResponse({"name": workspace.editor.name})
 
 
 async def _close(request: Request) -> Response:

@@ -1,1 +1,1 @@
-"""What phone apps with LiDAR or AR tracking export: one file per app, and what they share."""
+"""Readers of exports of phone apps with LiDAR or AR tracking, one module per app."""

@@ -1,8 +1,8 @@
-"""What the files of phone apps state: numbers, cameras and poses, checked as they are read.
+"""Parsing of the numbers, cameras and poses in files of phone apps.
 
 ARKit's camera looks along -z with y up, in a world whose y is up; ``arkit_pose`` and
 ``arkit_pose_of_quaternion`` give the pose of the same camera with OpenCV axes. Numbers that are
-not finite stay as they are in poses: tracking was lost there, and the frame is left out later.
+not finite stay as they are in poses: tracking was lost there, and the frame is skipped later.
 """
 
 import math

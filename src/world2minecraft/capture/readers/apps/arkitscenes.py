@@ -1,9 +1,9 @@
-"""ARKitScenes, raw and 3DOD: pictures, depth and poses that belong together by their time.
+"""Reader of ARKitScenes, raw and 3DOD: pictures, depth and poses matched by time.
 
 Images are named ``VIDEO_SECONDS.png``. ``lowres_wide.traj`` states ten poses a second: seconds,
-an axis times its angle and a place, world to camera with OpenCV axes, in a world whose z is up.
-Images come up to sixty times a second; for each pose the depth image nearest in time is taken,
-and the pose is carried to its time. Confidence is 0 to 2; lenses stand in ``.pincam`` files.
+an axis times its angle and a translation, world to camera with OpenCV axes, in a world whose z is
+up. Images come up to sixty times a second; for each pose the depth image nearest in time is taken,
+and the pose is interpolated to its time. Confidence is 0 to 2; lenses stand in ``.pincam`` files.
 """
 
 import re

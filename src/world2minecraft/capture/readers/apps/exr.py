@@ -1,13 +1,12 @@
-"""Depth in OpenEXR files, as Record3D and the 3D Scanner App export it.
+"""Reader of depth in OpenEXR files, as Record3D and the 3D Scanner App export it.
 
-Read is what they write: one part, scan lines, not packed or packed by ZIP, and channels of float
-or half. The first channel is the depth in metres. The format is described at openexr.com; nothing
+Supported is what they write: one part, scan lines, uncompressed or ZIP, and channels of float or
+half. The first channel is the depth in metres. The format is described at openexr.com; nothing
 but its public description is followed here.
-"""
 
-# OpenEXR's own library writes our pictures, but does not read those of strangers: it tells of each
-# damaged file on stderr by itself, where one line of ours is due, and to see whether a file is
-# whole it unpacks all of it.
+OpenEXR's own library is not used for untrusted files: it reports each damaged file on stderr,
+where one line of ours is due, and to check whether a file is complete it decompresses all of it.
+"""
 
 import struct
 import zlib

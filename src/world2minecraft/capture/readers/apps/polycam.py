@@ -1,9 +1,9 @@
-"""Polycam's raw data: ``keyframes/`` with images, cameras, depth and confidence by time stamp.
+"""Reader of Polycam's raw data: ``keyframes/`` by time stamp.
 
-The ``corrected_`` folders, where they are there, hold undistorted pictures and poses that the app
-optimised over the whole scan: they are taken in place of the first ones. A camera states
-``t_00`` to ``t_23``, three rows of camera to world with ARKit's axes, ``fx fy cx cy`` and the
-picture's size. Depth is 16-bit millimetres, confidence 0, 127 or 255, at the size of the sensor.
+The ``corrected_`` folders, where they exist, hold undistorted pictures and poses that the app
+optimised over the whole scan: they are preferred. A camera states ``t_00`` to ``t_23``, three rows
+of camera to world with ARKit's axes, ``fx fy cx cy`` and the picture's size. Depth is 16-bit
+millimetres, confidence 0, 127 or 255, at the size of the sensor.
 """
 
 from typing import Any

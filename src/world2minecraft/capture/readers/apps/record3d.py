@@ -1,10 +1,13 @@
-"""Record3D's ``.r3d`` and its EXR + JPG export, packed or unpacked.
+"""Reader of Record3D's ``.r3d`` and its EXR + JPG export, packed or unpacked.
 
 ``metadata`` (or ``metadata.json``) holds the size ``w``, ``h`` of the pictures and ``dw``, ``dh``
 of the depth, the matrix ``K`` column by column, newer versions ``perFrameIntrinsicCoeffs`` (fx,
 fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera to world, OpenGL axes). ``rgbd/N.jpg``,
 ``N.depth`` (LZFSE, float32 metres) and ``N.conf`` (LZFSE, 0 to 2) belong to one frame. The front
 camera has no tracking: all its poses are the same.
+
+An LZFSE file states no width or height, only a chain of blocks that state how many bytes they
+decompress to. The chain is walked and compared with the expected size before decompression.
 """
 
 import math
@@ -37,11 +40,6 @@ from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import pose_from_quaternion
 
-# Images of single values packed with LZFSE, as Record3D keeps depth and confidence.
-#
-# Such a file states no width or height, only a chain of blocks that say how many bytes they unpack
-# to. The chain is walked and held against the expected size before anything is unpacked.
-
 MAX_FILE_BYTES = 4 * MAX_PIXELS
 _END = b"bvx$"
 _STORED = b"bvx-"
@@ -50,6 +48,10 @@ _CODED = b"bvx2"
 _CODED_V1 = b"bvx1"
 _V1_HEADER_BYTES = 772
 _MODES = {"float32": np.float32, "L": np.uint8}
+_PICTURES = (".jpg", ".jpeg", ".png")
+_MIN_POSE_CHANGE = 1e-6  # Poses that differ by less were never tracked.
+MIN_UP_IN_IMAGE = 0.5  # Cameras that look steeply up or down say little of their roll.
+MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
 
 
 @dataclass(frozen=True)
@@ -157,12 +159,6 @@ def decompress_lzfse(path: AnyPath, data: bytes) -> bytes:
         return lzfse.decompress(data)
     except lzfse.error as error:
         raise DamagedFileError(path, "cannot be unpacked (LZFSE); copy it again") from error
-
-
-_PICTURES = (".jpg", ".jpeg", ".png")
-_MIN_POSE_CHANGE = 1e-6  # Poses that differ by less were never tracked.
-MIN_UP_IN_IMAGE = 0.5  # Cameras that look steeply up or down say little of their roll.
-MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
 
 
 class Record3DSource:

@@ -1,4 +1,4 @@
-"""The 3D Scanner App's "All Data": ``frame_00000.json`` beside pictures and depth.
+"""Reader of the 3D Scanner App's "All Data": ``frame_00000.json`` with pictures and depth.
 
 A frame's JSON holds ``cameraPoseARFrame``, camera to world row by row with ARKit's axes, and
 ``intrinsics``, a 3x3 matrix row by row for the picture's size. ``depth_00000.png`` is 16-bit

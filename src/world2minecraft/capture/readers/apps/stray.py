@@ -1,8 +1,8 @@
-"""Stray Scanner: ``odometry.csv``, ``camera_matrix.csv``, a video, depth and confidence.
+"""Reader of Stray Scanner: ``odometry.csv``, ``camera_matrix.csv``, video, depth, confidence.
 
 A row of the odometry is timestamp, frame, x, y, z, qx, qy, qz, qw: camera to world in ARKit's
-world, but with OpenCV's camera axes, since the app turns them. Newer versions add fx, fy, cx, cy.
-Frame N is picture N of ``rgb.mp4`` (or ``rgb/N.jpg``), ``depth/N.png`` in millimetres and
+world, but with OpenCV's camera axes, since the app rotates them. Newer versions add fx, fy, cx,
+cy. Frame N is picture N of ``rgb.mp4`` (or ``rgb/N.jpg``), ``depth/N.png`` in millimetres and
 ``confidence/N.png``, 0 to 2.
 """
 

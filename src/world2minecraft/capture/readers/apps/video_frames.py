@@ -1,7 +1,7 @@
-"""The pictures of a video that an app wrote beside its depth, by their number.
+"""Random access to the frames of a video by index.
 
-The times of all pictures are listed once, without decoding. Pictures are decoded in a row; one
-that lies elsewhere is reached from the key picture before it.
+The times of all frames are listed once, without decoding. Frames are decoded in sequence; one
+that lies elsewhere is reached from the keyframe before it.
 """
 
 from bisect import bisect_right

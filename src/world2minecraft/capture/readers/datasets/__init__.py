@@ -1,1 +1,1 @@
-"""Sources for the formats that RGB-D data sets, depth cameras and photogrammetry write."""
+"""Readers of formats that RGB-D data sets, depth cameras and photogrammetry write."""

@@ -1,6 +1,10 @@
-"""A COLMAP project: photos whose places and lenses are known, without depth and without a scale.
+"""Reader of a COLMAP project: photos with poses and cameras, without depth or scale.
 
-The model lies in ``sparse/0`` (or ``sparse``, or here), the photos in ``images/`` beside it.
+The model lies in ``sparse/0`` (or ``sparse``, or the folder itself), the photos in ``images/``.
+``cameras`` and ``images`` are text or binary. Binary files are little-endian: a uint64 count, then
+records; those of images end with the observed points, which are skipped. Text files have a line a
+camera and two lines an image, the second of which may be empty. Poses are world to camera: a
+quaternion w x y z and a translation.
 """
 
 import struct
@@ -24,12 +28,6 @@ from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import pose_from_quaternion
 
-# COLMAP's ``cameras`` and ``images``, as text or binary: lenses and where each photo was taken.
-#
-# Binary files are little-endian: a uint64 count, then records; those of images end with the points
-# that were seen, which are skipped here. Text files have a line a camera and two lines an image,
-# the second of which may be empty. Poses are world to camera: a quaternion w x y z and a shift.
-
 MAX_MODEL_BYTES = 1 << 30  # Ten thousand photos with ten thousand points each have 2.4 GB: split.
 MAX_NAME_BYTES = 1024
 # The name of each model by its number, and how many parameters it has.
@@ -49,6 +47,10 @@ MODELS = (
 UNDISTORT_ADVICE = "run colmap image_undistorter and give its folder"
 _CAMERA = struct.Struct("<IiQQ")
 _IMAGE = struct.Struct("<I7dI")
+_Image = tuple[int, np.ndarray, int, str]
+_COUNT = struct.Struct("<Q")
+IMAGE_FOLDERS = ("images", "rgb", "image", ".")
+_SAMPLED = 20  # Names that are looked for to tell which folder the photos lie in.
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,9 +90,6 @@ def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
         pose = np.full((4, 4), np.nan) if lost else invert_rigid(world_to_camera)
         found.append(ModelImage(name, cameras[camera], pose))
     return tuple(found)
-
-
-_Image = tuple[int, np.ndarray, int, str]
 
 
 def _camera(path: AnyPath, model: str, size: tuple[int, int], values: np.ndarray) -> Camera:
@@ -137,9 +136,6 @@ class _Reader:
         name = self.data[self.position : end]
         self.position = end + 1
         return name.decode("utf-8", "replace")
-
-
-_COUNT = struct.Struct("<Q")
 
 
 def _binary_cameras(path: AnyPath) -> dict[int, Camera]:
@@ -203,10 +199,6 @@ def _text_images(path: AnyPath) -> list[_Image]:
         images.append((int(row[0]), to_floats(path, row[1:8]), int(row[8]), row[9].strip()))
         next(lines, None)  # The points that this image saw; the line may be empty.
     return images
-
-
-IMAGE_FOLDERS = ("images", "rgb", "image", ".")
-_SAMPLED = 20  # Names that are looked for to tell which folder the photos lie in.
 
 
 class ColmapSource:

@@ -1,7 +1,7 @@
-"""Images that lie somewhere within a larger file: read from their place when they are asked for.
+"""Images embedded in larger files, read from their offset when needed.
 
-Nothing is kept between two readings but for zips, whose members cannot be sought in: there the
-last one stays unpacked.
+Nothing is cached between two reads but for zips, whose members cannot be sought in: there the
+last member stays decompressed.
 """
 
 import io

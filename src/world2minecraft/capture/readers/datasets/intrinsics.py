@@ -1,4 +1,4 @@
-"""Cameras of data sets, whose pixel centres are whole numbers; ours lie at +0.5."""
+"""Intrinsics of data sets, whose pixel centres are whole numbers; ours lie at +0.5."""
 
 from collections.abc import Sequence
 

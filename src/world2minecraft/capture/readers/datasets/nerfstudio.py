@@ -1,9 +1,9 @@
-"""``transforms.json``, as nerfstudio, instant-ngp and most phone apps that export for them write.
+"""Reader of ``transforms.json``, as nerfstudio, instant-ngp and many phone apps write it.
 
 Cameras have OpenGL axes. Intrinsics stand once or in each frame; depth images are optional and
-share the colour image's camera at their own size. ``applied_scale`` says by what the poses were
+share the colour image's camera at their own size. ``applied_scale`` states by what the poses were
 multiplied: it is divided out, so that they are in the unit of the depth again. Poses that COLMAP
-found have no unit: ``ns-process-data`` leaves its traces in the file, by which that is known.
+found have no unit: ``ns-process-data`` leaves its traces in the file, by which that is detected.
 """
 
 import math

@@ -1,6 +1,6 @@
-"""Label images of data sets to our classes: NYU40 numbers, or ScanNet's raw ids through its table.
+"""Label images of data sets as our classes: NYU40 ids, or ScanNet's raw ids by its table.
 
-``data/nyu40.json`` says which of the 12 classes each of the 40 becomes.
+``data/nyu40.json`` maps the 40 to the 12 classes.
 """
 
 from collections.abc import Sequence

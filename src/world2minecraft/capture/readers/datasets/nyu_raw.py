@@ -1,9 +1,10 @@
-"""The raw dumps of NYU depth v2: ``r-*.ppm``, ``d-*.pgm`` and ``a-*.dump`` by time, no poses.
+"""Reader of NYU Depth v2's raw dumps: ``r-*.ppm``, ``d-*.pgm`` and ``a-*.dump``, no poses.
 
-A name is ``r-SECONDS-TICKS.ppm``. Depth are the Kinect's own disparities with swapped bytes, which
-no one has registered or undistorted: the two lenses and how they stand are the ones published
-with the data set's toolbox. Its rotation is written with all signs turned, which its projection
-undoes; here the signs are right, and the colour lens is 2.5 cm to the right of the depth lens.
+A name is ``r-SECONDS-TICKS.ppm``. Depth images are the Kinect's own disparities with swapped bytes,
+neither registered nor undistorted: the two cameras and the transform between them are the ones
+published with the data set's toolbox. Its rotation is written with all signs turned, which its
+projection undoes; here the signs are right, and the colour lens is 2.5 cm to the right of the
+depth lens.
 """
 
 import re

@@ -1,9 +1,9 @@
-"""Folders as Open3D and its relatives keep them: images in order, one trajectory file beside.
+"""Reader of Open3D's folders: images in order, with one trajectory file.
 
 ``color``, ``rgb`` or ``image`` and ``depth`` hold the images. The trajectory is a ``.log``, five
 lines a frame (its number twice and once more, then camera to world as 4x4), or a ``.json``
 PinholeCameraTrajectory with world to camera. ``camera*.json`` here or one folder up is a
-PinholeCameraIntrinsic; matrices in JSON run down the columns. Depth lies on colour.
+PinholeCameraIntrinsic; matrices in JSON are column-major. Depth is registered to colour.
 """
 
 from typing import Any

@@ -1,8 +1,12 @@
-"""RealSense recordings: a ROS 1 bag with colour and depth pictures, no poses.
+"""Reader of RealSense recordings: ROS 1 bags with colour and depth images, no poses.
 
 The topics are those of the camera's own recorder (``/device_0/sensor_1/Color_0/image/data``) or of
-its ROS driver where depth was aligned (``/camera/aligned_depth_to_color/image_raw``). Beside each
-stream stand its intrinsics, how it stands to the others and how much a unit of depth is.
+its ROS driver where depth was aligned (``/camera/aligned_depth_to_color/image_raw``). With each
+stream stand its intrinsics, its transform to the others and the unit of depth.
+
+A bag is read message by message, never as a whole, and is untrusted until checked. Its index
+states where each message lies. One chunk of a few images is decompressed at a time, within
+limits. Everything that the library may raise for a damaged bag becomes one of our errors.
 """
 
 import bz2
@@ -34,12 +38,6 @@ from world2minecraft.core.errors import (
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import pose_from_quaternion
 
-# ROS 1 bags read message by message, never as a whole; hostile until checked.
-#
-# The index of the bag says where each message lies. One chunk of a few pictures is unpacked at a
-# time, within limits. Everything that the reading library may raise over a damaged bag becomes one
-# of our errors.
-
 MAX_CHUNK_BYTES = 256 << 20  # Recorders close a chunk at 0.75 MB or after one large picture.
 IMAGE = "sensor_msgs/msg/Image"
 # How each encoding is kept: dtype, channels, and the order that makes it RGB.
@@ -53,6 +51,17 @@ ENCODINGS: dict[str, tuple[str, int, tuple[int, ...]]] = {
     "32fc1": ("f4", 1, ()),
     "yuyv": ("u1", 2, ()),
 }
+WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
+DEFAULT_UNIT_M = 0.001
+MAX_GROUPS = 8  # Of streams whose places to each other are known; cameras have one or two.
+MAGIC = b"#ROSBAG V"
+_RECORDED = re.compile(r"(/device_\d+/sensor_\d+)/(Color|Depth)_\d+/image/data")
+_UNITS = re.compile(r"/device_\d+/sensor_\d+/option/Depth[ _]Units/value")
+_DRIVER = (
+    ("/color/image_raw", "/aligned_depth_to_color/image_raw"),
+    ("/rgb/image_raw", "/depth_registered/image_raw"),
+)
+_PINHOLES = ("", "none", "plumb_bob", "brown_conrady", "rational_polynomial")
 
 
 @dataclass(frozen=True)
@@ -263,19 +272,6 @@ def _yuyv_to_rgb(pixels: np.ndarray) -> np.ndarray:
     red = np.repeat(pixels[:, 1::2, 1], 2, axis=1).astype(np.float32) - 128
     rgb = [bright + 1.402 * red, bright - 0.344136 * blue - 0.714136 * red, bright + 1.772 * blue]
     return np.clip(np.round(np.stack(rgb, axis=-1)), 0, 255).astype(np.uint8)
-
-
-WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
-DEFAULT_UNIT_M = 0.001
-MAX_GROUPS = 8  # Of streams whose places to each other are known; cameras have one or two.
-MAGIC = b"#ROSBAG V"
-_RECORDED = re.compile(r"(/device_\d+/sensor_\d+)/(Color|Depth)_\d+/image/data")
-_UNITS = re.compile(r"/device_\d+/sensor_\d+/option/Depth[ _]Units/value")
-_DRIVER = (
-    ("/color/image_raw", "/aligned_depth_to_color/image_raw"),
-    ("/rgb/image_raw", "/depth_registered/image_raw"),
-)
-_PINHOLES = ("", "none", "plumb_bob", "brown_conrady", "rational_polynomial")
 
 
 @dataclass(frozen=True)

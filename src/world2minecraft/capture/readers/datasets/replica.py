@@ -1,7 +1,8 @@
-"""Replica as NICE-SLAM rendered it: ``results/frame000000.jpg``, ``depth000000.png``, ``traj.txt``.
+"""Reader of Replica as NICE-SLAM rendered it: ``results/`` with images, ``traj.txt``.
 
-A line of ``traj.txt`` is 4x4 camera to world, OpenCV axes. ``cam_params.json`` here or one folder
-up has w, h, fx, fy, cx, cy and scale, the depth units a metre.
+Images are ``frame000000.jpg`` and ``depth000000.png``. A line of ``traj.txt`` is 4x4 camera to
+world, OpenCV axes. ``cam_params.json`` here or one folder up has w, h, fx, fy, cx, cy and scale,
+the depth units a metre.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""A ScanNet scene that its exporter wrote: numbered files in ``color/``, ``depth/``, ``pose/``.
+"""Reader of an exported ScanNet scene: numbered files in ``color/``, ``depth/``, ``pose/``.
 
 ``intrinsic/intrinsic_color.txt`` and ``intrinsic_depth.txt`` (4x4) speak of the images as they
 were recorded; many people make the exported ones smaller. Depth is in millimetres. Poses of

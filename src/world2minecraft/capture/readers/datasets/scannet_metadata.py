@@ -1,4 +1,4 @@
-"""What lies beside a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
+"""Metadata of a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
 
 from pathlib import Path
 

@@ -1,9 +1,9 @@
-"""7-Scenes folders: ``frame-000000.color.png``, ``.depth.png`` and ``.pose.txt``.
+"""Reader of 7-Scenes: ``frame-000000.color.png``, ``.depth.png`` and ``.pose.txt``.
 
 The frames lie in the folder itself, in ``frames/`` or in ``seq-01/``, ``seq-02/`` ... (one world
-frame for all). ``camera-intrinsics.txt`` (3x3) beside or above them states the matrix. The true
-data set has none and names its colour images ``.png``: for it alone the published Kinect matrix
-is taken. The one matrix is the depth camera's; colour is another camera beside it.
+frame for all). ``camera-intrinsics.txt`` (3x3) in or above their folder states the matrix. The
+original data set has none and names its colour images ``.png``: for it alone the published Kinect
+matrix is taken. The one matrix is the depth camera's; colour is another camera next to it.
 """
 
 import re

@@ -1,7 +1,7 @@
-"""SUN3D and SUN RGB-D: ``image/``, ``depth/``, ``extrinsics/`` and ``intrinsics.txt``.
+"""Reader of SUN3D and SUN RGB-D: ``image/``, ``depth/``, ``extrinsics/``, ``intrinsics.txt``.
 
-Both keep depth in millimetres with its 16 bits rotated by three. SUN RGB-D is one frame a folder;
-its extrinsics turn the camera's axes level, so that -y is up. SUN3D is a sequence: its extrinsics
+Both store depth in millimetres with its 16 bits rotated by three. SUN RGB-D is one frame a folder;
+its extrinsics rotate the camera's axes level, so that -y is up. SUN3D is a sequence: its extrinsics
 are three rows a frame, camera to world. Axes are OpenCV's.
 """
 

@@ -1,4 +1,4 @@
-"""Numbers in the text files of data sets: read within limits, the wrong word named."""
+"""Parsing of numbers in text files of data sets, within limits and with precise errors."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Streams of their own clocks brought together: images with images, images with poses."""
+"""Synchronisation of streams with their own clocks: images with images, images with poses."""
 
 import numpy as np
 

@@ -1,8 +1,8 @@
-"""TUM RGB-D: ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``, each with clocks of its own.
+"""Reader of TUM RGB-D: ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``.
 
 A line is ``seconds file`` or ``seconds tx ty tz qx qy qz qw``, camera to world. Images are paired
-by time; poses are measured more often than pictures are taken and lie between two measurements.
-Depth was registered to colour, so both share one camera, its lens included. The intrinsics are
+by time; poses are measured more often than pictures are taken and are interpolated.
+Depth was registered to colour, so both share one camera with its distortion. The intrinsics are
 those published for the sequence's name (freiburg1 to 3), those of a ``calibration.txt`` (fx fy cx
 cy and up to five of k1 k2 p1 p2 k3, as ETH3D has it), or the default of such cameras.
 """

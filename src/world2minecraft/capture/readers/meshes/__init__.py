@@ -1,8 +1,8 @@
-"""Meshes and point clouds as captures: a solid is looked at from within the room it shows.
+"""Reader of meshes and point clouds: views are rendered from within the room they show.
 
-``source`` reads a file (``formats``), sets it upright and to metres (``upright``, ``units``), finds
-the free space inside (``interior``), chooses places to look from (``viewpoints``) and lists one
-frame for each; ``looks`` renders a frame when it is asked for, from triangles (``triangles``) or
-points (``splats``). So inside and outside are told apart by what can be seen from free space, and
-all later stages see an ordinary posed RGB-D capture without noise.
+``mesh_source`` reads a file, sets it upright and to metres (``orientation_and_unit``), finds the
+free space inside (``interior``), chooses camera poses (``viewpoints``) and lists one frame for
+each, rendered when it is needed from triangles (``mesh_rasterizer``) or points
+(``cloud_splatting``). So inside and outside are told apart by what can be seen from free space,
+and all later stages see an ordinary posed RGB-D capture without noise.
 """

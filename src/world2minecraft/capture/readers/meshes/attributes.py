@@ -1,4 +1,9 @@
-"""Colours and labels by the names that files give their columns."""
+"""Colours and classes of a mesh or point cloud, from the columns and names in its file.
+
+``NAME.classes.json`` beside ``NAME.ply`` maps label numbers to names:
+``{"5": "chair", "7": "table"}``. Without one, ``label`` is taken to be of NYU40, as ScanNet's is;
+other columns to be our own ids where none is over 11, else of NYU40.
+"""
 
 import re
 from collections.abc import Mapping
@@ -13,9 +18,16 @@ from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import read_json
 
-# Classes by the names and the numbers that others use for them.
-
 TABLE = Path(__file__).parent / "data" / "names.json"
+MAX_LABEL_ID = 65535
+MAX_MAP_BYTES = 1 << 20
+COLOUR_COLUMNS = (
+    ("red", "green", "blue"),
+    ("r", "g", "b"),
+    ("diffuse_red", "diffuse_green", "diffuse_blue"),
+)
+SPLAT_COLUMNS = ("f_dc_0", "f_dc_1", "f_dc_2")
+SH_C0 = 0.28209479177387814  # Of the constant spherical harmonic, in which splats store it.
 
 
 @lru_cache(maxsize=1)
@@ -46,16 +58,6 @@ def identity_classes() -> np.ndarray:
     classes = np.full(256, UNKNOWN, np.uint8)
     classes[: len(CLASS_NAMES)] = np.arange(len(CLASS_NAMES))
     return classes
-
-
-# Label numbers of a file to our classes: a map beside it, else the numbering that fits.
-#
-# ``NAME.classes.json`` beside ``NAME.ply`` maps numbers to names: ``{"5": "chair", "7": "table"}``.
-# Without one, ``label`` is taken to be of NYU40, as ScanNet's is; other columns to be our own ids
-# where none is over 11, of S3DIS's 13 where none is over 12, else of NYU40.
-
-MAX_LABEL_ID = 65535
-MAX_MAP_BYTES = 1 << 20
 
 
 def classes_of_label_ids(
@@ -112,15 +114,6 @@ def _classes_from_map(beside: AnyPath) -> np.ndarray:
             )
         classes[int(number)] = found
     return classes
-
-
-COLOUR_COLUMNS = (
-    ("red", "green", "blue"),
-    ("r", "g", "b"),
-    ("diffuse_red", "diffuse_green", "diffuse_blue"),
-)
-SPLAT_COLUMNS = ("f_dc_0", "f_dc_1", "f_dc_2")
-SH_C0 = 0.28209479177387814  # Of the constant spherical harmonic, in which splats store it.
 
 
 def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:

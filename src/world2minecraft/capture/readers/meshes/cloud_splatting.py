@@ -1,8 +1,8 @@
-"""A point cloud seen by a pinhole camera: each point is a small disc on the surface around it.
+"""Splatting of point clouds: a pinhole view of each point as a small disc (surfel).
 
 Discs are as large as the points lie apart (``surfels``), so that walls are closed. First the
-nearest disc of each pixel is found, then the discs within ``BLEND`` of it are mixed, the nearer
-to the pixel's ray the more: that takes the noise out, and what lies behind does not show. A
+nearest disc of each pixel is found, then the discs within ``BLEND_M`` of it are blended, the
+nearer to the pixel's ray the more: that takes the noise out, and what lies behind does not show. A
 pixel that still looks through a gap is one that most pixels around it stand before; it becomes a
 hole.
 """

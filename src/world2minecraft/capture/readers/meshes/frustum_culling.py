@@ -1,4 +1,4 @@
-"""A solid in blocks of space, so that a view looks only at what may lie in it."""
+"""Frustum culling: a mesh or surfels sorted into blocks with bounding spheres."""
 
 from dataclasses import dataclass, replace
 

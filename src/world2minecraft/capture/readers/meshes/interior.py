@@ -1,9 +1,9 @@
-"""The free space inside: cells of a coarse grid that surface surrounds, where one could stand.
+"""Detection of the free space inside: cells of a voxel grid where a person could stand.
 
-Each free cell looks along the 26 directions to its neighbours, through the grid to its end. One
-is inside where it has a floor below and surface at most sides; a ceiling helps but need not be
-there, and neither need one wall. What is too narrow for a person (inside cupboards, between the
-two faces of a wall) falls away.
+Each free cell looks along the 26 directions to its neighbours, through the grid to its end. A cell
+is inside where it has a floor below and surface at most sides; a ceiling helps but is not needed,
+and neither is one wall. What is too narrow for a person (inside cupboards, between the two faces
+of a wall) is dropped. ``backface_share`` tells whether the faces seen from inside are back faces.
 """
 
 from dataclasses import dataclass
@@ -18,13 +18,20 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.connected_components import label_components
 
-# A solid on a coarse grid: which cells hold surface.
-
 CELL_M = 0.10
 MAX_CELLS = 6_000_000  # A flat of 25 x 20 x 12 m; larger places have larger cells.
 PADDING_CELLS = 3  # Cells around the box, so that rays end in air.
 SAMPLE_STEP = 0.45  # Of a cell: so near to each other are the places that mark a triangle's cells.
 MAX_SAMPLES = 2_000_000_000
+CHECKED_VIEWS = 12
+DOWNSCALE = 8  # Times smaller images tell it as well.
+CLEAR_CELLS = 2  # About 0.25 m, a head's breadth: no nearer to surface than that is looked from.
+MIN_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a wardrobe are 0.6.
+MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
+MIN_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
+DOWN_VOTES, SIDE_VOTES, BOTH_VOTES = 5, 6, 12  # Of 9 down, 8 level, and 17 level or up.
+HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Where the user names a place inside.
+MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that it names.
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,12 +118,6 @@ def _mark_points(points, origin, cell_m, held):
         _mark_cell(points[n], origin, cell_m, held)
 
 
-# Whether the faces that are seen from inside turn their backs.
-
-CHECKED_VIEWS = 12
-DOWNSCALE = 8  # Times smaller images tell it as well.
-
-
 def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> float:
     """Return the share of pixels of the first views that see the back of a triangle."""
     small = camera.resized(camera.width_px // DOWNSCALE, camera.height_px // DOWNSCALE)
@@ -129,15 +130,6 @@ def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> f
         backs += int((np.einsum("fa,fa->f", across, corners[:, 0]) > 0).sum())
         total += len(faces)
     return backs / max(total, 1)
-
-
-CLEAR_CELLS = 2  # About 0.25 m, a head's breadth: no nearer to surface than that is looked from.
-MIN_SPACE_M3 = 1.5  # Of cells so clear: a bathroom of 1.5 x 1.2 m; inside a wardrobe are 0.6.
-MIN_SINGLE_SPACE_M3 = 0.6  # Of the largest space, where there is no such: a shower room.
-MIN_HEIGHT_M = 0.8  # Of the clear part of a space in which one can stand.
-DOWN_VOTES, SIDE_VOTES, BOTH_VOTES = 5, 6, 12  # Of 9 down, 8 level, and 17 level or up.
-HINTED_SIDE_VOTES, HINTED_BOTH_VOTES = 3, 6  # Where the user names a place inside.
-MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that it names.
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""LAS, LAZ and E57: surveyed clouds, in metres and upright by their formats' rules."""
+"""Reader of LAS, LAZ and E57: surveyed clouds, in metres and upright by their formats' rules."""
 
 import tempfile
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""A mesh or a cloud in memory, in the units and axes of its file but near the origin."""
+"""``Mesh`` and ``PointCloud`` in the units and axes of their file, but near the origin."""
 
 from dataclasses import dataclass, field, replace
 

@@ -1,4 +1,4 @@
-"""Many small meshes become one: places, colours, pictures and labels end to end."""
+"""Assembly of many mesh parts into one mesh, with colours, textures and labels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

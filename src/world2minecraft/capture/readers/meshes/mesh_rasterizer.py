@@ -1,9 +1,9 @@
-"""Triangles seen by a pinhole camera: which face each pixel sees, how far, and in what colour.
+"""Rasterizer of triangle meshes: face, depth and colour of each pixel of a pinhole camera.
 
-Each pixel's ray is met with each triangle exactly, by the inverse of the 3x3 matrix of its
+Each pixel's ray is intersected with each triangle exactly, by the inverse of the 3x3 matrix of its
 corners (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997): so
 nothing is clipped, corners behind the camera do no harm, and neighbours leave no gap. Both sides
-of a triangle are seen.
+of a triangle are visible.
 """
 
 import numpy as np

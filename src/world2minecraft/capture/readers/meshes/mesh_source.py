@@ -1,4 +1,8 @@
-"""A mesh or a cloud becomes a capture: set upright, entered, looked at from within."""
+"""``MeshSource``: reads a mesh or point cloud as posed RGB-D frames rendered from within.
+
+The file is read by the reader of its suffix, set upright, and its interior found. Frames are
+rendered when they are first read, and cached for the next stage.
+"""
 
 import threading
 from collections import OrderedDict
@@ -36,8 +40,6 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import Camera
 
-# Which file of a place is the solid, and who reads it.
-
 # Where one solid is exported in several ways side by side, the first is taken.
 READERS = {
     ".glb": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
@@ -68,6 +70,14 @@ AMBIGUOUS_SUFFIXES = (
 MESH_READERS = Registry("solid format", READERS)
 ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder beside the room's own.
 LABELLED = ".labels"  # ScanNet: the same mesh again, coloured by class.
+MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
+MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
+RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
+MARGIN_M = 0.3
+MIN_SIDES_M = (1.0, 1.0, 1.2)
+MAX_SIDE_M = 200.0
+MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
+UNIT_ADVICE = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
 
 
 def find_mesh_file(place: AnyPath) -> AnyPath | None:
@@ -106,13 +116,6 @@ def file_stamp(place: AnyPath) -> tuple[int, ...]:
     file = Path(place.path) if isinstance(place, ArchivePath) else place
     found = file.stat()
     return found.st_size, found.st_mtime_ns
-
-
-# Frames of a solid: rendered when they are first asked for, and kept for the next stage.
-
-MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
-MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
-RenderedView = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(eq=False)
@@ -201,13 +204,6 @@ def view_name(view: int) -> str:
         'view-007'
     """
     return f"view-{view:03d}"
-
-
-MARGIN_M = 0.3
-MIN_SIDES_M = (1.0, 1.0, 1.2)
-MAX_SIDE_M = 200.0
-MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
-UNIT_ADVICE = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
 
 
 class MeshSource:

@@ -1,4 +1,4 @@
-"""Libraries that only some formats need, loaded when such a file comes."""
+"""Import of libraries that only some formats need."""
 
 from importlib import import_module
 from typing import Any

@@ -1,4 +1,4 @@
-"""Which way is up in a solid, and what its unit is.
+"""Estimation of the up axis and the unit of a mesh or point cloud.
 
 Up: rooms are built of three directions at right angles; one of them is up. It is the one that
 more surface faces (floor, ceiling, tables) and along which the room is least long, and things

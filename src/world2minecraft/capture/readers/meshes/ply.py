@@ -1,4 +1,8 @@
-"""A PLY file as a solid: its colours, its pictures and its labels."""
+"""Reader of PLY files, ASCII and binary of either byte order: a mesh or a point cloud.
+
+A file with faces is a mesh, else a cloud. Everything is checked against the header before memory
+is taken. Properties other than position and colour are read by name, so that labels are found.
+"""
 
 import io
 import re
@@ -27,9 +31,46 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.jit import njit
 
-# Rows with lists of their own lengths, as the faces of PLY files are.
-
 MAX_CORNERS = 1 << 16  # Of one polygon.
+MAX_BYTES = 4 << 30
+MAX_HEADER = 1 << 16
+TYPES = {
+    "char": "i1",
+    "uchar": "u1",
+    "short": "i2",
+    "ushort": "u2",
+    "int": "i4",
+    "uint": "u4",
+    "float": "f4",
+    "double": "f8",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "i2",
+    "uint16": "u2",
+    "int32": "i4",
+    "uint32": "u4",
+    "float32": "f4",
+    "float64": "f8",
+}
+FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+Table = tuple[dict[str, np.ndarray], tuple[np.ndarray, np.ndarray]]
+INDICES = ("vertex_indices", "vertex_index")
+NO_LISTS = (np.zeros(0, np.int64), np.zeros(0, np.int64))
+LABEL_NAMES = (
+    "label",
+    "class",
+    "class_id",
+    "semantic",
+    "semantic_label",
+    "segment",
+    "category",
+    "scalar_label",
+    "scalar_class",
+    "scalar_classification",
+    "scalar_scalar_label",
+)
+PICTURE_AXES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+CHUNK = 1 << 20
 
 
 @njit
@@ -131,34 +172,6 @@ def _fans(counts, values, total):
             made += 1
         place += counts[n]
     return triangles, owner
-
-
-# PLY files: a mesh where they have faces, else a cloud. ASCII and binary, of either byte order.
-#
-# All is held against the header before memory is taken. Properties beside place and colour are kept
-# by name, so that labels can be told from them.
-
-MAX_BYTES = 4 << 30
-MAX_HEADER = 1 << 16
-TYPES = {
-    "char": "i1",
-    "uchar": "u1",
-    "short": "i2",
-    "ushort": "u2",
-    "int": "i4",
-    "uint": "u4",
-    "float": "f4",
-    "double": "f8",
-    "int8": "i1",
-    "uint8": "u1",
-    "int16": "i2",
-    "uint16": "u2",
-    "int32": "i4",
-    "uint32": "u4",
-    "float32": "f4",
-    "float64": "f8",
-}
-FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
 @dataclass(frozen=True)
@@ -295,13 +308,6 @@ def _with_unique_name(new: Property, others: list[Property]) -> Property:
     return replace(new, name=name)
 
 
-Table = tuple[dict[str, np.ndarray], tuple[np.ndarray, np.ndarray]]
-INDICES = ("vertex_indices", "vertex_index")
-
-
-NO_LISTS = (np.zeros(0, np.int64), np.zeros(0, np.int64))
-
-
 class _Binary:
     """Reads one table after the other; ``data`` is what is left."""
 
@@ -436,23 +442,6 @@ class _Ascii:
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
             f"{len(self.data):,} numbers are there: copy it again",
         )
-
-
-LABEL_NAMES = (
-    "label",
-    "class",
-    "class_id",
-    "semantic",
-    "semantic_label",
-    "segment",
-    "category",
-    "scalar_label",
-    "scalar_class",
-    "scalar_classification",
-    "scalar_scalar_label",
-)
-PICTURE_AXES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
-CHUNK = 1 << 20
 
 
 def load_ply(place: AnyPath) -> LoadedGeometry:

@@ -1,7 +1,7 @@
-"""The discs of a cloud: how far apart its points lie at each place, and which way they face.
+"""Estimation of surfels of a point cloud: radius by the points' spacing, and normals.
 
-Both are told from the points that share a cell of a grid: a flat patch of n points in a cell of
-side s has them ``s / sqrt(n)`` apart, and its plane is that of the points' own spread.
+Both come from the points that share a cell of a grid: a flat patch of n points in a cell of side s
+has them ``s / sqrt(n)`` apart, and its plane is that of the points' principal axes.
 """
 
 from dataclasses import replace

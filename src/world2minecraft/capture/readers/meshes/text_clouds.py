@@ -1,4 +1,10 @@
-"""Rooms of S3DIS: ``Annotations/chair_1.txt`` and its like, a cloud for each thing."""
+"""Reader of point clouds as text: ``.xyz .pts .txt .csv .asc``, and rooms of S3DIS.
+
+A line is a point, XYZ first. Columns are separated by white space, commas or semicolons. A first
+line with letters names them; a first line with one number is PTS's count. Without names, three
+columns of whole numbers up to 255 are the colour, else three from 0 to 1 that are no normal.
+S3DIS keeps one such file for each object: ``Annotations/chair_1.txt``.
+"""
 
 import re
 import warnings
@@ -17,7 +23,13 @@ from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDowns
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
 
-# Numbers in text: whole files of them, parsed in one go.
+BLOCK = 32 << 20
+MAX_BYTES = 8 << 30
+MAX_COLUMNS = 64
+NAMES = {"x": "x", "y": "y", "z": "z", "r": "red", "g": "green", "b": "blue"}
+LABEL_NAMES = ("label", "class", "classification", "semantic")
+S3DIS_FOLDER = "Annotations"
+MAX_FILES = 5000
 
 
 def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
@@ -36,19 +48,6 @@ def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
         raise DamagedFileError(
             place, "holds what is no number where numbers are due; export it again"
         ) from error
-
-
-# Clouds as text: a point a line, XYZ first. ``.xyz .pts .txt .csv .asc``.
-#
-# Columns may be parted by white space, commas or semicolons. A first line with letters names them;
-# a first line with one number is PTS's count. Without names, three columns of whole numbers up to
-# 255 are the colour, else three of shares from 0 to 1 that are no normal.
-
-BLOCK = 32 << 20
-MAX_BYTES = 8 << 30
-MAX_COLUMNS = 64
-NAMES = {"x": "x", "y": "y", "z": "z", "r": "red", "g": "green", "b": "blue"}
-LABEL_NAMES = ("label", "class", "classification", "semantic")
 
 
 def load_text(place: AnyPath) -> LoadedGeometry:
@@ -186,10 +185,6 @@ def _colour_column(rows: np.ndarray) -> int | None:
 def _to_colours(values: np.ndarray) -> np.ndarray:
     found = to_uint8_colours(values)
     return np.zeros(values.shape, np.uint8) if found is None else found
-
-
-S3DIS_FOLDER = "Annotations"
-MAX_FILES = 5000
 
 
 def load_s3dis(place: AnyPath) -> LoadedGeometry:

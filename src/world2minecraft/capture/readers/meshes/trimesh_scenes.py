@@ -1,4 +1,4 @@
-"""glTF, OBJ, STL and their like, read by trimesh; nothing outside the file's folder is opened."""
+"""Reader of glTF, OBJ, STL and OFF by trimesh; no file outside the mesh's folder is opened."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""USD and USDZ, as iPhone apps write them, read by Pixar's library (the extra ``usd``)."""
+"""Reader of USD and USDZ, as iPhone apps write them, by Pixar's library (the extra ``usd``)."""
 
 import io
 from pathlib import Path

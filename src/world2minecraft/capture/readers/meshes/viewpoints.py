@@ -1,9 +1,8 @@
-"""Where to look from: places and directions that together see all surface, the most telling first.
+"""Selection of camera poses that together see all surface, the most informative first.
 
-Places lie in the clear space at the heights of eyes, and some lower and higher. From each, rays of
-24 upright cameras run through the coarse grid to the sides of cells they meet. Then the camera
-that adds most is taken, again and again: a side seen once more counts half, a third time a
-quarter.
+Positions lie in the clear space at the heights of eyes, and some lower and higher. From each, rays
+of 24 upright cameras run through the voxel grid to the sides of cells they hit. Then the camera
+that adds most is taken, greedily: a side seen once more counts half, a third time a quarter.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
-"""Clouds thinned as they are read: one point for each small cell, the mean of those in it.
+"""Voxel downsampling of clouds as they are read: the mean point of each small cell.
 
-What is held never grows much beyond ``MAX_POINTS`` points, however long the file is.
+Memory never grows much beyond ``MAX_POINTS`` points, however long the file is.
 """
 
 import numpy as np

@@ -30,7 +30,7 @@ from world2minecraft.evaluation.scoring.visibility import (
     Believed,
     reached_cells,
 )
-from world2minecraft.procgen.capture import stated_object
+from world2minecraft.procgen.virtual_scan import object_to_json
 
 # A labelled surface as fine voxels, each with the class and the object of most of it.
 # A triangle is cut into pieces smaller than a voxel. The middle of each, half a voxel deep in the
@@ -300,7 +300,7 @@ def _write(truth: Truth, instance: np.ndarray, name: str) -> None:
     stated = {
         "kind": "scannet",
         "scene": name,
-        "objects": [stated_object(n, item) for n, item in enumerate(truth.objects, start=1)],
+        "objects": [object_to_json(n, item) for n, item in enumerate(truth.objects, start=1)],
         "layouts": [],
     }
     where = {"capture": str(truth.capture.resolve())} if apart else {}

@@ -3,17 +3,24 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.rooms.furniture_model import Colour, Model, Part, legs, shade, whole
+from world2minecraft.procgen.rooms.furniture_model import (
+    Colour,
+    Model,
+    Part,
+    legs,
+    round_to_step,
+    shade,
+)
 
 FURN, OBJS, CHAIR = (int(c) for c in (SemanticClass.FURN, SemanticClass.OBJS, SemanticClass.CHAIR))
-BRIGHT: tuple[Colour, ...] = (
+BRIGHT_COLOURS: tuple[Colour, ...] = (
     (214, 68, 58), (240, 186, 60), (66, 132, 196), (96, 168, 88), (232, 128, 60), (156, 96, 170),
 )  # fmt: skip
 
 
-def bright(rng: np.random.Generator) -> Colour:
+def bright_colour(rng: np.random.Generator) -> Colour:
     """Return a colour of toys."""
-    return BRIGHT[int(rng.integers(len(BRIGHT)))]
+    return BRIGHT_COLOURS[int(rng.integers(len(BRIGHT_COLOURS)))]
 
 
 def stool(colour: Colour) -> Model:
@@ -30,14 +37,14 @@ def toy_shelf(wood: Colour, rng: np.random.Generator) -> Model:
     for z in (0.0, 0.36, h - 0.04):
         parts.append(Part((-d / 2, -w / 2, z, d / 2, w / 2, z + 0.04), wood, "wood"))
     for n in range(4):
-        y = whole(-w / 2 + (w - 0.04) * n / 3)
+        y = round_to_step(-w / 2 + (w - 0.04) * n / 3)
         parts.append(Part((-d / 2, y, 0.0, d / 2, y + 0.04, h), wood, "wood"))
     for n in range(3):
         for z in (0.04, 0.40):
             if rng.random() < 0.7:
-                y = whole(-w / 2 + (w - 0.04) * n / 3) + 0.08
+                y = round_to_step(-w / 2 + (w - 0.04) * n / 3) + 0.08
                 box = (-d / 2 + 0.04, y, z, d / 2 - 0.02, y + 0.24, z + 0.22)
-                parts.append(Part(box, bright(rng)))
+                parts.append(Part(box, bright_colour(rng)))
     return Model("toy_shelf", FURN, (d, w, h), tuple(parts))
 
 
@@ -58,8 +65,8 @@ def coats(rng: np.random.Generator, wood: Colour) -> Model:
     tones: tuple[Colour, ...] = ((58, 66, 88), (120, 74, 60), (88, 104, 82), (176, 150, 110))
     parts = [Part((-d / 2, -w / 2, h - 0.10, -d / 2 + 0.04, w / 2, h), wood, "wood")]
     for n in range(3):
-        y = whole(-w / 2 + 0.06 + 0.29 * n)
-        low = whole(float(rng.uniform(0.0, 0.14))) if n else 0.0
+        y = round_to_step(-w / 2 + 0.06 + 0.29 * n)
+        low = round_to_step(float(rng.uniform(0.0, 0.14))) if n else 0.0
         box = (-d / 2 + 0.04, y, low, d / 2 if n == 0 else d / 2 - 0.04, y + 0.22, h - 0.08)
         parts.append(Part(box, tones[int(rng.integers(len(tones)))], "fabric"))
     return Model("coats", OBJS, (d, w, h), tuple(parts))

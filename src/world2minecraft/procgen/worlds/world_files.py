@@ -13,7 +13,7 @@ from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.scene import scene_from_volume, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
-from world2minecraft.procgen.worlds.furnishing import Thing
+from world2minecraft.procgen.worlds.furnishing import PlacedFurniture
 from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.world import HouseWorld, generate_world
 
@@ -21,12 +21,12 @@ ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
 WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to house.
 
 
-def house_layouts(house: BlockHouse, things: tuple[Thing, ...]) -> tuple[Layout, ...]:
+def house_layouts(house: BlockHouse, things: tuple[PlacedFurniture, ...]) -> tuple[Layout, ...]:
     """Return one layout a room, in the order of the rooms; objects are named by their design."""
     return tuple(_layout(house, room, things) for room in house.rooms)
 
 
-def _layout(house: BlockHouse, room: BlockRoom, things: tuple[Thing, ...]) -> Layout:
+def _layout(house: BlockHouse, room: BlockRoom, things: tuple[PlacedFurniture, ...]) -> Layout:
     scale = house.blocks_per_metre
     own = [gap for gap in house.gaps if room.number in gap.rooms]
     return Layout(
@@ -61,7 +61,7 @@ def _opening(gap: BlockGap, room: BlockRoom, scale: float) -> Opening:
     return Opening(gap.kind, ends[0] / scale, ends[1] / scale, sill, head)
 
 
-def _object(thing: Thing, scale: float) -> LayoutObject:
+def _object(thing: PlacedFurniture, scale: float) -> LayoutObject:
     low, high = np.array(thing.low) / scale, np.array(thing.high) / scale
     sides = high - low
     size = sides[[1, 0, 2]] if thing.quarter_turns % 2 else sides

@@ -20,7 +20,7 @@ from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.phone import phone_shots, write_photos, write_video
 from world2minecraft.procgen.sensors.shots import (
     FrameTruth,
-    Shooting,
+    ScanSettings,
     Shot,
     room_shots,
     room_to_scan,
@@ -66,7 +66,7 @@ def scan_room(
         OutputError: the folder cannot be written. MissingExtraError: ``av`` is not installed, which
             writes videos.
     """
-    how = Shooting(
+    how = ScanSettings(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
     truths: list[FrameTruth] = []
@@ -94,13 +94,13 @@ def room_views(
     height: int = 480,
 ) -> Iterator[View]:
     """Yield the views of a virtual scan one at a time; arguments as ``scan_room``."""
-    how = Shooting(
+    how = ScanSettings(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
     return (shot.view for shot in _shots(room, how))
 
 
-def _shots(room: Room, how: Shooting) -> Iterator[Shot]:
+def _shots(room: Room, how: ScanSettings) -> Iterator[Shot]:
     return phone_shots(room, how) if how.phone else room_shots(room, how)
 
 
@@ -150,13 +150,13 @@ def write_truth(
         "kind": room.kind,
         "seed": room.seed,
         "size_m": round_metres(room.size_m),
-        "objects": [stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
+        "objects": [object_to_json(n, item) for n, item in enumerate(room.objects, start=1)],
         "layouts": [_stated_layout(layout) for layout in room.layouts],
     }
     write_json(Path(folder) / "truth.json", truth)
 
 
-def stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
+def object_to_json(number: int, item: LayoutObject) -> dict[str, Any]:
     """Return an object as ``truth.json`` states it; ``number`` is its instance, from 1."""
     return {
         "id": number,
