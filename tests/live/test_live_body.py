@@ -24,7 +24,7 @@ from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.physics import BlockWorld, Keys, standing_place, step
+from world2minecraft.minecraft.physics import BlockWorld, Keys, find_standing_place, step
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.navigation.server.player import join
@@ -181,7 +181,7 @@ def crowded_walks(crowd, count):
         world, walks = BlockWorld.of_volume(volume), []
         for number in range(count):
             x, z = np.random.default_rng([8, number]).uniform(-11, 11, 2)
-            start = body.place(standing_place(world, (float(x), 64.0, float(z))))
+            start = body.place(find_standing_place(world, (float(x), 64.0, float(z))))
             keys = random_keys(number, 60)
             end = body.hold(keys)[-1].position
             assert body.corrections == 0

@@ -71,7 +71,7 @@ def test_what_a_reply_does_not_say_is_not_guessed(text):
 
 def test_a_reply_of_more_moves_than_were_asked_is_no_step():
     with pytest.raises(UnreadableError, match="it has 2 actions; 1 to 1 are taken"):
-        parse_step(step("FORWARD", "LEFT"), most=1)
+        parse_step(step("FORWARD", "LEFT"), max_moves=1)
 
 
 def test_the_schema_is_one_that_strict_servers_take():

@@ -1,4 +1,4 @@
-"""Kernels that pack and unpack block numbers: chunk sections, gapless arrays, varints and old blocks.
+"""Kernels that pack and unpack block numbers: sections, gapless arrays, varints, old blocks.
 
 A section of 16 x 16 x 16 blocks is packed in 64-bit words. Since 1.16 no number goes over from one
 word to the next, and there are as few bits as the palette needs, four at least. Before 1.16, and in

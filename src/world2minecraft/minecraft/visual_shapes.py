@@ -1,7 +1,7 @@
 """Visible boxes of block states, and which states are drawn at full brightness.
 
-One data file written by hand, ``data/visual_boxes.json``, says what is seen of fences, walls, signs,
-torches, plants and others; all else looks as it collides.
+One data file written by hand, ``data/visual_boxes.json``, says what is seen of fences, walls,
+signs, torches, plants and others; all else looks as it collides.
 """
 
 import json

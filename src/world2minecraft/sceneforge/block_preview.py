@@ -17,7 +17,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.scene import instances_of, placements_of
-from world2minecraft.minecraft.physics import BlockWorld, standing_place
+from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
 from world2minecraft.reconstruction.stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
 from world2minecraft.sceneforge.array_messages import pack_arrays
@@ -111,7 +111,7 @@ class BlockBuild:
         """Where a person begins to walk: feet in cells of the volume, and the game's yaw."""
         spawn = find_spawn(self.volume)
         world = BlockWorld.of_volume(self.volume)
-        place = standing_place(world, spawn.position, self.options.blocks_per_metre)
+        place = find_standing_place(world, spawn.position, self.options.blocks_per_metre)
         x, y, z = (float(v) for v in np.array(place) - self.volume.corner)
         return (x, y, z), spawn.yaw_deg
 

@@ -1,7 +1,8 @@
-"""How the game's player walks: keys and boxes in, the next twentieth of a second out.
+"""The motion of the game's player: keys and boxes in, the next twentieth of a second out.
 
 ``step`` moves a ``Body`` among the boxes of a world by one tick. ``BlockWorld`` gives the
-collision boxes of blocks, ``BoxWorld`` those of a list. ``find_standing_place`` finds where to begin.
+collision boxes of blocks, ``BoxWorld`` those of a list. ``find_standing_place``
+finds where to begin.
 """
 
 from world2minecraft.minecraft.physics.body import TICKS_PER_S, Body, Keys, body_box, eye_height
@@ -22,6 +23,6 @@ __all__ = [
     "World",
     "body_box",
     "eye_height",
-    "standing_place",
+    "find_standing_place",
     "step",
 ]

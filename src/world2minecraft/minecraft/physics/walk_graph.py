@@ -5,8 +5,8 @@ blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, j
 may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut. Closed
 doors and gates count as open, but for iron doors, which open only by a button or the like.
 
-Each column of a grid has gaps in which a body fits, between what is over and under it; their heights
-are counted in sixteenths of a block, as the game's shapes are.
+Each column of a grid has gaps in which a body fits, between what is over and under it; their
+heights are counted in sixteenths of a block, as the game's shapes are.
 """
 
 from dataclasses import dataclass, replace
@@ -72,6 +72,14 @@ class CollisionGrid(NamedTuple):
     boxes: np.ndarray  # float64 [B, 6], block units within their cell
     classes: np.ndarray  # uint8 [X, Y, Z], WET for liquids
     is_full: np.ndarray  # bool [K]
+
+
+class StepLimits(NamedTuple):
+    """How far one step may lead up, down, and down beside the way; in sixteenths of a block."""
+
+    climb: float
+    drop: float
+    step: float
 
 
 class StandingPlaces(NamedTuple):
@@ -303,9 +311,9 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
     column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
     first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
     climb = (JUMP_HEIGHT if how.jump else how.step) * scale * HEIGHT_STEPS + 1e-6
-    limits = (climb, how.drop * scale * HEIGHT_STEPS + 1e-6, how.step * scale * HEIGHT_STEPS + 1e-6)
+    limits = StepLimits(climb, how.drop * scale * HEIGHT_STEPS + 1e-6, how.step * scale * HEIGHT_STEPS + 1e-6)
     need = int(np.ceil(height * HEIGHT_STEPS - 1e-6))
-    start, to = _steps(stands.counts, stands.floor, stands.ceiling, first, deep, need, limits)
+    start, to = _steps(stands, first, deep, need, limits)
     feet = np.stack([xs[column // deep], np.zeros(len(column)), zs[column % deep]], axis=1)
     feet += np.array(volume.corner)
     feet[:, 1] += stands.floor[column, level] / HEIGHT_STEPS
@@ -364,8 +372,13 @@ def _drop_furniture(stands: StandingPlaces) -> StandingPlaces:
 
 
 @njit
-def _steps(count, floor, ceiling, first, deep, need, limits):
-    """Return ``edge_start`` and ``edge_to`` of all stands."""
+def _steps(stands, first, deep, need, limits):
+    """Return ``edge_start`` and ``edge_to`` of all places of ``StandingPlaces``.
+
+    ``first`` int64 [C + 1] numbers the lowest place of each column, of which ``deep`` lie along z;
+    a body is ``need`` sixteenths high.
+    """
+    count, floor, ceiling = stands.counts, stands.floor, stands.ceiling
     total = first[-1]
     start, to = np.zeros(total + 1, np.int64), np.empty(total * 8, np.int32)
     edges, wide = 0, len(count) // deep if deep > 0 else 0
@@ -378,13 +391,13 @@ def _steps(count, floor, ceiling, first, deep, need, limits):
                     if (dx == 0 and dz == 0) or not (0 <= x + dx < wide and 0 <= z + dz < deep):
                         continue
                     other = column + dx * deep + dz
-                    there = _step_target(count, floor, ceiling, other, low, high, need, limits)
+                    there = _step_target(stands, other, low, high, need, limits)
                     if there < 0:
                         continue
                     goal = floor[other, there]
-                    lift, least = max(low, goal), min(low, goal) - limits[2]
+                    lift, least = max(low, goal), min(low, goal) - limits.step
                     if dx != 0 and dz != 0:
-                        one = _can_brush_past(count, floor, ceiling, column + dz, lift, least, need)
+                        one = _can_brush_past(stands, column + dz, lift, least, need)
                         two = _can_brush_past(
                             count, floor, ceiling, column + dx * deep, lift, least, need
                         )
@@ -397,12 +410,12 @@ def _steps(count, floor, ceiling, first, deep, need, limits):
 
 
 @njit
-def _step_target(count, floor, ceiling, other, low, high, need, limits):
+def _step_target(stands, other, low, high, need, limits):
     """Return the stand of another column that one step leads to; -1 for none."""
     for n in range(count[other]):
         goal = floor[other, n]
         lift = max(low, goal)
-        if goal - low > limits[0] or low - goal > limits[1]:
+        if goal - low > limits.climb or low - goal > limits.drop:
             continue
         if high - lift >= need and ceiling[other, n] - lift >= need:
             return n
@@ -410,7 +423,7 @@ def _step_target(count, floor, ceiling, other, low, high, need, limits):
 
 
 @njit
-def _can_brush_past(count, floor, ceiling, side, lift, least, need):
+def _can_brush_past(stands, side, lift, least, need):
     """Whether a body at a height may brush a column that it passes by, and would not fall there."""
     for n in range(count[side]):
         if least <= floor[side, n] <= lift and ceiling[side, n] - lift >= need:

@@ -19,7 +19,7 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.minecraft.physics import BlockWorld, standing_place
+from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
 from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.block_preview import BlockBuild, BuildOptions, SceneSnapshot
 from world2minecraft.sceneforge.editor import Editor
@@ -82,7 +82,7 @@ def _start(grid: OccupancyGrid, world: BlockWorld) -> tuple[tuple[float, float, 
     top = np.flatnonzero((grid.labels == SemanticClass.FLOOR).any(axis=(0, 1)))
     feet = axes @ [*floor[:2], grid.origin_m[2] + (top[-1:].sum() + 1) * grid.voxel_m, 1]
     x, y, z = (float(round(value, 6)) for value in feet[:3])
-    place = standing_place(world, (x, y, z), 1 / grid.voxel_m)
+    place = find_standing_place(world, (x, y, z), 1 / grid.voxel_m)
     way = (axes @ [*things, 1])[:3] - np.array(place)
     yaw_deg = float(np.degrees(np.arctan2(-way[0], way[2]))) if np.hypot(way[0], way[2]) else 0.0
     return place, round(yaw_deg, 3)
