@@ -66,8 +66,7 @@ class FakeServer:
             poses = [self.pose() for _ in range(count)]
             poses[0][0] = "here" if self.mode == "not a number" else poses[0][0]
             return {"poses": poses, **self.news()}
-        from world2minecraft.minecraft.physics import Body, Keys
-        from world2minecraft.minecraft.physics import step
+        from world2minecraft.minecraft.physics import Body, Keys, step
 
         is_late = self.mode == "late" and self.places == 1
         if isinstance(self.body, SimpleNamespace) or is_late or self.mode == "stubborn":

@@ -12,13 +12,13 @@ from tests.navigation.vln_sets import a_trajectory, next_action, next_view
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.navigation import records
 from world2minecraft.navigation.records import (
-    to_json_line,
     check_image_name,
+    parse_record,
     read_episodes,
     read_items,
     read_trajectories,
-    parse_record,
     resolve_scene_path,
+    to_json_line,
     write_episodes,
     write_items,
     write_trajectories,

@@ -386,7 +386,9 @@ def test_a_home_that_cannot_be_written_keeps_nobody_from_opening(tmp_path):
 
 
 def test_a_demo_room_is_made_once_at_a_time(server, script):
-    server.workspace.running_jobs["demo/study-9"] = number = server.workspace.jobs.start("busy", busy)
+    server.workspace.running_jobs["demo/study-9"] = number = server.workspace.jobs.start(
+        "busy", busy
+    )
     answer = script.post("/api/start/demo", json={"kind": "study", "seed": 9})
     assert answer.json() == {"job": number}
     assert len(server.workspace.jobs.states()) == 1

@@ -217,35 +217,6 @@ def pack_gzip(data: bytes, level: int = 6) -> bytes:
     return head + body + struct.pack("<II", zlib.crc32(data), len(data) & 0xFFFFFFFF)
 
 
-__all__ = [
-    "BYTE",
-    "BYTES",
-    "COMPOUND",
-    "DEFAULT_LIMITS",
-    "DOUBLE",
-    "END",
-    "FLOAT",
-    "INT",
-    "INTS",
-    "LIST",
-    "LONG",
-    "LONGS",
-    "SHORT",
-    "STRING",
-    "Byte",
-    "Float",
-    "Long",
-    "NbtLimits",
-    "NbtReader",
-    "Short",
-    "pack_gzip",
-    "read_nbt",
-    "tree_bytes",
-    "unpack",
-    "write_nbt",
-]
-
-
 @dataclass(frozen=True)
 class NbtLimits:
     """What a file may ask for. The defaults hold for every file that the program writes."""

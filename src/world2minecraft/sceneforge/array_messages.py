@@ -1,8 +1,13 @@
-"""One array of a scene as bytes for the page: ``W2MV``.
+"""Arrays as bytes for the page: ``W2MV``, one array of a scene, and packets of several arrays.
 
-Magic, u16 version, u8 dtype (0 u8, 1 u16), u8 flags, 3 x u32 cells along x, y, z, f32 cell size
-in metres, 3 x f32 minimum corner in metres, u32 number of labels; then the values in C order, all
-little-endian. Flag 1 says that each cell has three bytes, its colour.
+``W2MV``: magic, u16 version, u8 dtype (0 u8, 1 u16), u8 flags, 3 x u32 cells along x, y, z, f32
+cell size in metres, 3 x f32 minimum corner in metres, u32 number of labels; then the values in C
+order, all little-endian. Flag 1 says that each cell has three bytes, its colour.
+
+A packet: ``magic`` (4 bytes), u32 length of the header, the header in UTF-8 padded with spaces,
+then the arrays, little-endian and in C order, each at a multiple of 8 bytes after the header. The
+header is JSON; its ``arrays`` is ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the
+header}}``.
 """
 
 import json
@@ -17,17 +22,16 @@ from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.editing.scene import SceneDraft
 
-# Arrays for the page: a JSON header, then each array where the header says.
-#
-# ``magic`` (4 bytes), u32 length of the header, the header in UTF-8 padded with spaces, then the
-# arrays, little-endian and in C order, each at a multiple of 8 bytes after the header. The header's
-# ``arrays`` tells ``{name: {"dtype": "f4", "shape": [...], "offset": bytes after the header}}``.
-
 _ALIGN = 8
+MAGIC, VERSION = b"W2MV", 1
+HEADER = struct.Struct("<4sHBB3If3fI")
+DTYPE_U8, DTYPE_U16 = 0, 1
+FLAG_RGB = 1
+VOLUMES = ("labels", "instance", "confidence", "colour")
 
 
-def pack_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
-    """Return the bytes of arrays and of what is told about them."""
+def pack_arrays(magic: bytes, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
+    """Return the bytes of arrays and of the facts in their header."""
     rows, parts, offset = {}, [], 0
     for name, values in arrays.items():
         kind = values.dtype.newbyteorder("<")
@@ -35,16 +39,9 @@ def pack_arrays(magic: bytes, told: Mapping[str, Any], arrays: Mapping[str, np.n
         rows[name] = {"dtype": kind.str[1:], "shape": list(values.shape), "offset": offset}
         parts += [data, bytes(-len(data) % _ALIGN)]
         offset += len(data) + len(parts[-1])
-    text = json.dumps({**told, "arrays": rows}, separators=(",", ":"), allow_nan=False).encode()
+    text = json.dumps({**facts, "arrays": rows}, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-(len(text) + len(magic) + 4) % _ALIGN)
     return b"".join([magic, struct.pack("<I", len(text)), text, *parts])
-
-
-MAGIC, VERSION = b"W2MV", 1
-HEADER = struct.Struct("<4sHBB3If3fI")
-DTYPE_U8, DTYPE_U16 = 0, 1
-FLAG_RGB = 1
-VOLUMES = ("labels", "instance", "confidence", "colour")
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The tabs that are open: each gets every message in order, or is told to begin anew.
+"""The tabs that are open: each gets every message in order, or starts again.
 
 A tab that does not read (its laptop sleeps) costs a bounded queue: when that is full it is
 emptied, and once the tab reads again its first message is a fresh ``hello``, at which it gets the
@@ -17,7 +17,7 @@ MAX_TABS = 64
 
 
 class Tab:
-    """One open page: what it has yet to be told."""
+    """One open page and the messages that wait for it."""
 
     def __init__(self, actor: str):
         self.actor = actor
@@ -37,7 +37,7 @@ class Tab:
             self.reset()
 
     def reset(self) -> None:
-        """Drop what waits; the tab is to begin anew."""
+        """Drop what waits; the tab starts again."""
         self._queue.clear()
         self._bytes, self._lost = 0, True
         self._something.set()
@@ -57,7 +57,10 @@ class Tab:
 
 
 class Broadcaster:
-    """All tabs of a server. Its methods are called on the server's loop, but for ``broadcast_threadsafe``."""
+    """All tabs of a server.
+
+    Its methods are called on the server's loop, but for ``broadcast_threadsafe``.
+    """
 
     def __init__(self):
         self._tabs: list[Tab] = []
@@ -95,7 +98,7 @@ class Broadcaster:
             self._loop.call_soon_threadsafe(self.broadcast, message)
 
     def restart(self) -> None:
-        """Let every tab begin anew: another document is open."""
+        """Let every tab start again: another document is open."""
         for tab in self._tabs:
             tab.reset()
 

@@ -50,7 +50,11 @@ from world2minecraft.sceneforge.comparison import (
 )
 from world2minecraft.sceneforge.sources import OpenedScene
 
-# What all questions about a scene share; ``queries`` has them by name.
+OPENED, TRUTH = "opened", "truth"
+DECIMALS = 4
+OFFERED = 5
+MIN_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
+MAX_PLACES = 200
 
 
 class QueriedScene(Protocol):
@@ -81,12 +85,6 @@ class Query(BaseModel):
         Raises:
             UsageError: it cannot be answered for this scene; the message says why.
         """
-
-
-# Questions about the cells of a scene: what floats, where holes are, how it differs.
-
-OPENED, TRUTH = "opened", "truth"
-DECIMALS = 4
 
 
 class Floaters(Query):
@@ -219,13 +217,6 @@ CELL_QUERIES: dict[str, type[Query]] = {
     "holes": Holes,
     "compare": Compare,
 }
-
-
-# Questions about the objects of a scene: other furniture, centres, clashes, doubtful places.
-
-OFFERED = 5
-MIN_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
-MAX_PLACES = 200
 
 
 def _odd(value: int) -> int:

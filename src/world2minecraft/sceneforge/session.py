@@ -1,10 +1,11 @@
 """What one server process holds: the document, its tabs, and the order of what is done to it.
 
 Whatever asks something of the document takes its turn, first come, first served. A small edit is
-done at once; what takes long (objects found or matched anew, questions about the whole grid) is
+done at once; what takes long (objects detected or matched again, questions about the whole grid) is
 worked out by a thread, so that pages, pings and volumes are answered meanwhile, and then done as
 one operation, still in its turn. What takes seconds of a large scene runs as a job on a copy, so
-that nobody's turn waits for it.
+that nobody's turn waits for it. ``change_message`` and ``preview_message`` are ``Change`` and
+``Preview`` of ``wire.ts``.
 """
 
 import asyncio
@@ -25,9 +26,11 @@ from world2minecraft.sceneforge.jobs.background_job import TITLES, copy_editor, 
 from world2minecraft.sceneforge.jobs.jobs import Jobs
 from world2minecraft.sceneforge.wire import PROTOCOL, counts_json, object_json
 
-# What the tabs are told of an operation: ``Change`` of wire.ts, and the preview of one.
-
 MAX_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
+QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
+QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.
+NO_ROOM = "no room is open; choose one on the start page"
+LOG = logging.getLogger(__name__)
 
 
 def change_message(editor: Editor, rev: int, step: str, operation: Operation) -> dict[str, Any]:
@@ -94,10 +97,6 @@ def encode_runs(
     return np.column_stack([rows[first, 0], lengths, rows[first, 1:]]).tolist()
 
 
-QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
-QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.
-NO_ROOM = "no room is open; choose one on the start page"
-LOG = logging.getLogger(__name__)
 Value = TypeVar("Value")
 
 

@@ -34,9 +34,10 @@ from world2minecraft.furniture.facing import Surroundings, estimate_facing, read
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import furnish
 
-# Objects of a grid from their centres alone, as ``centers.json`` has them.
-
 MAX_CENTERS = 65535
+RUN_FILES = ("room.npz", "objects.json", "placements.json")
+DEMO_FOLDER = Path(__file__).parent / "demo_room"
+DEMO_OUT = Path("demo-room")
 
 
 def instances_from_centers(
@@ -93,11 +94,6 @@ def _object(
     own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
     yaw = 90.0 * front.quarter_turns
     return ObjectInstance(number, class_id, center, own_axes, yaw, cells, 1.0)
-
-
-RUN_FILES = ("room.npz", "objects.json", "placements.json")
-DEMO_FOLDER = Path(__file__).parent / "demo_room"
-DEMO_OUT = Path("demo-room")
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """``web/src/commands.ts`` from the commands and queries, so that they are defined once.
 
-``python -m world2minecraft.sceneforge.typescript`` writes it; with ``--check`` it only says whether it
-would change.
+``python -m world2minecraft.sceneforge.typescript`` writes it; with ``--check`` it only reports
+whether it would change.
 """
 
 import json
@@ -20,12 +20,12 @@ from world2minecraft.sceneforge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"
 HEAD = """\
-// Made from the commands of edit/scene and the queries of forge by
+// Made from the commands of editing.scene and the queries of sceneforge by
 // `python -m world2minecraft.sceneforge.typescript`; do not edit.
 """
 PLAIN = {"integer": "number", "number": "number", "string": "string", "boolean": "boolean"}
 WIDTH = 100
-MOST_SPELLED = 4  # Longer arrays of one length are arrays like any other.
+MAX_SPELLED = 4  # Longer arrays of one length are arrays like any other.
 
 
 def main(words: Sequence[str]) -> int:
@@ -105,7 +105,7 @@ def _array(schema: Mapping[str, Any]) -> str:
         return f"[{', '.join(_type(item) for item in schema['prefixItems'])}]"
     item = _type(schema.get("items", {}))
     count = int(schema.get("maxItems", 0))
-    if schema.get("minItems") == count and 0 < count <= MOST_SPELLED:
+    if schema.get("minItems") == count and 0 < count <= MAX_SPELLED:
         return f"[{', '.join([item] * count)}]"
     return f"({item})[]" if " | " in item else f"{item}[]"
 

@@ -1,4 +1,4 @@
-"""The captures of the start page: each a folder of its own below one home.
+"""The captures of the start page: each a folder of its own below one home; uploads to them.
 
 ::
 
@@ -7,7 +7,8 @@
     HOME/captures/ID/survey.json    what was found in it, with survey.png
     HOME/captures/ID/run            what came of it: a run's folder
 
-HOME is ``SceneForge`` in the user's data folder.
+HOME is ``SceneForge`` in the user's data folder. Names of uploaded files are hostile until they are
+checked, then safe as paths on every system.
 """
 
 import os
@@ -34,8 +35,6 @@ from world2minecraft.core.errors import (
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.minecraft.worlds.installation import check_name
 
-# The names of uploaded files: hostile until checked, then safe as paths on every system.
-
 MAX_FILES = 20_000  # Ten minutes of frames with depth and confidence.
 MAX_DEPTH = 12
 MAX_PART_BYTES = 200
@@ -44,6 +43,12 @@ MAX_PATH_BYTES = 400
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f]')
 IGNORED = frozenset({".ds_store", "thumbs.db", "desktop.ini"})  # What systems leave in folders.
+MAX_UPLOAD_BYTES = 512 << 20
+SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
+CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
+RUN, UPLOAD = "run", "upload"
+_ID = re.compile(r"[a-z0-9-]{1,64}")
+_RECEIVING: set[Path] = set()  # The files that bytes come to now, in this process.
 
 
 @dataclass(frozen=True)
@@ -147,14 +152,6 @@ def common_folder(files: Iterable[UploadFile]) -> str:
     firsts = {one.path.partition("/") for one in files}
     tops = {top for top, _, _ in firsts}
     return min(tops) if len(tops) == 1 and all(rest for _, _, rest in firsts) else ""
-
-
-MAX_UPLOAD_BYTES = 512 << 20
-SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
-CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
-RUN, UPLOAD = "run", "upload"
-_ID = re.compile(r"[a-z0-9-]{1,64}")
-_RECEIVING: set[Path] = set()  # The files that bytes come to now, in this process.
 
 
 def user_home() -> Path:

@@ -198,7 +198,7 @@ class Workspace:
         return self.job_at(capture.id)
 
     def job_at(self, what: str) -> str | None:
-        """Return the id of the job that is at work on what ``running_jobs`` names so, None for none."""
+        """Return the id of the job under a key of ``running_jobs``, None where none runs."""
         number = self.running_jobs.get(what)
         if number is None:
             return None

@@ -18,7 +18,7 @@ from world2minecraft.minecraft.physics import (
     Keys,
     body_box,
     eye_height,
-    standing_place,
+    find_standing_place,
     step,
 )
 from world2minecraft.minecraft.physics.collisions import find_overlaps, free_distance
@@ -196,7 +196,7 @@ def test_cells_walk_like_their_boxes():
 
 def test_one_begins_where_one_fits():
     world = BoxWorld([[-9, -1, -9, 9, 0, 9], [-1, 0, -1, 1, 3, 1]])
-    x, y, z = standing_place(world, (0.9, 0.0, 0.0))
+    x, y, z = find_standing_place(world, (0.9, 0.0, 0.0))
     assert y == 0
     assert not find_overlaps(world.boxes, body_box((x, y, z))).any()
     assert math.hypot(x - 0.9, z) < 0.8
@@ -204,10 +204,10 @@ def test_one_begins_where_one_fits():
 
 def test_one_begins_upon_what_is_there():
     world = BoxWorld([[-9, -1, -9, 9, 0.25, 9]])
-    assert standing_place(world, (2.0, 0.0, 2.0)) == (2.0, 0.25, 2.0)
+    assert find_standing_place(world, (2.0, 0.0, 2.0)) == (2.0, 0.25, 2.0)
 
 
 def test_one_begins_where_one_was_put_when_nothing_is_free():
-    assert standing_place(BoxWorld([]), (1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
+    assert find_standing_place(BoxWorld([]), (1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
     solid = BoxWorld([[-99, -99, -99, 99, 99, 99]])
-    assert standing_place(solid, (1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
+    assert find_standing_place(solid, (1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)

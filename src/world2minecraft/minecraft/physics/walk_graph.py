@@ -311,7 +311,9 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
     column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
     first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
     climb = (JUMP_HEIGHT if how.jump else how.step) * scale * HEIGHT_STEPS + 1e-6
-    limits = StepLimits(climb, how.drop * scale * HEIGHT_STEPS + 1e-6, how.step * scale * HEIGHT_STEPS + 1e-6)
+    limits = StepLimits(
+        climb, how.drop * scale * HEIGHT_STEPS + 1e-6, how.step * scale * HEIGHT_STEPS + 1e-6
+    )
     need = int(np.ceil(height * HEIGHT_STEPS - 1e-6))
     start, to = _steps(stands, first, deep, need, limits)
     feet = np.stack([xs[column // deep], np.zeros(len(column)), zs[column % deep]], axis=1)
@@ -398,9 +400,7 @@ def _steps(stands, first, deep, need, limits):
                     lift, least = max(low, goal), min(low, goal) - limits.step
                     if dx != 0 and dz != 0:
                         one = _can_brush_past(stands, column + dz, lift, least, need)
-                        two = _can_brush_past(
-                            count, floor, ceiling, column + dx * deep, lift, least, need
-                        )
+                        two = _can_brush_past(stands, column + dx * deep, lift, least, need)
                         if not (one and two):
                             continue
                     to[edges] = first[other] + there
@@ -411,13 +411,13 @@ def _steps(stands, first, deep, need, limits):
 
 @njit
 def _step_target(stands, other, low, high, need, limits):
-    """Return the stand of another column that one step leads to; -1 for none."""
-    for n in range(count[other]):
-        goal = floor[other, n]
+    """Return the place of another column that one step leads to; -1 for none."""
+    for n in range(stands.counts[other]):
+        goal = stands.floor[other, n]
         lift = max(low, goal)
         if goal - low > limits.climb or low - goal > limits.drop:
             continue
-        if high - lift >= need and ceiling[other, n] - lift >= need:
+        if high - lift >= need and stands.ceiling[other, n] - lift >= need:
             return n
     return -1
 
@@ -425,7 +425,7 @@ def _step_target(stands, other, low, high, need, limits):
 @njit
 def _can_brush_past(stands, side, lift, least, need):
     """Whether a body at a height may brush a column that it passes by, and would not fall there."""
-    for n in range(count[side]):
-        if least <= floor[side, n] <= lift and ceiling[side, n] - lift >= need:
+    for n in range(stands.counts[side]):
+        if least <= stands.floor[side, n] <= lift and stands.ceiling[side, n] - lift >= need:
             return True
     return False

@@ -10,8 +10,8 @@ __all__ = [
     "Agent",
     "Decision",
     "Guide",
-    "VlmAgent",
     "Observation",
     "Task",
+    "VlmAgent",
     "make_agent",
 ]

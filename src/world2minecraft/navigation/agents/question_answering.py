@@ -1,4 +1,4 @@
-"""Answer the items of a set: the reply format, its parser, and a vision-language model that answers.
+"""Answer the items of a set: the reply format, its parser, and a model that answers.
 
 ``letter`` asks as supervised models were trained, ``think`` as models trained by reward were, and
 ``json`` holds any model to a schema. All are parsed alike: a JSON field, a tagged answer, an

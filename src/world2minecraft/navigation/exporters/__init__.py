@@ -8,4 +8,4 @@
 from world2minecraft.navigation.exporters.options import ExportOptions
 from world2minecraft.navigation.exporters.set_export import FORMATS, ExportResult, export_set
 
-__all__ = ["FORMATS", "ExportResult", "ExportOptions", "export_set"]
+__all__ = ["FORMATS", "ExportOptions", "ExportResult", "export_set"]

@@ -35,9 +35,10 @@ from world2minecraft.rendering.path_tracing.scattering import (
 from world2minecraft.rendering.path_tracing.sky_light import sample_sun, sky_radiance
 from world2minecraft.rendering.ray_caster.ray import (
     SOLID,
-    away_from_zero,
+    Hit,
     first_cell,
     first_hit,
+    make_ray,
     ray_of_pixel,
 )
 from world2minecraft.rendering.scene_tables import NO_FACE
@@ -62,7 +63,7 @@ def trace_rows(
         material: uint8 [L, M, 5], see ``rendering.atlas``.
         side_px: the side of a texture.
         decode: float32 [256], sRGB to light.
-        lamps: ``Lamps``.
+        lamps: ``Emitters``.
         sky: ``SkyLight``.
         pose: float64 [3, 4], camera to grid.
         rays: float64 [4], fx, fy, cx, cy in pixels.
@@ -113,25 +114,21 @@ def begin_path(pose, rays, u, v, sample, s):
 @inlined
 def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
     """Follow a path to its end."""
-    ox, oy, oz = s.o[0], s.o[1], s.o[2]
-    dx, dy, dz = away_from_zero(s.d[0]), away_from_zero(s.d[1]), away_from_zero(s.d[2])
-    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    ray = make_ray(s.o[0], s.o[1], s.o[2], s.d[0], s.d[1], s.d[2])
+    hit = first_cell(tables.space.shape, ray)
     after = 0.0
     for _ in range(depth + MAX_PANES):
-        element = -1
-        if i >= 0:
-            t, i, j, k, face, element = first_hit(
-                tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
-            )
-        if i < 0 or face == NO_FACE:
+        if hit.i >= 0:
+            hit = first_hit(tables, side_px, ray, hit, after)
+        if hit.i < 0 or hit.face == NO_FACE:
             add_sky_radiance(sky, s)
             return
-        s.t, s.face, s.element = t, face, element
-        s.cell[0], s.cell[1], s.cell[2] = i, j, k
+        s.t, s.face, s.element = hit.t, hit.face, hit.element
+        s.cell[0], s.cell[1], s.cell[2] = hit.i, hit.j, hit.k
         load_surface(tables, material, side_px, decode, s)
         if s.clear and not reflects_on_glass(s, depth):
-            after, face = t, NO_FACE
+            after = hit.t
+            hit = Hit(hit.t, hit.i, hit.j, hit.k, NO_FACE, hit.element)
             continue
         if not s.clear:
             first = s.lobe == UNDECIDED
@@ -154,10 +151,8 @@ def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
                 return
         for n in range(3):
             s.o[n] = s.at[n] + _OFF * s.out[n]
-        ox, oy, oz = s.o[0], s.o[1], s.o[2]
-        dx, dy, dz = away_from_zero(s.d[0]), away_from_zero(s.d[1]), away_from_zero(s.d[2])
-        rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-        t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        ray = make_ray(s.o[0], s.o[1], s.o[2], s.d[0], s.d[1], s.d[2])
+        hit = first_cell(tables.space.shape, ray)
         after = 0.0
 
 
@@ -290,24 +285,24 @@ def add_direct_light(tables, side_px, decode, lamps, sky, s):
 @inlined
 def is_unoccluded(tables, side_px, decode, s):
     """Tell whether nothing but glass lies on the way to what is aimed at; ``way`` is its tint."""
-    ox, oy, oz = s.at[0] + _OFF * s.out[0], s.at[1] + _OFF * s.out[1], s.at[2] + _OFF * s.out[2]
-    dx, dy, dz = away_from_zero(s.to[0]), away_from_zero(s.to[1]), away_from_zero(s.to[2])
-    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
+    ray = make_ray(
+        s.at[0] + _OFF * s.out[0], s.at[1] + _OFF * s.out[1], s.at[2] + _OFF * s.out[2],
+        s.to[0], s.to[1], s.to[2],
+    )  # fmt: skip
     s.way[0], s.way[1], s.way[2] = 1.0, 1.0, 1.0
     until = s.far - 3 * _OFF
-    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    hit = first_cell(tables.space.shape, ray)
     after = 0.0
     for _ in range(MAX_PANES):
-        if i < 0:
+        if hit.i < 0:
             return True
-        t, i, j, k, face, n = first_hit(
-            tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
-        )
+        hit = first_hit(tables, side_px, ray, hit, after)
+        t, i, j, k, face, n = hit
         if face == NO_FACE or t >= until:
             return True
         if n < 0 or not is_glass(tables, n, face):
             return False
-        x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+        x, y, z = ray.ox + t * ray.dx, ray.oy + t * ray.dy, ray.oz + t * ray.dz
         at = glass_texel(tables, side_px, n, face, i, j, k, x, y, z)
         texel = tables.texels[tables.layers[n, face], at]
         if texel[3] >= SOLID:
@@ -315,7 +310,8 @@ def is_unoccluded(tables, side_px, decode, s):
         alpha = texel[3] / 255.0
         for c in range(3):
             s.way[c] *= 1.0 - alpha + alpha * decode[texel[c]] * tables.tints[n, face, c]
-        after, face = t, NO_FACE
+        after = t
+        hit = Hit(t, i, j, k, NO_FACE, n)
     return False
 
 

@@ -1,26 +1,42 @@
 """The picture kernel: one pass over the pixels gives depth, ids, faces, normals and colour.
 
-``draw_rows`` takes tiles of eight by eight pixels: what a tile's rays have in common is found once
-(``rendering.ray_caster.packet_tracing``), then each pixel meets its surface, writes what was asked for, and is coloured
-by ``rendering.ray_caster.shading``. Glass is gone through front to back, so that nothing needs sorting.
+``draw_rows`` takes tiles of eight by eight pixels: what a tile's rays share is found once
+(``rendering.ray_caster.packet_tracing``), then each pixel finds its surface, writes the outputs
+that are wanted, and is coloured by ``rendering.ray_caster.shading``. Glass is passed front to
+back, so that nothing needs sorting.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.core.jit import inner, lean
-from world2minecraft.rendering.ray_caster.packet_tracing import DIVERGED, MISS, PLANE, trace_packet
-from world2minecraft.rendering.ray_caster.plane_tiles import draw_plane_tile
+from world2minecraft.rendering.ray_caster.packet_tracing import (
+    DIVERGED,
+    MISS,
+    PLANE,
+    trace_packet,
+)
+from world2minecraft.rendering.ray_caster.plane_tiles import (
+    COLOUR,
+    FACE_NUMBERS,
+    INSTANCE,
+    SEMANTIC,
+    Tile,
+    draw_plane_tile,
+)
 from world2minecraft.rendering.ray_caster.ray import (
-    away_from_zero,
+    Hit,
     first_cell,
     first_hit,
     floor_clamped,
     is_see_through,
+    make_ray,
     ray_of_pixel,
 )
 from world2minecraft.rendering.ray_caster.shading import (
+    CORNER_LIGHT_NUMBERS,
     MAX_GLASS_PANES,
-    MEMO,
     SURFACE_OFFSET,
     dominant_face,
     normal_of,
@@ -31,45 +47,53 @@ from world2minecraft.rendering.ray_caster.shading import (
 from world2minecraft.rendering.scene_tables import NO_FACE, OWNER, TURN
 
 TILE = 8
-# Bits of what is wanted.
-COLOUR, OPAQUE, NORMAL, SEMANTIC, INSTANCE = 1, 2, 4, 8, 16
-# What a band of rows needs for itself, see ``draw_rows``: numbers, and rows of whole ones. Four of
-# those are of the tile's bundle, the others of that towards the sun.
-SCRATCH, CELLS = 96, 8
+# Bits of ``PixelArrays.wanted``, with COLOUR, SEMANTIC and INSTANCE.
+OPAQUE, NORMAL = 2, 4
 
 
-def band_memory() -> tuple[np.ndarray, np.ndarray]:
-    """Return ``cells`` and ``scratch`` of ``draw_rows``, for one band."""
-    return np.empty((CELLS, 3), np.int64), np.empty(SCRATCH)
+class BandMemory(NamedTuple):
+    """Scratch of one band of rows; bands that are drawn at the same time have one each."""
+
+    cells: np.ndarray  # int64 [8, 3]: four rows of the tile's packet, four of that to the sun
+    corners: np.ndarray  # float64 [4, 6]: origin and direction of the tile's corner rays
+    corner_light: np.ndarray  # float64 [CORNER_LIGHT_NUMBERS], see ``cache_corner_light``
+    face: np.ndarray  # float64 [FACE_NUMBERS], see ``prepare_face``
+
+
+def band_memory() -> BandMemory:
+    """Return the scratch of one band."""
+    return BandMemory(
+        np.empty((8, 3), np.int64),
+        np.empty((4, 6)),
+        np.empty(CORNER_LIGHT_NUMBERS),
+        np.empty(FACE_NUMBERS),
+    )
 
 
 @lean
-def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scratch, out):
+def draw_rows(tables, side_px, camera, first, last, shading, memory, out):
     """Fill the rows ``first`` to ``last`` (past the end) of the outputs.
 
     Args:
         tables: ``SceneTables``, with textures of ``side_px``.
         side_px: the side of a texture.
-        pose: float64 [3, 4], carries the camera (z forward, metres) to the grid.
-        rays: float64 [4], fx, fy, cx, cy in pixels, or pixels a metre for parallel rays.
-        spread: 1 for a pinhole camera, 0 for parallel rays.
+        camera: ``GridCamera``.
         first: the first row, a whole number of tiles.
         last: past the last row.
-        lamp: the light, see ``rendering.ray_caster.shading``.
-        cells: int64 [CELLS, 3], this band's own.
-        scratch: float64 [SCRATCH], this band's own.
+        shading: ``ShadingParameters``.
+        memory: ``BandMemory``, this band's own.
         out: ``PixelArrays``; depth and distance are 0 where there is nothing, index and thing -1,
             face ``NO_FACE``.
     """
     width = out.depth.shape[1]
-    corners, memo = scratch[:24].reshape((4, 6)), scratch[24:]
-    memo[0] = -1.0
-    face = scratch[24 + MEMO :]
-    lit = lamp.lit
-    plain = spread == 1 and not out.wanted & (OPAQUE | NORMAL)
+    corners = memory.corners
+    memory.corner_light[0] = -1.0
+    lit = shading.lit
+    plain = camera.spread == 1 and not out.wanted & (OPAQUE | NORMAL)
     plain = plain and lit.headlight == 0
     sunny = lit.sun_r > 0 and out.wanted & COLOUR
-    memo[4] = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
+    pose, rays = camera.pose, camera.rays
+    scale = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)  # Blocks per metre.
     for v_tile in range(first, last, TILE):
         v_end = min(v_tile + TILE, last)
         for u_tile in range(0, width, TILE):
@@ -77,35 +101,37 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
             for corner in range(4):
                 x = (u_tile + 0.5 if corner % 2 == 0 else u_end - 0.5) - rays[2]
                 y = (v_tile + 0.5 if corner < 2 else v_end - 0.5) - rays[3]
-                ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x / rays[0], y / rays[1], spread)
+                ox, oy, oz, dx, dy, dz = ray_of_pixel(
+                    pose, x / rays[0], y / rays[1], camera.spread
+                )
                 row = corners[corner]
                 row[0], row[1], row[2], row[3], row[4], row[5] = ox, oy, oz, dx, dy, dz
-            mode, side, layer = trace_packet(tables.space, tables.bounds, corners, cells)
+            packet = trace_packet(tables.space, tables.bounds, corners, memory.cells)
             sun = 0.0
-            if mode == PLANE and plain and sunny:
-                sun = sun_on_tile(tables, lit, corners, cells[4:], side, layer)
-            if mode == PLANE and plain and sun >= 0:
+            if packet.mode == PLANE and plain and sunny:
+                sun = sun_on_tile(tables, lit, corners, memory.cells[4:], packet)
+            if packet.mode == PLANE and plain and sun >= 0:
+                tile = Tile(u_tile, u_end, v_tile, v_end, packet.face, packet.layer)
                 draw_plane_tile(
-                    tables, side_px, pose, rays, lamp, memo[4], face, cells, sun, side, layer,
-                    u_tile, u_end, v_tile, v_end, out.wanted & COLOUR != 0,
-                    out.wanted & SEMANTIC != 0, out.wanted & INSTANCE != 0, out,
+                    tables, side_px, camera, shading, scale, sun, tile, memory.cells, memory.face,
+                    out,
                 )  # fmt: skip
                 continue
             for v in range(v_tile, v_end):
                 for u in range(u_tile, u_end):
                     draw_pixel(
-                        tables, side_px, pose, rays, spread, lamp, memo, cells, mode, side, layer,
-                        u, v, out,
-                    )  # fmt: skip
+                        tables, side_px, camera, shading, scale, memory, packet, u, v, out
+                    )
 
 
 @inner
-def sun_on_tile(tables, lit, corners, cells, side, layer):
+def sun_on_tile(tables, lit, corners, cells, packet):
     """Return the cosine of the sun on a tile's plane, 0 in shadow, -1 where pixels differ.
 
-    The rays from the four corners' places towards the sun are a bundle like any other. ``corners``
+    The rays from the four corners' hits towards the sun are a packet like any other. ``corners``
     are the tile's rays; they become those towards the sun.
     """
+    side, layer = packet.face, packet.layer
     nx, ny, nz = normal_of(tables, -1, side)
     cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
     if cosine <= 0:
@@ -117,68 +143,68 @@ def sun_on_tile(tables, lit, corners, cells, side, layer):
         row[0], row[1], row[2] = row[0] + t * row[3], row[1] + t * row[4], row[2] + t * row[5]
         row[axis] = layer + side % 2 + (SURFACE_OFFSET if side % 2 else -SURFACE_OFFSET)
         row[3], row[4], row[5] = lit.sun_x, lit.sun_y, lit.sun_z
-    mode, _, _ = trace_packet(tables.space, tables.bounds, corners, cells)
+    mode = trace_packet(tables.space, tables.bounds, corners, cells).mode
     if mode == DIVERGED:
         return -1.0
     return cosine if mode == MISS else 0.0
 
 
 @inner
-def draw_pixel(
-    tables, side_px, pose, rays, spread, lamp, memo, cells, mode, side, layer, u, v, out
-):  # fmt: skip
-    """Draw one pixel; the arguments are those of ``draw_rows``, and what its tile has found."""
+def draw_pixel(tables, side_px, camera, shading, scale, memory, packet, u, v, out):
+    """Draw one pixel.
+
+    ``scale`` is blocks per metre, ``packet`` how far the rays of its tile stay together; the other
+    arguments are those of ``draw_rows``.
+    """
+    rays, spread = camera.rays, camera.spread
     x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
-    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
-    dx, dy, dz = away_from_zero(dx), away_from_zero(dy), away_from_zero(dz)
-    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    scale = memo[4]  # Blocks a metre.
+    ox, oy, oz, dx, dy, dz = ray_of_pixel(camera.pose, x, y, spread)
+    ray = make_ray(ox, oy, oz, dx, dy, dz)
     block_px = rays[0] / scale
     length = np.sqrt((x * x + y * y) * spread + 1.0)
-    t, i, j, k = 0.0, 0, 0, 0
-    element = -1
-    if mode == MISS:
-        side = NO_FACE
-    elif side != NO_FACE:  # From the plane that the tile has come to.
-        t, i, j, k = enter_layer(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    hit = Hit(0.0, 0, 0, 0, NO_FACE, -1)
+    if packet.mode == MISS:
+        pass
+    elif packet.face != NO_FACE:  # From the plane that the tile has come to.
+        hit = enter_layer(packet, memory.cells, ray)
     else:
-        t, i, j, k, side = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        hit = first_cell(tables.space.shape, ray)
     red, green, blue, clear, after = 0.0, 0.0, 0.0, 1.0, 0.0
     for pane in range(MAX_GLASS_PANES):
-        if pane > 0 or (mode == DIVERGED and i >= 0):
-            t, i, j, k, side, element = first_hit(
-                tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, side, after
-            )
+        if pane > 0 or (packet.mode == DIVERGED and hit.i >= 0):
+            hit = first_hit(tables, side_px, ray, hit, after)
         if pane == 0:
-            write_hit(tables, out, v, u, t, length, i, j, k, side, element)
+            write_hit(tables, out, v, u, length, hit)
             if not out.wanted & (COLOUR | OPAQUE):
                 return
-        if side == NO_FACE:
+        if hit.face == NO_FACE:
             break
-        glass = is_see_through(tables, side_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz)
+        glass = is_see_through(tables, side_px, ray, hit)
         if out.wanted & COLOUR:
             r, g, b, alpha = shade_hit(
-                tables, side_px, lamp, memo, block_px / t if spread > 0 else block_px,
-                t, i, j, k, side, element, ox, oy, oz, dx, dy, dz, length * scale,
+                tables, side_px, shading, memory.corner_light,
+                block_px / hit.t if spread > 0 else block_px, ray, hit, length * scale,
             )  # fmt: skip
             share = clear * alpha if glass else clear
             red, green, blue = red + share * r, green + share * g, blue + share * b
             clear -= share
         if not glass:
             break
-        side, after = NO_FACE, t
+        after = hit.t
+        hit = Hit(hit.t, hit.i, hit.j, hit.k, NO_FACE, hit.element)
     if out.wanted & OPAQUE:
-        write_opaque_hit(tables, out, v, u, t, i, j, k, side, element)
+        write_opaque_hit(tables, out, v, u, hit)
     if out.wanted & COLOUR:
-        if side == NO_FACE:
-            write_sky(lamp, out.colour, v, u, dx, dy, dz, red, green, blue, clear)
+        if hit.face == NO_FACE:
+            write_sky(shading, out.colour, v, u, ray, red, green, blue, clear)
         else:
-            write_pixel(lamp, out.colour, v, u, red, green, blue)
+            write_pixel(shading, out.colour, v, u, red, green, blue)
 
 
 @inner
-def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
-    """Write what the first surface is."""
+def write_hit(tables, out, v, u, length, hit):
+    """Write the outputs of the first surface but its colour."""
+    t, i, j, k, side, element = hit
     if side == NO_FACE:
         out.depth[v, u], out.distance[v, u] = 0.0, 0.0
         out.index[v, u], out.thing[v, u], out.face[v, u] = -1, -1, NO_FACE
@@ -206,8 +232,9 @@ def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
 
 
 @inner
-def write_opaque_hit(tables, out, v, u, t, i, j, k, side, element):
-    """Write what lies behind all glass."""
+def write_opaque_hit(tables, out, v, u, hit):
+    """Write the outputs of the first surface behind all glass."""
+    t, i, j, k, side, element = hit
     at, owner = owner_of_hit(tables, element, i, j, k)
     none = side == NO_FACE
     out.opaque_depth[v, u] = 0.0 if none else t
@@ -228,13 +255,20 @@ def owner_of_hit(tables, element, i, j, k):
 
 
 @inner
-def enter_layer(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz):
-    """Return ``(t, i, j, k)`` where a ray enters a layer of cells by a face."""
-    plane = layer + side % 2
-    t = (plane - ox) * rx if side < 2 else ((plane - oy) * ry if side < 4 else (plane - oz) * rz)
-    return (
+def enter_layer(packet, cells, ray):
+    """Return the ``Hit`` where a ray enters the layer of cells that its packet has reached."""
+    side = packet.face
+    plane = packet.layer + side % 2
+    t = (
+        (plane - ray.ox) * ray.rx
+        if side < 2
+        else ((plane - ray.oy) * ray.ry if side < 4 else (plane - ray.oz) * ray.rz)
+    )
+    return Hit(
         t,
-        floor_clamped(ox + t * dx, cells[0, 0], cells[1, 0] + 1),
-        floor_clamped(oy + t * dy, cells[0, 1], cells[1, 1] + 1),
-        floor_clamped(oz + t * dz, cells[0, 2], cells[1, 2] + 1),
+        floor_clamped(ray.ox + t * ray.dx, cells[0, 0], cells[1, 0] + 1),
+        floor_clamped(ray.oy + t * ray.dy, cells[0, 1], cells[1, 1] + 1),
+        floor_clamped(ray.oz + t * ray.dz, cells[0, 2], cells[1, 2] + 1),
+        side,
+        -1,
     )

@@ -1,9 +1,11 @@
 """Tiles whose pixels all meet one plane of full cubes: walls, floors and ceilings, most of a room.
 
 Depth there is one division, and what belongs to a cell's face (its texture, its light, its class)
-is found once for the pixels that show it. The same surfaces and colours as ``rendering.ray_caster.picture_kernel`` gives,
-pixel by pixel, without the search.
+is found once for the pixels that show it. Surfaces and colours are those that
+``rendering.ray_caster.picture_kernel`` finds pixel by pixel.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,23 +16,50 @@ from world2minecraft.rendering.ray_caster.ray import floor_clamped
 from world2minecraft.rendering.ray_caster.shading import MAX_TEXELS
 from world2minecraft.rendering.scene_tables import EVEN, FLAGS, UNSHADED
 
-# What ``prepare_face`` tells, by the place (p, q) on the face: red, green and blue light as
+# Bits of ``PixelArrays.wanted``; the others are those of ``picture_kernel``.
+COLOUR, SEMANTIC, INSTANCE = 1, 8, 16
+# What ``prepare_face`` fills in, by the place (p, q) on the face: red, green and blue light as
 # a + b p + c q + d p q from 0, 4 and 8 on; the texture's u and v as a + b p + c q from 12 and 15
 # on; at 18 the light that it has of itself; its tint from 19 on.
 FACE_NUMBERS = 22
 
 
+class Tile(NamedTuple):
+    """Pixels of a tile, and the plane that they show: ``side`` of the cells of ``layer``."""
+
+    u: int
+    u_end: int
+    v: int
+    v_end: int
+    side: int
+    layer: int
+
+
 @inner_call
 def draw_plane_tile(
-    tables, side_px, pose, rays, lamp, scale, face, cells, sun, side, layer, u_tile, u_end, v_tile,
-    v_end, with_colour, with_semantic, with_instance, out,
+    tables, side_px, camera, shading, scale, sun, tile, cells, face, out
 ):  # fmt: skip
-    """Draw a tile of a pinhole camera; arguments as in ``draw_rows``, and what its tile has found.
+    """Draw a tile of a pinhole camera.
 
-    ``scale`` is blocks a metre, ``face`` float64 [FACE_NUMBERS] is the band's own, ``sun`` the
-    cosine of the sun on all of the tile, or 0. Where the sun, or a light at the camera, differs
-    from pixel to pixel, ``rendering.ray_caster.picture_kernel`` has to do it.
+    Where the sun, or a light at the camera, differs from pixel to pixel, ``picture_kernel`` draws
+    the pixels one by one.
+
+    Args:
+        tables: ``SceneTables``, with textures of ``side_px``.
+        side_px: the side of a texture.
+        camera: ``GridCamera``.
+        shading: ``ShadingParameters``.
+        scale: blocks per metre.
+        sun: the cosine of the sun on the whole tile, 0 in shadow.
+        tile: ``Tile``.
+        cells: int64 [2, 3] or more: the first and the last cell that the tile covers.
+        face: float64 [FACE_NUMBERS], scratch.
+        out: ``PixelArrays``.
     """
+    pose, rays = camera.pose, camera.rays
+    side, layer = tile.side, tile.layer
+    with_colour = out.wanted & COLOUR != 0
+    with_semantic, with_instance = out.wanted & SEMANTIC != 0, out.wanted & INSTANCE != 0
     axis = side // 2
     p = 1 if axis == 0 else 0
     q = 1 if axis == 2 else 2
@@ -42,9 +71,9 @@ def draw_plane_tile(
     texture, index, semantic, instance = np.uint64(0), np.int32(0), np.uint8(0), np.uint16(0)
     coarse = side_px * scale / rays[0]  # Texels a pixel at one metre, seen straight on.
     coarse *= coarse
-    for v in range(np.uint64(v_tile), np.uint64(v_end)):
+    for v in range(np.uint64(tile.v), np.uint64(tile.v_end)):
         y = (v + 0.5 - rays[3]) / rays[1]
-        for u in range(np.uint64(u_tile), np.uint64(u_end)):
+        for u in range(np.uint64(tile.u), np.uint64(tile.u_end)):
             x = (u + 0.5 - rays[2]) / rays[0]
             d = a[0] * x + a[1] * y + a[2]
             t = away * (1.0 / d)
@@ -56,7 +85,7 @@ def draw_plane_tile(
                 i = layer if axis == 0 else cell_p
                 j = layer if axis == 1 else (cell_p if axis == 0 else cell_q)
                 k = layer if axis == 2 else cell_q
-                texture, index = prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour)
+                texture, index = prepare_face(tables, shading, face, sun, side, i, j, k, with_colour)
                 semantic, instance = tables.semantic[index], tables.instance[index]
             length = np.sqrt(x * x + y * y + 1.0)
             out.depth[v, u], out.distance[v, u] = t, t * length
@@ -84,17 +113,17 @@ def draw_plane_tile(
             red = max(own, face[0] + face[1] * fp + face[2] * fq + face[3] * both)
             green = max(own, face[4] + face[5] * fp + face[6] * fq + face[7] * both)
             blue = max(own, face[8] + face[9] * fp + face[10] * fq + face[11] * both)
-            decode = lamp.tone.decode
+            decode = shading.tone.decode
             out.colour[v, u, 0], out.colour[v, u, 1], out.colour[v, u, 2] = tone_map_pixel(
                 decode[np.uint64(texel[0])] * face[19] * red,
                 decode[np.uint64(texel[1])] * face[20] * green,
                 decode[np.uint64(texel[2])] * face[21] * blue,
-                lamp.tone,
+                shading.tone,
             )
 
 
 @inner_call
-def prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour):
+def prepare_face(tables, shading, face, sun, side, i, j, k, with_colour):
     """Fill ``face`` with what belongs to one face of a cell; return its texture and its index."""
     first, shape = tables.window[0], tables.window[1]
     index = np.int32(((i - first[0]) * shape[1] + j - first[1]) * shape[2] + k - first[2])
@@ -103,7 +132,7 @@ def prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour):
     n = tables.refs[tables.look_start[tables.looks[i, j, k]]]
     flags = tables.traits[n, FLAGS]
     axis, up = side // 2, side % 2
-    shade = 1.0 if flags & UNSHADED else lamp.shades[side]
+    shade = 1.0 if flags & UNSHADED else shading.shades[side]
     mask = 0xFFF if flags & EVEN else 0x3FFF
     light = tables.light[axis]
     step = up * 2 - 1
@@ -117,16 +146,16 @@ def prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour):
         else:
             w00, w01 = light[i, j, k + step + 1], light[i, j + 1, k + step + 1]
             w10, w11 = light[i + 1, j, k + step + 1], light[i + 1, j + 1, k + step + 1]
-        c00 = shade * lamp.corners[w00 & mask, channel]
-        c01 = shade * lamp.corners[w01 & mask, channel]
-        c10 = shade * lamp.corners[w10 & mask, channel]
-        c11 = shade * lamp.corners[w11 & mask, channel]
+        c00 = shade * shading.corners[w00 & mask, channel]
+        c01 = shade * shading.corners[w01 & mask, channel]
+        c10 = shade * shading.corners[w10 & mask, channel]
+        c11 = shade * shading.corners[w11 & mask, channel]
         face[4 * channel], face[4 * channel + 1] = c00, c10 - c00
         face[4 * channel + 2], face[4 * channel + 3] = c01 - c00, c11 - c10 - c01 + c00
         face[19 + channel] = tables.tints[n, side, channel]
-    face[0] += sun * lamp.lit.sun_r
-    face[4] += sun * lamp.lit.sun_g
-    face[8] += sun * lamp.lit.sun_b
+    face[0] += sun * shading.lit.sun_r
+    face[4] += sun * shading.lit.sun_g
+    face[8] += sun * shading.lit.sun_b
     p = 1 if axis == 0 else 0
     q = 1 if axis == 2 else 2
     for row in range(2):
@@ -135,5 +164,5 @@ def prepare_face(tables, lamp, face, sun, side, i, j, k, with_colour):
         face[13 + 3 * row], face[14 + 3 * row] = m[p], m[q]
     face[18] = 0.0
     if tables.emission[n] > 0:
-        face[18] = emission_light(15.0 * tables.emission[n], lamp.lit)
+        face[18] = emission_light(15.0 * tables.emission[n], shading.lit)
     return np.uint64(tables.layers[n, side]), index

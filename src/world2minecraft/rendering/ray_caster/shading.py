@@ -19,10 +19,11 @@ from world2minecraft.rendering.light.pixel_light import (
 from world2minecraft.rendering.light.sky import Background, background_light
 from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
 from world2minecraft.rendering.ray_caster.ray import (
-    away_from_zero,
+    Hit,
     first_cell,
     first_hit,
     is_see_through,
+    make_ray,
     transform,
 )
 from world2minecraft.rendering.scene_tables import (
@@ -35,7 +36,7 @@ from world2minecraft.rendering.scene_tables import (
     UNSHADED,
 )
 
-MEMO = 20  # Numbers; see ``cache_corner_light``.
+CORNER_LIGHT_NUMBERS = 20  # See ``cache_corner_light``.
 MAX_GLASS_PANES = 32  # Panes that one ray goes through.
 MAX_TEXELS = 2.25  # For a pixel, before the next mip level takes over.
 SURFACE_OFFSET = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
@@ -55,15 +56,22 @@ class ShadingParameters(NamedTuple):
 
 
 @inner
-def shade_hit(
-    tables, side_px, lamp, memo, block_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz, speed
-):  # fmt: skip
-    """Return ``(red, green, blue, alpha)`` of what ``first_hit`` gave, linear.
+def shade_hit(tables, side_px, shading, memo, block_px, ray, hit, speed):
+    """Return ``(red, green, blue, alpha)`` of a hit, linear.
 
-    ``block_px`` is how many pixels a block would cover there, seen straight on; ``speed`` is the
-    length of the direction; ``memo`` float64 [MEMO] is the band's own.
+    Args:
+        tables: ``SceneTables``, with textures of ``side_px``.
+        side_px: the side of a texture.
+        shading: ``ShadingParameters``.
+        memo: float64 [CORNER_LIGHT_NUMBERS], see ``cache_corner_light``.
+        block_px: how many pixels a block would cover there, seen straight on.
+        ray: ``Ray``.
+        hit: ``Hit`` with a surface.
+        speed: the length of the ray's direction.
     """
-    gx, gy, gz = ox + t * dx, oy + t * dy, oz + t * dz
+    t, i, j, k, side, element = hit
+    dx, dy, dz = ray.dx, ray.dy, ray.dz
+    gx, gy, gz = ray.ox + t * dx, ray.oy + t * dy, ray.oz + t * dz
     px, py, pz = gx - i, gy - j, gz - k
     n = np.int64(element)
     if element < 0:
@@ -79,31 +87,31 @@ def shade_hit(
         nx, ny, nz = normal_of(tables, turn, side)
         face = dominant_face(nx, ny, nz)
         cosine = abs(nx * dx + ny * dy + nz * dz) / speed
-        shade = face_shade(nx, ny, nz, cosine, lamp.lit)
+        shade = face_shade(nx, ny, nz, cosine, shading.lit)
     else:
         cosine = abs(dx if side < 2 else (dy if side < 4 else dz)) / speed
-        shade = lamp.shades[np.uint64(side)]
-        if lamp.lit.headlight > 0:
+        shade = shading.shades[np.uint64(side)]
+        if shading.lit.headlight > 0:
             nx, ny, nz = normal_of(tables, -1, side)
-            shade = face_shade(nx, ny, nz, cosine, lamp.lit)
+            shade = face_shade(nx, ny, nz, cosine, shading.lit)
     if flags & UNSHADED:
         shade = 1.0
-    r, g, b, alpha = texel_colour(tables, side_px, lamp.tone, n, side, ex, ey, ez, block_px, cosine)
-    cache_corner_light(tables.light, lamp.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
+    r, g, b, alpha = texel_colour(tables, side_px, shading.tone, n, side, ex, ey, ez, block_px, cosine)
+    cache_corner_light(tables.light, shading.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
     p, q = (py if face < 2 else px), (py if face >= 4 else pz)
     p, q = min(max(p, 0.0), 1.0), min(max(q, 0.0), 1.0)
     red = shade * bilinear(memo, 8, p, q)
     green = shade * bilinear(memo, 12, p, q)
     blue = shade * bilinear(memo, 16, p, q)
-    if lamp.lit.sun_r > 0:
-        sun = sun_cosine(tables, side_px, lamp.lit, turn, side, gx, gy, gz)
+    if shading.lit.sun_r > 0:
+        sun = sun_cosine(tables, side_px, shading.lit, turn, side, gx, gy, gz)
         red, green, blue = (
-            red + sun * lamp.lit.sun_r,
-            green + sun * lamp.lit.sun_g,
-            blue + sun * lamp.lit.sun_b,
+            red + sun * shading.lit.sun_r,
+            green + sun * shading.lit.sun_g,
+            blue + sun * shading.lit.sun_b,
         )
     if tables.emission[n] > 0:
-        own = emission_light(15.0 * tables.emission[n], lamp.lit)
+        own = emission_light(15.0 * tables.emission[n], shading.lit)
         red, green, blue = max(own, red), max(own, green), max(own, blue)
     return r * red, g * green, b * blue, alpha
 
@@ -244,38 +252,36 @@ def cache_corner_light(light, corners, memo, i, j, k, face, even, px, py, pz):
 @inner_call
 def is_sunlit(tables, side_px, lit, ox, oy, oz):
     """Tell whether nothing but glass lies between a point and the sun."""
-    dx, dy, dz = away_from_zero(lit.sun_x), away_from_zero(lit.sun_y), away_from_zero(lit.sun_z)
-    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    t, i, j, k, face = first_cell(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
-    if i < 0:
+    ray = make_ray(ox, oy, oz, lit.sun_x, lit.sun_y, lit.sun_z)
+    hit = first_cell(tables.space.shape, ray)
+    if hit.i < 0:
         return True
     for _ in range(MAX_GLASS_PANES):
-        t, i, j, k, face, element = first_hit(
-            tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, t
-        )
-        if face == NO_FACE:
+        hit = first_hit(tables, side_px, ray, hit, hit.t)
+        if hit.face == NO_FACE:
             return True
-        if not is_see_through(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
+        if not is_see_through(tables, side_px, ray, hit):
             return False
-        face = NO_FACE
+        hit = Hit(hit.t, hit.i, hit.j, hit.k, NO_FACE, hit.element)
     return False
 
 
 @inner
-def write_pixel(lamp, colour, v, u, red, green, blue):
+def write_pixel(shading, colour, v, u, red, green, blue):
     """Write a linear colour as sRGB."""
-    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(red, green, blue, lamp.tone)
+    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(red, green, blue, shading.tone)
 
 
 @inner
-def write_sky(lamp, colour, v, u, dx, dy, dz, red, green, blue, clear):
+def write_sky(shading, colour, v, u, ray, red, green, blue, clear):
     """Write the sky, seen through what lies before it."""
-    if lamp.by_row:
+    if shading.by_row:
         share = v / max(colour.shape[0] - 1, 1)
-        r = lamp.paper[0, 0] * (1 - share) + lamp.paper[1, 0] * share
-        g = lamp.paper[0, 1] * (1 - share) + lamp.paper[1, 1] * share
-        b = lamp.paper[0, 2] * (1 - share) + lamp.paper[1, 2] * share
+        r = shading.paper[0, 0] * (1 - share) + shading.paper[1, 0] * share
+        g = shading.paper[0, 1] * (1 - share) + shading.paper[1, 1] * share
+        b = shading.paper[0, 2] * (1 - share) + shading.paper[1, 2] * share
     else:
+        dx, dy, dz = ray.dx, ray.dy, ray.dz
         speed = np.sqrt(dx * dx + dy * dy + dz * dz)
-        r, g, b = background_light(dx / speed, dy / speed, dz / speed, lamp.background)
-    write_pixel(lamp, colour, v, u, red + clear * r, green + clear * g, blue + clear * b)
+        r, g, b = background_light(dx / speed, dy / speed, dz / speed, shading.background)
+    write_pixel(shading, colour, v, u, red + clear * r, green + clear * g, blue + clear * b)

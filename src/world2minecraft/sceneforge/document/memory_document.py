@@ -1,4 +1,4 @@
-"""A scene that is open: edited step by step, its history in memory and kept nowhere."""
+"""An open scene: edited step by step, its history in memory and not on disk."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +12,7 @@ from world2minecraft.sceneforge.sources import OpenedScene
 
 
 class MemoryDocument:
-    """One scene that is edited; ``Document`` is one that is kept.
+    """One scene that is edited; ``Document`` is one on disk.
 
     ``draft`` is the scene, ``history`` changes it. ``rev`` counts the steps so far, those of undo
     and redo too; ``saved_rev`` is its value when the scene was saved last. ``read_only`` is why

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
 from world2minecraft.core.types import Operation
-from world2minecraft.editing.scene import Timeline, SceneDraft
+from world2minecraft.editing.scene import SceneDraft, Timeline
 from world2minecraft.editing.scene.journal import UNDO, SceneJournal, Step
 from world2minecraft.sceneforge.document.snapshots import (
     State,

@@ -1,7 +1,6 @@
 """A whole scene at one revision, as a file: the base of a document and its snapshots.
 
-Arrays of a ``.npz``: those of ``room.npz``; ``objects`` uint8, as ``editing/scene/journal.py`` packs
-them; ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the journal that goes on from
+Arrays of a ``.npz``: those of ``room.npz``; ``objects`` uint8, as ``editing.scene.journal`` packs them; ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the journal that goes on from
 here) and ``line`` (what undo and redo reach).
 """
 
@@ -16,7 +15,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_npz, write_npz
 from world2minecraft.core.types import OccupancyGrid, SceneObject
-from world2minecraft.editing.scene import Timeline, SceneDraft
+from world2minecraft.editing.scene import SceneDraft, Timeline
 from world2minecraft.editing.scene.journal import pack_objects, unpack_objects
 from world2minecraft.formats.run_arrays import GRID_ARRAYS
 

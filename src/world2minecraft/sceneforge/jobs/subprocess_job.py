@@ -1,7 +1,7 @@
 """Work in a process of its own, which can be cut off at any moment.
 
-The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a task and
-what it needs, and answers with JSON lines: steps, then a result or an error. It ends by itself
+The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a task
+and what it needs, and answers with JSON lines: steps, then a result or an error. It ends by itself
 when the program that began it is gone.
 """
 

@@ -1,4 +1,4 @@
-"""The process that does a task for a job; see ``apart``.
+"""The process that does a task for a job; see ``subprocess_job``.
 
 In: one JSON line on stdin, ``[task, {what it needs}]``. Out: JSON lines, each a step
 ``{"stage", "done", "total", "note"}``, then ``{"result"}`` or ``{"error"}``. When stdin is closed

@@ -1,7 +1,9 @@
 """``GET /api/build`` and ``GET /api/collision``: the blocks of the scene as it is now.
 
 A build is made by a thread, one at a time, while the scene is edited further; the last few are
-kept. One that takes longer is told to all tabs as a job.
+cached. One that takes longer is announced to all tabs as a job. Who walks in the page does so by
+the physics of ``minecraft.physics``: it is sent the shape of each cell, the boxes of each shape, and
+where to begin.
 """
 
 import asyncio
@@ -26,12 +28,9 @@ from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.jobs import JobState, describe_error
 from world2minecraft.sceneforge.session import Session
 
-# What stops a person who walks in the page: the boxes of a build's blocks, or of voxels.
-#
-# The page walks by the same physics as ``walk/``; it is sent the shape of each cell, the boxes of
-# each shape, and where to begin.
-
 MAGIC = b"W2MC"
+MAX_CACHED = 6  # Packed answers; a room has about a megabyte each.
+NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
 
 
 def build_collision(build: BlockBuild) -> bytes:
@@ -95,8 +94,6 @@ def _middle(grid: OccupancyGrid, where: np.ndarray) -> np.ndarray:
     return grid.origin_m + middle * grid.voxel_m
 
 
-MAX_CACHED = 6  # Packed answers; a room has about a megabyte each.
-NOTIFY_AFTER_S = 1.0  # What is ready by then needs no word.
 Key = tuple[Any, ...]
 
 

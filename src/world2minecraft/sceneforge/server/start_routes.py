@@ -215,7 +215,9 @@ async def _demo(request: Request) -> Response:
     name, title = f"demo/{kind}-{seed}", f"A {kind} room"
     if (running := workspace.job_at(name)) is not None:
         return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
-    work = run_in_subprocess("demo", out=str(workspace.home / name), kind=kind, seed=seed, frames=frames)
+    work = run_in_subprocess(
+        "demo", out=str(workspace.home / name), kind=kind, seed=seed, frames=frames
+    )
     workspace.running_jobs[name] = number = workspace.jobs.start(
         title, work, demo_stage_seconds(), _remember(workspace)
     )
