@@ -20,7 +20,7 @@ BACK = 0.05  # Blocks by which one draws back.
 
 @contextmanager
 def mineflayer_rules(world):
-    """Within it, ``minecraft.physics.player_motion`` moves a player in a world as mineflayer does."""
+    """Within it, our physics moves a player in a world as mineflayer does."""
     step = sys.modules["world2minecraft.minecraft.physics.player_motion"]
     of_the_game = sweep.sweep_with_step
 

@@ -19,10 +19,10 @@ from world2minecraft.minecraft.bedrock.block_entities import bedrock_data, java_
 from world2minecraft.minecraft.bedrock.mcstructure import read_mcstructure, write_mcstructure
 from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import (
-    bedrock_of_java,
     bedrock_table,
-    is_kept,
-    java_of_bedrock,
+    bedrock_to_java,
+    is_preserved,
+    java_to_bedrock,
 )
 from world2minecraft.minecraft.block_states import states_of
 from world2minecraft.minecraft.blocks import block_table
@@ -63,10 +63,10 @@ def test_a_bedrock_state_goes_to_java_and_comes_back_as_itself():
         name, _, rest = text[:-1].partition("[")
         pairs = (pair.split("=") for pair in rest.split(",") if pair)
         states = {k: {"true": Byte(1), "false": Byte(0)}.get(v, v) for k, v in pairs}
-        java = java_of_bedrock(name, states)
+        java = bedrock_to_java(name, states)
         assert java is not None
-        again = bedrock_of_java(java)
-        assert again is not None and java_of_bedrock(*again) == java
+        again = java_to_bedrock(java)
+        assert again is not None and bedrock_to_java(*again) == java
 
 
 @pytest.mark.parametrize(
@@ -83,13 +83,13 @@ def test_a_bedrock_state_goes_to_java_and_comes_back_as_itself():
     ],
 )
 def test_states_as_the_game_has_them(java, bedrock):
-    assert bedrock_of_java(java) == bedrock
+    assert java_to_bedrock(java) == bedrock
 
 
 def test_names_of_newer_and_older_games_are_read():
-    assert java_of_bedrock("minecraft:oak_planks", {}) == "minecraft:oak_planks"  # From 1.20.50.
-    assert java_of_bedrock("minecraft:wool", {"color": "red"}) == "minecraft:red_wool"  # Before.
-    assert java_of_bedrock("minecraft:camera", {}) is None
+    assert bedrock_to_java("minecraft:oak_planks", {}) == "minecraft:oak_planks"  # From 1.20.50.
+    assert bedrock_to_java("minecraft:wool", {"color": "red"}) == "minecraft:red_wool"  # Before.
+    assert bedrock_to_java("minecraft:camera", {}) is None
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_names_of_newer_and_older_games_are_read():
     ],
 )
 def test_only_what_games_compute_may_differ(before, after, kept):
-    assert is_kept(before, after) is kept
+    assert is_preserved(before, after) is kept
 
 
 # Files.
@@ -119,7 +119,7 @@ def test_an_independent_reader_finds_the_blocks(tmp_path):
     palette = tree["structure"]["palette"]["default"]["block_palette"]
     numbers = np.array([int(n) for n in tree["structure"]["block_indices"][0]]).reshape(5, 4, 3)
     for cell in np.ndindex(5, 4, 3):
-        name, states = bedrock_of_java(volume.palette[volume.states[cell]]) or ("minecraft:air", {})
+        name, states = java_to_bedrock(volume.palette[volume.states[cell]]) or ("minecraft:air", {})
         entry = palette[int(numbers[cell])]
         assert str(entry["name"]) == name
         assert {str(k): v for k, v in entry["states"].unpack().items()} == states
@@ -145,10 +145,10 @@ def test_of_all_states_few_are_told_otherwise():
     """And those are counted as lost; none is a block that the program builds with."""
     lost = set()
     for state in some_states(6000, 0):
-        bedrock = bedrock_of_java(state)
+        bedrock = java_to_bedrock(state)
         assert bedrock is not None
-        back = java_state(java_of_bedrock(*bedrock) or AIR, bedrock_data(state) or {})
-        if not is_kept(state, back):
+        back = java_state(bedrock_to_java(*bedrock) or AIR, bedrock_data(state) or {})
+        if not is_preserved(state, back):
             lost.add(state.partition("[")[0].removeprefix("minecraft:"))
     assert not [name for name in lost if name.endswith(("_stairs", "_slab", "_wall", "_bed"))]
     assert {"note_block", "mushroom_stem"} <= lost

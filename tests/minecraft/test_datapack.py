@@ -14,7 +14,7 @@ from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.commands import datapack
 from world2minecraft.minecraft.commands.datapack import datapack_files, write_datapack
-from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, merge_boxes
+from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, cover_with_boxes
 from world2minecraft.minecraft.commands.player_scale import size_functions, size_pack
 from world2minecraft.minecraft.commands.writer import snbt
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
@@ -173,7 +173,7 @@ def boxes_cover(states: np.ndarray, boxes: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("limit", [1, 7, 100, MAX_FILL])
 def test_boxes_cover_each_block_once_within_the_limit(limit):
     states = random_volume((14, 9, 11), 4, (0, 0, 0)).states
-    boxes = merge_boxes(states, limit)
+    boxes = cover_with_boxes(states, limit)
     np.testing.assert_array_equal(boxes_cover(states, boxes), states)
     assert np.prod(boxes[:, 4:] - boxes[:, 1:4] + 1, axis=1).max() <= limit
 
@@ -181,9 +181,9 @@ def test_boxes_cover_each_block_once_within_the_limit(limit):
 def test_a_plain_room_takes_few_boxes():
     states = np.zeros((20, 10, 20), np.uint16)
     states[:, 0], states[0], states[-1], states[:, :, 0], states[:, :, -1] = 1, 2, 2, 2, 2
-    assert len(merge_boxes(states)) <= 6
-    assert len(merge_boxes(np.zeros((3, 3, 3), np.uint16))) == 0
-    assert len(merge_boxes(np.ones((32, 33, 32), np.uint16))) == 2
+    assert len(cover_with_boxes(states)) <= 6
+    assert len(cover_with_boxes(np.zeros((3, 3, 3), np.uint16))) == 0
+    assert len(cover_with_boxes(np.ones((32, 33, 32), np.uint16))) == 2
 
 
 # What surrounds the commands.

@@ -5,7 +5,7 @@ import pytest
 from block_volumes import volume_of
 
 from world2minecraft.core.types import BlockEntity, Entity
-from world2minecraft.minecraft.block_entities import count_lost_data, in_game
+from world2minecraft.minecraft.block_entities import convert_volume, count_lost_data
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte
@@ -50,8 +50,8 @@ def test_what_is_no_stack_stays():
     )
     states = np.ones((1, 1, 1), np.uint16)
     volume = volume_of(states, ("minecraft:air", CHEST), (1, 2, 3), block_entities=(spawner,))
-    assert in_game(volume, 4440) is volume
-    assert in_game(volume_with(NEW), 4440).entities[0].nbt["Item"] is NEW
+    assert convert_volume(volume, 4440) is volume
+    assert convert_volume(volume_with(NEW), 4440).entities[0].nbt["Item"] is NEW
     losses = Losses()
     count_lost_data(volume, 4440, losses)
     assert not len(losses)

@@ -6,7 +6,7 @@ from block_volumes import state_texts, volume_of
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
@@ -265,8 +265,8 @@ def test_signs_go_to_older_games_and_back():
     volume = volume_of(
         np.ones((1, 1, 1)), (AIR, "minecraft:oak_sign"), (0, 0, 0), block_entities=(sign,)
     )
-    assert in_game(volume, 3465) is volume
-    (back,) = in_game(volume, 2586).block_entities
+    assert convert_volume(volume, 3465) is volume
+    (back,) = convert_volume(volume, 2586).block_entities
     assert back.nbt.items() >= {**old, "Text4": '{"text":""}'}.items()
     assert upgrade_sign(back.nbt) == today
 

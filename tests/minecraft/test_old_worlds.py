@@ -18,11 +18,11 @@ from world2minecraft.minecraft.bit_packing import (
     word_count,
 )
 from world2minecraft.minecraft.block_names import (
-    count_unknown,
+    count_mod_blocks,
+    count_unknown_blocks,
     is_unknown,
-    mod_blocks,
     read_state,
-    written_state,
+    write_state,
 )
 from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.file_format import Losses
@@ -216,7 +216,7 @@ NAMES = [
 
 @pytest.mark.parametrize(("state", "version", "written"), NAMES)
 def test_a_name_goes_to_another_game_and_back(state, version, written):
-    assert written_state(state, version) == written
+    assert write_state(state, version) == written
     assert read_state(written, version) == state
 
 
@@ -230,14 +230,14 @@ def test_blocks_that_a_game_does_not_know_are_counted():
     )
     volume = volume_of(np.array([0, 1, 1, 2, 3, 4]).reshape(6, 1, 1), palette, (0, 0, 0))
     losses = Losses()
-    count_unknown(volume, game_version("1.16.5"), losses)
+    count_unknown_blocks(volume, game_version("1.16.5"), losses)
     assert list(losses) == [("blocks minecraft:light, which Minecraft 1.16.5 does not know", 3)]
-    count_unknown(volume, game_version("1.17"), losses)
+    count_unknown_blocks(volume, game_version("1.17"), losses)
     assert len(losses) == 1
     told = Losses()
-    count_unknown(furnished_volume(), game_version("1.19.3"), told)
+    count_unknown_blocks(furnished_volume(), game_version("1.19.3"), told)
     assert list(told) == [("display entities, which Minecraft 1.19.3 does not know", 1)]
-    count_unknown(furnished_volume(), game_version("1.19.4"), told)
+    count_unknown_blocks(furnished_volume(), game_version("1.19.4"), told)
     assert len(told) == 1
     assert is_unknown("minecraft:stone_slab", 1631) and not is_unknown("minecraft:stone", 1519)
     assert is_unknown("minecraft:cherry_planks", 3218)
@@ -247,7 +247,7 @@ def test_blocks_that_a_game_does_not_know_are_counted():
 def test_blocks_of_mods_are_counted_by_mod():
     palette = (AIR, "tmeo:bed", "minecraft:stone", "shop:shelf", "tmeo:bed[facing=east]", "a:b")
     volume = volume_of(np.array([1, 4, 2, 3, 0, 1]).reshape(6, 1, 1), palette, (0, 0, 0))
-    assert list(mod_blocks(volume).items()) == [("shop", 1), ("tmeo", 3)]
+    assert list(count_mod_blocks(volume).items()) == [("shop", 1), ("tmeo", 3)]
 
 
 def test_old_versions_come_before_the_others():

@@ -8,7 +8,7 @@ from block_volumes import volume_of
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
@@ -28,7 +28,7 @@ def volume_with(*held):
 
 def written(version, entity=ENTITY):
     data_version = game_version(version).data_version
-    return in_game(volume_with(entity), data_version).block_entities[0].nbt
+    return convert_volume(volume_with(entity), data_version).block_entities[0].nbt
 
 
 def test_from_1_20_on_a_sign_has_two_sides_of_json():
@@ -124,10 +124,10 @@ def test_other_block_entities_stay_as_they_are():
     chest = BlockEntity((1, 2, 3), "minecraft:chest", {"Items": []})
     states = np.ones((1, 1, 1), np.uint16)
     volume = volume_of(states, ("minecraft:air", "minecraft:chest"), (1, 2, 3))
-    assert in_game(volume, 3337) is volume
+    assert convert_volume(volume, 3337) is volume
     old = BlockEntity((1, 2, 3), "minecraft:sign", {"Text1": "x"})
     both = volume_of(states, ("minecraft:air", STATE), (1, 2, 3), block_entities=(chest, old))
-    assert in_game(both, 4325).block_entities == (chest, old)
+    assert convert_volume(both, 4325).block_entities == (chest, old)
 
 
 @pytest.mark.parametrize(

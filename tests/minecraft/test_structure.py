@@ -36,7 +36,10 @@ from world2minecraft.minecraft.schematics.structure import (
     skip_value,
     write_structure,
 )
-from world2minecraft.minecraft.schematics.structure_pack import pieces, write_structure_pack
+from world2minecraft.minecraft.schematics.structure_pack import (
+    split_into_pieces,
+    write_structure_pack,
+)
 from world2minecraft.minecraft.state_nbt import state_text
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
@@ -200,7 +203,7 @@ def test_a_value_cut_short_is_never_skipped_beyond_its_end(tree, data):
 
 def test_a_large_volume_comes_in_pieces_of_48(tmp_path):
     volume = random_volume((100, 50, 30), 40, (-7, 60, 9), seed=5)
-    parts = pieces(volume)
+    parts = split_into_pieces(volume)
     assert sorted(parts) == [(x, y, 0) for x in range(3) for y in range(2)]
     joined = np.full(volume.states.shape, "", object)
     for part in parts.values():

@@ -1,4 +1,4 @@
-"""Plays ``body.mjs`` without Node: the small flat is its server, and ``minecraft.physics.player_motion`` its player.
+"""Plays ``body.mjs`` without Node: the small flat is its server, and our physics its player.
 
 ``python fake_body.py MODE``: honest, or one of the ways to misbehave that the tests name.
 """

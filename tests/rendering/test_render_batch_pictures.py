@@ -69,10 +69,11 @@ def test_the_kernel_has_memory_for_the_way_to_the_sun(scene, poses, monkeypatch)
     sunny = LightSettings(exposure=1.2, sun_shadow=True)
     render_batch(scene, SMALL, poses, outputs=("colour",), light=sunny, threads=2)
     assert len(given) == 2
-    for *_, cells, scratch, _ in given:
-        assert (cells.shape, cells.dtype) == ((8, 3), np.int64)
-        assert (scratch.shape, scratch.dtype) == ((96,), np.float64)
-    assert len({cells.ctypes.data for *_, cells, _, _ in given}) == 2
+    for *_, memory, _ in given:
+        assert (memory.cells.shape, memory.cells.dtype) == ((8, 3), np.int64)
+        shapes = [array.shape for array in memory[1:]]
+        assert shapes == [(4, 6), (CORNER_LIGHT_NUMBERS,), (FACE_NUMBERS,)]
+    assert len({memory.cells.ctypes.data for *_, memory, _ in given}) == 2
 
 
 def test_only_what_is_asked_for_is_there(scene, poses):

@@ -16,7 +16,7 @@ from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.unlabelled_volume import unlabelled
+from world2minecraft.minecraft.unlabelled_volume import unlabelled_volume
 from world2minecraft.navigation.agents.registry import AGENTS
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.semantics import LABELLERS
@@ -91,7 +91,7 @@ def test_the_labeller_caps_what_it_claims():
 def test_the_format_brings_blocks_back_and_refuses_a_lie(tmp_path):
     palette = ("minecraft:air", "minecraft:stone", "minecraft:oak_slab[type=bottom]")
     states = np.arange(24, dtype=np.uint16).reshape(2, 3, 4) % 3
-    volume = unlabelled(states, palette, (0, 0, 0))
+    volume = unlabelled_volume(states, palette, (0, 0, 0))
     write_blocks(volume, tmp_path / "house.blocks", losses=Losses())
     again = read_blocks(tmp_path / "house.blocks")
     assert (again.states == states).all() and again.palette == palette

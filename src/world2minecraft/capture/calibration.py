@@ -78,14 +78,14 @@ def estimate_colour_camera(views: Iterable[View]) -> ColourCameraEstimate | None
         if view.depth_m is not None and view.colour_camera is not None:
             stated = view.colour_camera
             edges.append(_extract_edges(view))
-    sought, apart = edges[0::2], edges[1::2]
-    if stated is None or min(_edge_count(sought), _edge_count(apart)) < MIN_POINTS:
+    fitted, held_out = edges[0::2], edges[1::2]
+    if stated is None or min(_edge_count(fitted), _edge_count(held_out)) < MIN_POINTS:
         return None
     enlarged = stated.width_px / WORK_WIDTH_PX
     matrix = np.array([stated.fx_px, stated.fy_px, stated.cx_px, stated.cy_px]) / enlarged
-    scale, shift_x, shift_y = _search_camera(sought, matrix)
+    scale, shift_x, shift_y = _search_camera(fitted, matrix)
     before, after = (
-        _alignment_score(apart, matrix, *values)
+        _alignment_score(held_out, matrix, *values)
         for values in ((1.0, 0.0, 0.0), (scale, shift_x, shift_y))
     )
     gain = after / max(before, 1e-3)
@@ -133,32 +133,32 @@ def _depth_edges(depth_m: np.ndarray) -> np.ndarray:
 
 def _colour_gradient(pixels: np.ndarray, axis: int) -> np.ndarray:
     """Return how much colour changes along an axis, 0 to 1 with its mean taken off."""
-    steep = np.zeros(pixels.shape[:2], np.float32)
+    gradient = np.zeros(pixels.shape[:2], np.float32)
     for channel in range(3):
-        calm = gaussian_filter1d(pixels[..., channel], BLUR_PX, axis=1 - axis)
-        slope = gaussian_filter1d(calm, BLUR_PX, axis=axis, order=1)
-        np.maximum(steep, np.abs(slope), out=steep)
+        smoothed = gaussian_filter1d(pixels[..., channel], BLUR_PX, axis=1 - axis)
+        slope = gaussian_filter1d(smoothed, BLUR_PX, axis=axis, order=1)
+        np.maximum(gradient, np.abs(slope), out=gradient)
     # A strong border must not outweigh many plain ones: change saturates at what is steep here.
-    change = steep / (steep + np.percentile(steep, 85) + 1e-3)
+    change = gradient / (gradient + np.percentile(gradient, 85) + 1e-3)
     return np.ascontiguousarray(change - change.mean(), np.float32)
 
 
 def _search_camera(frames: Sequence[_DepthEdges], matrix: np.ndarray) -> tuple[float, float, float]:
     """Return the best scale and shifts: all coarse ones, then the best one's neighbours."""
-    tried = {
+    scores = {
         (scale, x, y): _alignment_score(frames, matrix, scale, x, y)
         for scale in SCALES.tolist()
         for x in SHIFTS_PX.tolist()
         for y in SHIFTS_PX.tolist()
     }
-    best = max(tried, key=lambda values: tried[values])
-    score = tried[best]
+    best = max(scores, key=lambda values: scores[values])
+    score = scores[best]
     for scale_step, shift_step in REFINEMENTS:
         moved = True
         while moved:
             moved = False
-            for turn in np.ndindex(3, 3, 3):
-                a, b, c = (index - 1 for index in turn)
+            for offsets in np.ndindex(3, 3, 3):
+                a, b, c = (index - 1 for index in offsets)
                 other = (
                     best[0] + a * scale_step,
                     best[1] + b * shift_step,

@@ -59,7 +59,7 @@ class DepthEncoding:
             raise UnknownNameError("depth unit", self.unit, (*DEPTH_UNITS, "METRES_PER_UNIT"))
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """The unit in words."""
         return _DESCRIPTIONS.get(self.unit, f"units of {self.unit} m")
 
@@ -156,6 +156,6 @@ def _check_range(path: ImagePlace, encoding: DepthEncoding, values: np.ndarray) 
     if not 0.15 <= typical <= MAX_INDOOR_M:
         raise CaptureError(
             path,
-            f"a typical depth of {typical:.3g} m (read as {encoding.said}) is no room; "
+            f"a typical depth of {typical:.3g} m (read as {encoding.description}) is no room; "
             f"say --set capture.depth_unit={'|'.join(DEPTH_UNITS)} or metres per unit",
         )

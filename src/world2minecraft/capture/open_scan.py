@@ -46,26 +46,26 @@ def open_scan(
     chosen = parse_options(options or {})
     if not voxel_m > 0:
         raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
-    judged = validate_capture(
+    validated = validate_capture(
         path,
         chosen,
         labels,
         lambda done, total: progress(STAGE, 40 * done // total, PROGRESS_STEPS),
     )
-    if not judged.complete and judged.capture.room is None:
-        lacks = "depth images" if judged.posed else "poses"
+    if not validated.complete and validated.capture.room is None:
+        lacks = "depth images" if validated.posed else "poses"
         raise CaptureError(
-            judged.capture.folder,
+            validated.capture.folder,
             f"has no {lacks}; w2m reconstruct computes them from the pictures first",
         )
-    stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
-    notes = list(judged.notes)
-    if judged.capture.one_matrix and chosen.colour_camera == "auto":
+    stream = CaptureViews(validated.frames, validated.encoding, validated.capture.full_trust)
+    notes = list(validated.notes)
+    if validated.capture.one_matrix and chosen.colour_camera == "auto":
         progress(STAGE, 40, PROGRESS_STEPS, "finding the colour camera")
         stream, found = _estimate_colour_camera(stream)
         notes.append(found)
     progress(STAGE, 60, PROGRESS_STEPS, "finding gravity and walls")
-    alignment = _align(judged, stream)
+    alignment = _align(validated, stream)
     check_cell_count(alignment, voxel_m)
     progress(STAGE, PROGRESS_STEPS, PROGRESS_STEPS)
     return Scan(
@@ -73,13 +73,13 @@ def open_scan(
         scan_to_room=alignment.scan_to_room,
         room_size_m=alignment.room_size_m,
         frames_used=tuple(frame.name for frame in stream.frames),
-        frames_skipped=judged.skipped,
-        scale=judged.capture.scale,
-        scale_sigma=judged.capture.scale_sigma,
-        source=judged.capture.source,
+        frames_skipped=validated.skipped,
+        scale=validated.capture.scale,
+        scale_sigma=validated.capture.scale_sigma,
+        source=validated.capture.source,
         notes=(*notes, *alignment.notes),
-        depth_kind=judged.capture.depth_kind,
-        world_up=judged.capture.world_up,
+        depth_kind=validated.capture.depth_kind,
+        world_up=validated.capture.world_up,
     )
 
 
@@ -106,23 +106,23 @@ def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
     return CaptureViews(frames, stream.encoding, stream.full_trust), note
 
 
-def _align(judged: ValidatedCapture, stream: CaptureViews) -> Alignment:
-    if judged.capture.room is not None:
-        return Alignment(*judged.capture.room, ())
+def _align(validated: ValidatedCapture, stream: CaptureViews) -> Alignment:
+    if validated.capture.room is not None:
+        return Alignment(*validated.capture.room, ())
     with_depth = without_colour(stream.frames)
     try:
         views = stream.read(evenly_spaced(with_depth, ALIGNMENT_FRAMES))
-        return align(views, judged.capture.world_up)
+        return align(views, validated.capture.world_up)
     except ImplausibleRoomError as error:
-        raise CaptureError(judged.capture.folder, str(error)) from error
+        raise CaptureError(validated.capture.folder, str(error)) from error
 
 
 def check_cell_count(alignment: Alignment, voxel_m: float) -> None:
     """Raise UsageError where a room has too many cells; the message names a voxel that will do."""
     volume_m3 = float(alignment.room_size_m.prod())
     if volume_m3 / voxel_m**3 > MAX_CELLS:
-        least_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
+        min_voxel_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
         raise UsageError(
             f"a voxel of {voxel_m:g} m would cut this room into {volume_m3 / voxel_m**3:,.0f} "
-            f"cells; take at least --voxel {math.ceil(1000 * least_m) / 1000:.3f}"
+            f"cells; take at least --voxel {math.ceil(1000 * min_voxel_m) / 1000:.3f}"
         )

@@ -74,15 +74,15 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
     )
 
 
-def _number(name: str, value: str | None, least: float, most: float) -> float | None:
+def _number(name: str, value: str | None, minimum: float, maximum: float) -> float | None:
     if value is None:
         return None
     try:
         number = float(value)
     except ValueError:
         number = math.nan
-    if not least <= number <= most:
-        raise UsageError(f"{name} must be {least:g} to {most:g}, not {value!r}")
+    if not minimum <= number <= maximum:
+        raise UsageError(f"{name} must be {minimum:g} to {maximum:g}, not {value!r}")
     return number
 
 

@@ -50,10 +50,10 @@ class CapturePhotos:
             yield photo
 
 
-def photos_of_capture(judged: ValidatedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
+def photos_of_capture(validated: ValidatedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
     """Return the photos of a judged capture: its usable frames that have a colour image."""
-    frames = tuple(frame for frame in judged.frames if frame.colour_path is not None)
-    return CapturePhotos(frames, judged.capture.lens, longest_px)
+    frames = tuple(frame for frame in validated.frames if frame.colour_path is not None)
+    return CapturePhotos(frames, validated.capture.lens, longest_px)
 
 
 def read_photo(frame: FrameFiles, lens: str = "stated", longest_px: int = MAX_SIDE_PX) -> Photo:

@@ -72,10 +72,10 @@ def repair_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
             where,
             f"the rotation of {frame} {kind}; poses must be rigid: divide the scale out",
         )
-    mended = np.eye(4)
-    mended[:3, :3] = left @ right if off > ROUNDING else rotation
-    mended[:3, 3] = pose[:3, 3]
-    return mended
+    repaired = np.eye(4)
+    repaired[:3, :3] = left @ right if off > ROUNDING else rotation
+    repaired[:3, 3] = pose[:3, 3]
+    return repaired
 
 
 def check_camera_spread(
@@ -96,19 +96,19 @@ def check_camera_spread(
     """
     places = np.array([np.asarray(frame.camera_to_world)[:3, 3] for frame in frames])
     away_m = np.linalg.norm(places - np.median(places, axis=0), axis=1)
-    most_m = float(np.quantile(away_m, 0.9))
-    if most_m > MAX_DISTANCE_M:
+    spread_m = float(np.quantile(away_m, 0.9))
+    if spread_m > MAX_DISTANCE_M:
         advice = "they look like millimetres: divide the translations by 1000"
         raise CaptureError(
             where,
-            f"the cameras stand up to {most_m:,.0f} m from their middle"
+            f"the cameras stand up to {spread_m:,.0f} m from their middle"
             + (f" and see {typical_depth_m:.1f} m far; " if typical_depth_m else "; ")
-            + (advice if most_m / 1000 < MAX_DISTANCE_M else "the poses must be in metres"),
+            + (advice if spread_m / 1000 < MAX_DISTANCE_M else "the poses must be in metres"),
         )
-    stays = away_m <= MAX_DISTANCE_M
+    inside = away_m <= MAX_DISTANCE_M
     strays = tuple(
         (frame.name, f"tracking jumped: its camera is {away:,.0f} m from the others")
-        for frame, away, stay in zip(frames, away_m, stays, strict=True)
+        for frame, away, stay in zip(frames, away_m, inside, strict=True)
         if not stay
     )
-    return tuple(frame for frame, stay in zip(frames, stays, strict=True) if stay), strays
+    return tuple(frame for frame, stay in zip(frames, inside, strict=True) if stay), strays

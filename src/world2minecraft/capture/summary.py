@@ -53,8 +53,8 @@ def summary_to_json(summary: "CaptureSummary") -> dict[str, Any]:
         if field.name not in ("survey", "route", "doubts", "folder")
     }
     route = {**dataclasses.asdict(summary.route), "about": summary.route.about}
-    doubts = [dataclasses.asdict(doubt) for doubt in summary.doubts]
-    return {"folder": str(summary.folder), "route": route, **data, "doubts": doubts}
+    diagnostics = [dataclasses.asdict(diagnostic) for diagnostic in summary.diagnostics]
+    return {"folder": str(summary.folder), "route": route, **data, "doubts": diagnostics}
 
 
 def summary_lines(summary: "CaptureSummary") -> list[str]:
@@ -80,9 +80,9 @@ def summary_lines(summary: "CaptureSummary") -> list[str]:
     if len(summary.skipped) > MAX_SKIPPED_LINES:
         lines.append(f"  skipped   and {len(summary.skipped) - MAX_SKIPPED_LINES} more")
     words = {"ok": "ok", "warn": "warning", "stop": "stop"}
-    for doubt in summary.doubts:
-        advice = f": {doubt.advice}" if doubt.advice else ""
-        lines.append(f"  {words[doubt.level]:<9} {doubt.text}{advice}")
+    for diagnostic in summary.diagnostics:
+        advice = f": {diagnostic.advice}" if diagnostic.advice else ""
+        lines.append(f"  {words[diagnostic.level]:<9} {diagnostic.text}{advice}")
     return [*lines, f"next: {summary.next_command}"]
 
 
@@ -98,7 +98,7 @@ def _colour_text(summary: "CaptureSummary") -> str:
 
 def _depth_text(summary: "CaptureSummary") -> str:
     size, focal = summary.depth_size_px, summary.depth_focal_px
-    if not summary.survey.judged.has_depth:
+    if not summary.survey.validated.has_depth:
         return "none; it is computed from the pictures"
     lens = f"{size[0]}x{size[1]}, focal length {focal:.0f} px, " if size and focal else ""
     guessed = " (guessed)" * summary.depth_unit_guessed
@@ -108,7 +108,7 @@ def _depth_text(summary: "CaptureSummary") -> str:
 def _poses_text(summary: "CaptureSummary") -> str:
     if not summary.posed:
         return "none; they are found from the pictures"
-    unit = "" if summary.survey.judged.capture.scale == "unknown" else " m"
+    unit = "" if summary.survey.validated.capture.scale == "unknown" else " m"
     return (
         f"{summary.usable} good, {summary.lost_poses} lost, cameras up to "
         f"{summary.cameras_apart_m:.1f}{unit} apart"
@@ -164,14 +164,14 @@ class CaptureSummary:
     labelled: int
     skipped: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
-    doubts: tuple[Diagnostic, ...]
+    diagnostics: tuple[Diagnostic, ...]
     next_command: str
     survey: Survey = field(repr=False, compare=False)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """The texts of the doubts that are no praise."""
-        return tuple(doubt.text for doubt in self.doubts if doubt.level != "ok")
+        return tuple(diagnostic.text for diagnostic in self.diagnostics if diagnostic.level != "ok")
 
 
 def describe_capture(
@@ -185,38 +185,38 @@ def describe_capture(
 
 
 def describe_validated(
-    judged: ValidatedCapture, options: Mapping[str, str] | None = None
+    validated: ValidatedCapture, options: Mapping[str, str] | None = None
 ) -> CaptureSummary:
     """Describe a capture that is judged; ``options`` are named again in the next command."""
-    frames = judged.frames
-    survey = survey_capture(judged)
-    route = choose_route(judged)
+    frames = validated.frames
+    survey = survey_capture(validated)
+    route = choose_route(validated)
     colour = next((frame.colour_camera for frame in frames if frame.colour_camera), None)
     depth = next((frame.depth_camera for frame in frames if frame.depth_camera), None)
     room = None if survey.plan is None else survey.plan.room_size_m
     return CaptureSummary(
-        folder=judged.capture.folder,
-        source=judged.capture.source,
+        folder=validated.capture.folder,
+        source=validated.capture.source,
         route=route,
-        frames=len(frames) + len(judged.skipped),
+        frames=len(frames) + len(validated.skipped),
         usable=len(frames),
-        lost_poses=sum("pose" in reason or "tracking" in reason for _, reason in judged.skipped),
-        posed=judged.posed,
-        colour_size_px=_colour_size(judged, colour),
+        lost_poses=sum("pose" in reason or "tracking" in reason for _, reason in validated.skipped),
+        posed=validated.posed,
+        colour_size_px=_colour_size(validated, colour),
         depth_size_px=_camera_size(depth),
         colour_focal_px=colour.fx_px if colour else None,
         depth_focal_px=depth.fx_px if depth else None,
-        lens_guessed=judged.capture.lens == "guess",
-        depth_unit=judged.encoding.said,
-        depth_unit_guessed=judged.encoding.guessed,
-        typical_depth_m=judged.typical_depth_m,
+        lens_guessed=validated.capture.lens == "guess",
+        depth_unit=validated.encoding.description,
+        depth_unit_guessed=validated.encoding.guessed,
+        typical_depth_m=validated.typical_depth_m,
         cameras_apart_m=_camera_extent_m(survey),
         room_size_m=None if room is None else (float(room[0]), float(room[1]), float(room[2])),
         labelled=sum(frame.labels_path is not None for frame in frames),
-        skipped=judged.skipped,
-        notes=judged.notes,
-        doubts=diagnose_capture(survey, route),
-        next_command=reconstruct_command(judged.capture.folder, options or {}),
+        skipped=validated.skipped,
+        notes=validated.notes,
+        diagnostics=diagnose_capture(survey, route),
+        next_command=reconstruct_command(validated.capture.folder, options or {}),
         survey=survey,
     )
 
@@ -231,9 +231,9 @@ def _camera_size(camera: Camera | None) -> tuple[int, int] | None:
     return (camera.width_px, camera.height_px) if camera else None
 
 
-def _colour_size(judged: ValidatedCapture, camera: Camera | None) -> tuple[int, int] | None:
+def _colour_size(validated: ValidatedCapture, camera: Camera | None) -> tuple[int, int] | None:
     """Return the size of the colour images, from a header where no camera is stated."""
-    place = next((frame.colour_path for frame in judged.frames if frame.colour_path), None)
+    place = next((frame.colour_path for frame in validated.frames if frame.colour_path), None)
     if camera is None and place is not None:
         return read_header(place).size
     return _camera_size(camera)

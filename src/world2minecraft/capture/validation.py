@@ -93,8 +93,8 @@ def check_frames(
             skipped.append((frame.name, reason))
         step(done)
     _refuse_if_broken(capture, used, skipped, damaged)
-    mended, wrong = _repair_poses(capture, used)
-    return mended, (*skipped, *wrong)
+    repaired, wrong = _repair_poses(capture, used)
+    return repaired, (*skipped, *wrong)
 
 
 def is_posed(frames: Sequence[FrameFiles]) -> bool:
@@ -195,12 +195,12 @@ def _repair_poses(
 
     Frames of a capture without poses stay as they are.
     """
-    mended: list[FrameFiles] = []
+    repaired: list[FrameFiles] = []
     wrong: list[CaptureError] = []
     skipped: list[tuple[str, str]] = []
     for frame in frames:
         if frame.camera_to_world is None:
-            mended.append(frame)
+            repaired.append(frame)
             continue
         pose = np.asarray(frame.camera_to_world, np.float64)
         try:
@@ -209,10 +209,10 @@ def _repair_poses(
             wrong.append(error)
             skipped.append((frame.name, error.reason))
         else:
-            mended.append(replace(frame, camera_to_world=rigid))
+            repaired.append(replace(frame, camera_to_world=rigid))
     if len(wrong) > MAX_WRONG_POSES_SHARE * len(frames):
         raise wrong[0]
-    return tuple(mended), tuple(skipped)
+    return tuple(repaired), tuple(skipped)
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,8 +270,8 @@ def validate(
         frames = attach_labels(frames, labels)
     frames, turned = _rotate_upright(frames, capture)
     check_labels(frames)
-    looked_at = evenly_spaced([frame for frame in frames if frame.depth_path], DEPTH_SAMPLE_FRAMES)
-    paths = _drop_undecodable([frame.depth_path for frame in looked_at if frame.depth_path])
+    sampled = evenly_spaced([frame for frame in frames if frame.depth_path], DEPTH_SAMPLE_FRAMES)
+    paths = _drop_undecodable([frame.depth_path for frame in sampled if frame.depth_path])
     encoding = _find_encoding(paths, options, capture) if paths else DepthEncoding("mm")
     typical_m = _median_depth(paths, encoding)
     strayed: SkippedFrames = ()
@@ -279,7 +279,7 @@ def validate(
         frames, strayed = check_camera_spread(frames, capture.folder, typical_m)
     notes = [*capture.notes, *turned]
     if encoding.guessed:
-        notes.append(f"depth is read as {encoding.said}, told from its values")
+        notes.append(f"depth is read as {encoding.description}, told from its values")
     return ValidatedCapture(
         capture, frames, (*capture.skipped, *skipped, *strayed), encoding, typical_m, tuple(notes)
     )

@@ -97,8 +97,8 @@ def convert(
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
     from world2minecraft.formats.volume_formats import write_volume
-    from world2minecraft.minecraft.block_names import mod_blocks
-    from world2minecraft.minecraft.commands.datapack import namespace_of
+    from world2minecraft.minecraft.block_names import count_mod_blocks
+    from world2minecraft.minecraft.commands.datapack import to_namespace
     from world2minecraft.minecraft.file_format import Losses
 
     unread, unwritten = Losses(), Losses()
@@ -113,9 +113,9 @@ def convert(
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
     if target.suffix.lower() == ".zip":
-        print(f"in the world that has it: /function {namespace_of(options.name)}:build")
+        print(f"in the world that has it: /function {to_namespace(options.name)}:build")
     told = " ".join(what for what, _ in unwritten)
-    for mod, count in mod_blocks(volume).items():
+    for mod, count in count_mod_blocks(volume).items():
         if f"{mod}:" not in told:
             print(f"kept by their names: {count:,} blocks of the mod {mod}")
     tell_losses(unread, f"not read from {source.name}")

@@ -58,9 +58,9 @@ def run(
         return
     if source is None:
         raise UsageError("say what to install: w2m install OUT")
-    from world2minecraft.minecraft.worlds.installation import age_note, install_world, world_of
+    from world2minecraft.minecraft.worlds.installation import age_note, find_world, install_world
 
-    world = world_of(source)
+    world = find_world(source)
     chosen = Game("the game", saves) if saves else choose(games, game)
     if not chosen.saves.parent.is_dir():
         reason = "is no saves folder, nor is there one to make it in"

@@ -1,9 +1,9 @@
 """The verbs of ``w2m``: one line here, one file beside, imported when its verb is called.
 
-A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``; the command of
-a folder is ``cli.render.command``) with a function
-``run`` whose typed parameters are its arguments, as typer reads them, and a text ``EXAMPLES``
-that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
+A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``; the command
+of a folder is ``cli.render.command``) with a function ``run`` whose typed parameters are its
+arguments, as typer reads them, and a text ``EXAMPLES`` that its ``--help`` ends with. ``run``
+returns an exit code, or None for 0.
 """
 
 from collections.abc import Callable, Sequence

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.transforms import turn_volume
 
 
@@ -81,5 +81,5 @@ def translate_volume(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
 def _moved_nbt(entity: Entity, step: tuple[int, int, int]) -> dict[str, Any]:
     """Tags that repeat an entity's place go with it; its UUID must be another elsewhere."""
     x, y, z = (place + by for place, by in zip(entity.position, step, strict=True))
-    moved = attached(entity.nbt, (x, y, z), step)
+    moved = move_attachment(entity.nbt, (x, y, z), step)
     return {key: value for key, value in moved.items() if key not in ("UUID", "Pos")}

@@ -31,7 +31,7 @@ from world2minecraft.editing.world_region import (
     read_world_box,
     tag_entities,
 )
-from world2minecraft.minecraft.block_entities import block_entity_in_game, entity_in_game
+from world2minecraft.minecraft.block_entities import convert_block_entity, convert_entity
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.versions import name_in_version
 from world2minecraft.minecraft.worlds.session_lock import session_lock
@@ -87,10 +87,10 @@ def build_into_world(
         _check_entities(volume.entities, box)
         wanted = _numbers_of(volume, box)
         after = np.where(mask, wanted, box.states)
-        come = [block_entity_in_game(e, box.version_at(e.block_pos)) for e in volume.block_entities]
+        come = [convert_block_entity(e, box.version_at(e.block_pos)) for e in volume.block_entities]
         data = _merged_data(box, come, mask)
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
-        held = [entity_in_game(e, box.data_version) for e in volume.entities]
+        held = [convert_entity(e, box.data_version) for e in volume.entities]
         gone, arriving = found.built(), tag_entities(held)
         edit = _edit_of(box, after, data, gone, arriving)
         files = box.changed_files(after, data) | found.changed_files(gone, arriving)

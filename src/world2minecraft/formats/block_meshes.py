@@ -23,7 +23,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE
-from world2minecraft.minecraft.commands.fill_boxes import merge_boxes
+from world2minecraft.minecraft.commands.fill_boxes import cover_with_boxes
 from world2minecraft.minecraft.entities import display_cubes, owner_of
 from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes
 
@@ -345,7 +345,7 @@ def _cube_boxes(
     keys = np.where(kinds >= 0, owners * (len(volume.palette) + 1) + kinds + 1, 0)
     pairs, numbers = np.unique(keys, return_inverse=True)
     first = int(pairs[0] != 0) if len(pairs) else 0  # 0 stands for "no whole block".
-    boxes = merge_boxes((numbers.reshape(keys.shape) + first).astype(np.int32), ANY_SIZE)
+    boxes = cover_with_boxes((numbers.reshape(keys.shape) + first).astype(np.int32), ANY_SIZE)
     pair = pairs[boxes[:, 0] - first] - 1
     whose, look = np.divmod(pair, len(volume.palette) + 1)
     spans = np.concatenate([boxes[:, 1:4], boxes[:, 4:] + 1], axis=1) * STEPS

@@ -18,45 +18,45 @@ from world2minecraft.minecraft.signs import convert_sign
 
 FIRST_COMPONENTS = 3837  # 1.20.5.
 OLD, NEW = ("Count", "tag"), ("count", "components")
-MOST_OF_OLD = 127  # What a byte counts.
+MAX_OLD_COUNT = 127  # What a byte counts.
 
 
-def in_game(volume: BlockVolume, data_version: int) -> BlockVolume:
+def convert_volume(volume: BlockVolume, data_version: int) -> BlockVolume:
     """Return a volume whose block entities and entities hold what they hold as a game keeps it."""
     if not (volume.block_entities or volume.entities):
         return volume
-    blocks = tuple(block_entity_in_game(entity, data_version) for entity in volume.block_entities)
-    entities = tuple(entity_in_game(entity, data_version) for entity in volume.entities)
+    blocks = tuple(convert_block_entity(entity, data_version) for entity in volume.block_entities)
+    entities = tuple(convert_entity(entity, data_version) for entity in volume.entities)
     pairs = zip((*blocks, *entities), (*volume.block_entities, *volume.entities), strict=True)
     if all(ours is theirs for ours, theirs in pairs):
         return volume
     return replace(volume, block_entities=blocks, entities=entities)
 
 
-def block_entity_in_game(entity: BlockEntity, data_version: int) -> BlockEntity:
+def convert_block_entity(entity: BlockEntity, data_version: int) -> BlockEntity:
     """Return a block entity as a game keeps it."""
     entity = convert_sign(entity, data_version)
-    if not any(_stacks(entity.nbt, data_version)):
+    if not any(_item_stacks(entity.nbt, data_version)):
         return entity
-    return replace(entity, nbt=_converted(entity.nbt, data_version))
+    return replace(entity, nbt=_convert(entity.nbt, data_version))
 
 
-def entity_in_game(entity: Entity, data_version: int) -> Entity:
+def convert_entity(entity: Entity, data_version: int) -> Entity:
     """Return an entity as a game keeps it."""
-    if not any(_stacks(entity.nbt, data_version)):
+    if not any(_item_stacks(entity.nbt, data_version)):
         return entity
-    return replace(entity, nbt=_converted(entity.nbt, data_version))
+    return replace(entity, nbt=_convert(entity.nbt, data_version))
 
 
 def count_lost_data(volume: BlockVolume, data_version: int, losses: Losses) -> None:
     """Count the stacks of things of which a game keeps their kind and number alone."""
     _, extra = OLD if data_version >= FIRST_COMPONENTS else NEW
     for entity in (*volume.block_entities, *volume.entities):
-        lost = sum(bool(stack.get(extra)) for stack in _stacks(entity.nbt, data_version))
+        lost = sum(bool(stack.get(extra)) for stack in _item_stacks(entity.nbt, data_version))
         losses.add("things whose names, wear and the like the game keeps otherwise", lost)
 
 
-def _stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:
+def _item_stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:
     """Yield the stacks that are in the other form than a game's."""
     if isinstance(value, Mapping):
         if _is_other(value, data_version):
@@ -65,7 +65,7 @@ def _stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:
         value = list(value.values())
     for held in value if isinstance(value, list) else ():
         if isinstance(held, list | Mapping):
-            yield from _stacks(held, data_version)
+            yield from _item_stacks(held, data_version)
 
 
 def _is_other(value: Mapping[str, Any], data_version: int) -> bool:
@@ -74,15 +74,15 @@ def _is_other(value: Mapping[str, Any], data_version: int) -> bool:
     return is_stack and ours not in value
 
 
-def _converted(value: Any, data_version: int) -> Any:
+def _convert(value: Any, data_version: int) -> Any:
     if isinstance(value, list):
-        return [_converted(held, data_version) for held in value]
+        return [_convert(held, data_version) for held in value]
     if not isinstance(value, Mapping):
         return value
     if not _is_other(value, data_version):
-        return {key: _converted(held, data_version) for key, held in value.items()}
+        return {key: _convert(held, data_version) for key, held in value.items()}
     if data_version >= FIRST_COMPONENTS:
         plain = {key: held for key, held in value.items() if key not in OLD}
         return {**plain, NEW[0]: int(value[OLD[0]])}
     plain = {key: held for key, held in value.items() if key not in NEW}
-    return {**plain, OLD[0]: Byte(max(0, min(value[NEW[0]], MOST_OF_OLD)))}
+    return {**plain, OLD[0]: Byte(max(0, min(value[NEW[0]], MAX_OLD_COUNT)))}

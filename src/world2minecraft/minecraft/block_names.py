@@ -65,11 +65,11 @@ def read_state(text: str, data_version: int) -> str:
 
 
 @lru_cache(maxsize=1 << 16)
-def written_state(text: str, data_version: int) -> str:
+def write_state(text: str, data_version: int) -> str:
     """Return a state of 1.20.1 as another version of the game calls it.
 
     Example:
-        >>> written_state("minecraft:grass", 3700), written_state("minecraft:oak_sign", 1519)
+        >>> written_state("minecraft:grass", 3700), write_state("minecraft:oak_sign", 1519)
         ('minecraft:short_grass', 'minecraft:sign')
     """
     name, bracket, rest = text.partition("[")
@@ -88,7 +88,7 @@ def written_state(text: str, data_version: int) -> str:
     return text
 
 
-def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
+def count_unknown_blocks(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
     """Count the blocks and displays of a volume that a version of the game does not know yet.
 
     They are written by their names; the game puts air in their place, or nothing. What things in
@@ -108,7 +108,7 @@ def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> 
             losses.add(f"blocks {name}, which Minecraft {version.name} does not know", count)
 
 
-def mod_blocks(volume: BlockVolume) -> dict[str, int]:
+def count_mod_blocks(volume: BlockVolume) -> dict[str, int]:
     """Return how many blocks are of each mod: they are carried by their names alone."""
     counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
     found: dict[str, int] = {}
@@ -121,7 +121,7 @@ def mod_blocks(volume: BlockVolume) -> dict[str, int]:
 
 def is_unknown(state: str, data_version: int) -> bool:
     """Whether a block of the game came with a later version. Blocks of mods count as known."""
-    name = written_state(state, data_version).partition("[")[0]
+    name = write_state(state, data_version).partition("[")[0]
     if state.startswith("minecraft:stone_slab") and data_version < FIRST_1_14:
         return True  # What has this name there is another slab.
     return _first_version(name) > data_version

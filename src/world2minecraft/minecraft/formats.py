@@ -181,11 +181,11 @@ class WorldFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write a world whose player starts at ``spawn``, or on top of the middle."""
-        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
+        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
         from world2minecraft.minecraft.worlds.world_writer import write_world  # noqa: PLC0415  # numba.
 
-        count_unknown(volume, game_version(options.mc_version), losses)
+        count_unknown_blocks(volume, game_version(options.mc_version), losses)
         write_world(
             volume,
             path,
@@ -209,7 +209,7 @@ class SchemFormat(FileFormat):
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 1 or 3 where the options say so."""
-        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
+        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.sponge import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
@@ -217,7 +217,7 @@ class SchemFormat(FileFormat):
             raise UsageError(f"schem_version must be 1, 2 or 3, not {options.schem_version}")
         if options.schem_version == 1:
             losses.add("entities, which version 1 has no place for", len(volume.entities))
-        count_unknown(volume, game_version(options.mc_version), losses)
+        count_unknown_blocks(volume, game_version(options.mc_version), losses)
         write_schem(
             volume,
             path,
@@ -252,13 +252,10 @@ class DatapackFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace that the options' name makes."""
-        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
-        from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
-            namespace_of,
-            write_datapack,
-        )
+        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.commands.datapack import to_namespace, write_datapack
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
-        count_unknown(volume, version, losses)
-        write_datapack(volume, path, version=version, name=namespace_of(options.name))
+        count_unknown_blocks(volume, version, losses)
+        write_datapack(volume, path, version=version, name=to_namespace(options.name))

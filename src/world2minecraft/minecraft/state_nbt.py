@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.minecraft.block_names import read_state, written_state
+from world2minecraft.minecraft.block_names import read_state, write_state
 from world2minecraft.minecraft.block_states import MAX_TEXT, BlockState, parse_state
 
 
@@ -16,7 +16,7 @@ def state_entry(state: str, data_version: int) -> dict[str, Any]:
         >>> state_entry("minecraft:oak_log[axis=y]", 3465)
         {'Name': 'minecraft:oak_log', 'Properties': {'axis': 'y'}}
     """
-    parsed = parse_state(written_state(state, data_version))
+    parsed = parse_state(write_state(state, data_version))
     entry: dict[str, Any] = {"Name": parsed.name}
     if parsed.properties:
         entry["Properties"] = dict(parsed.properties)

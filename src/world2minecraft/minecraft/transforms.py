@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.nbt import Byte, Float
-from world2minecraft.minecraft.rules.attached_entities import named_block, naming
+from world2minecraft.minecraft.rules.attached_entities import name_attached_block, named_block
 
 Properties = dict[str, str]
 SIDES = ("east", "north", "west", "south")  # Counter-clockwise.
@@ -76,7 +76,7 @@ def mirror_state(state: str, axis: Literal["x", "z"]) -> str:
     for key in ("hinge", "type", "shape"):
         if key in moved:
             moved[key] = _LEFT_RIGHT.get(moved[key], moved[key])
-    moved = {_mirrored_slot(key): value for key, value in moved.items()}
+    moved = {_mirror_slot(key): value for key, value in moved.items()}
     half = 16 if axis == "x" else 8
     _change_rotation(moved, lambda sixteenths: half - sixteenths)
     return str(BlockState(parsed.name, moved))
@@ -111,7 +111,7 @@ def _rail_order(words: list[str]) -> list[str]:
     return sorted(words, key=order.index)
 
 
-def _mirrored_slot(key: str) -> str:
+def _mirror_slot(key: str) -> str:
     """The slots of a chiseled bookshelf run from left to right in two rows of three."""
     return key.replace(key[:6], _SLOTS.get(key[:6], key[:6]), 1)
 
@@ -140,10 +140,12 @@ def _turn_once(volume: BlockVolume) -> BlockVolume:
 
     def turned_entity(entity: Entity) -> Entity:
         x, y, z = (old_to_new @ [*entity.position, 1.0])[:3].tolist()
-        nbt = _turned_nbt(dict(entity.nbt), entity.id)
+        nbt = _turn_nbt(dict(entity.nbt), entity.id)
         held = named_block(nbt)
         return replace(
-            entity, position=(x, y, z), nbt=nbt if held is None else naming(nbt, cell_of(held))
+            entity,
+            position=(x, y, z),
+            nbt=nbt if held is None else name_attached_block(nbt, cell_of(held)),
         )
 
     return replace(
@@ -168,7 +170,7 @@ def _quarter_turn(volume: BlockVolume) -> np.ndarray:
     return transform
 
 
-def _turned_nbt(nbt: dict[str, Any], kind: str) -> dict[str, Any]:
+def _turn_nbt(nbt: dict[str, Any], kind: str) -> dict[str, Any]:
     """An entity's yaw grows clockwise from above; what hangs says where it looks by a number."""
     rotation = nbt.get("Rotation", [Float(0), Float(0)])  # Without one it looks south.
     if isinstance(rotation, list) and len(rotation) == 2:

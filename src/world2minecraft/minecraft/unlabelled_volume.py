@@ -24,7 +24,7 @@ MISSHAPEN = (KeyError, IndexError, TypeError, ValueError, AttributeError, Overfl
 Corner = tuple[int, int, int]
 
 
-def palette_of(texts: Iterable[str], path: str | Path) -> tuple[tuple[str, ...], dict[str, int]]:
+def build_palette(texts: Iterable[str], path: str | Path) -> tuple[tuple[str, ...], dict[str, int]]:
     """Return a palette of the states in ``texts``, and the number of each in it.
 
     Raises:
@@ -48,7 +48,7 @@ def check_size(size: Iterable[int], path: str | Path) -> tuple[int, int, int]:
     return x, y, z
 
 
-def unlabelled(
+def unlabelled_volume(
     states: np.ndarray,
     palette: tuple[str, ...],
     corner: Corner,
@@ -76,21 +76,21 @@ def unlabelled(
     )
 
 
-def enclosing(boxes: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+def enclosing_box(boxes: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest corner and the size of the box around boxes of a corner and a size."""
     low = np.min([corner for corner, _ in boxes], axis=0)
     return low, np.max([corner + size for corner, size in boxes], axis=0) - low
 
 
-def joined(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
+def join_volumes(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
     """Return volumes of one world as one; of two in a place the later stands, but for its air.
 
     Raises:
         LimitError: their box is too large, or they have too many states together.
     """
     boxes = [(np.array(part.corner), np.array(part.states.shape)) for part in parts]
-    low, size = enclosing(boxes)
-    palette, number_of = palette_of((s for part in parts for s in part.palette), path)
+    low, size = enclosing_box(boxes)
+    palette, number_of = build_palette((s for part in parts for s in part.palette), path)
     states = np.zeros(check_size(size, path), np.uint16)
     for part, (corner, shape) in zip(parts, boxes, strict=True):
         place = tuple(slice(a, a + n) for a, n in zip(corner - low, shape, strict=True))
@@ -98,7 +98,9 @@ def joined(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
         np.copyto(states[place], numbers[part.states], where=part.states != 0)
     x, y, z = low.tolist()
     blocks = [held for part in parts for held in part.block_entities]
-    return unlabelled(states, palette, (x, y, z), blocks, [e for p in parts for e in p.entities])
+    return unlabelled_volume(
+        states, palette, (x, y, z), blocks, [e for p in parts for e in p.entities]
+    )
 
 
 def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:

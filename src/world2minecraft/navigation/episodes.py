@@ -1,7 +1,7 @@
 """Episodes of a scene: from somewhere to a thing that has a name, with the oracle's way.
 
-``random_episodes`` draws them; ``score_walk`` tells how a walk through one went. Files of episodes are
-read and written by ``navigation.records``.
+``random_episodes`` draws them; ``score_walk`` scores a walk through one. Files of episodes are read
+and written by ``navigation.records``.
 """
 
 from collections.abc import Sequence

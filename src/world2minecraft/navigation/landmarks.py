@@ -76,8 +76,8 @@ class Landmark:
     """A thing of a scene. Metres and boxes are those of the room's frame.
 
     ``name`` is its own in the scene ("piano", "red chair", "chair beside the piano"); ``noun`` is
-    the plain word. ``is_unambiguous`` says whether a person can tell which one the name means: names that
-    end in a number, and "object", tell nobody.
+    the plain word. ``is_unambiguous`` says whether a person knows which one the name means: names
+    that end in a number, and "object", are not.
     """
 
     number: int  # its instance in the volume

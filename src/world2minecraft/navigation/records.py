@@ -1,9 +1,9 @@
 """Items, trajectories and episodes on disk: JSONL, one record a line, checked before it is used.
 
-A line is the JSON object of a value of ``navigation.values`` under the names of its fields; a ``Move`` is
-its number. The lines of ``write_items`` are sorted by nothing but the caller, and the same values
-give the same bytes. Files of others are hostile until read: sizes come before memory, types are
-exact (no number in quotes), and a name that would leave the folder is refused.
+A line is the JSON object of a value of ``navigation.values`` under the names of its fields; a
+``Move`` is its number. The lines of ``write_items`` are sorted by nothing but the caller, and the
+same values give the same bytes. Files of others are hostile until read: sizes come before memory,
+types are exact (no number in quotes), and a name that would leave the folder is refused.
 """
 
 import json

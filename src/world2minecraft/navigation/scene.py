@@ -28,7 +28,7 @@ from world2minecraft.minecraft.physics.any_angle_paths import (
     straight_distances_m,
 )
 from world2minecraft.minecraft.physics.body import EYE
-from world2minecraft.minecraft.physics.shortest_paths import parts
+from world2minecraft.minecraft.physics.shortest_paths import connected_parts
 from world2minecraft.minecraft.physics.walk_graph import (
     CollisionGrid,
     WalkGraph,
@@ -200,7 +200,7 @@ class VlnScene:
     def main_places(self) -> np.ndarray:
         """The places of rooms that hang together most, int64 [N]: where episodes begin and end."""
         places = np.concatenate([room.places for room in self._found])
-        number = parts(self.graph)[places]
+        number = connected_parts(self.graph)[places]
         return np.sort(places[number == np.bincount(number).argmax()])
 
     @property

@@ -12,9 +12,7 @@ from world2minecraft.rendering.ray_caster.ray import (
 from world2minecraft.rendering.scene_tables import SceneTables
 
 
-def observed_free_space(
-    tables: SceneTables, camera: GridCamera, depth: np.ndarray
-) -> np.ndarray:
+def observed_free_space(tables: SceneTables, camera: GridCamera, depth: np.ndarray) -> np.ndarray:
     """Return the cells of air, bool [X, Y, Z], that rays crossed before their first surface.
 
     Args:

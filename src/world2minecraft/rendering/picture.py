@@ -9,6 +9,7 @@ from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
@@ -112,19 +113,18 @@ def _draw(
     check_request(outputs, size, samples)
     scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
-    lamp = shading_parameters(light, scene, background, pose[:, 3][None] if spread else None)
+    shading = shading_parameters(light, scene, background, pose[:, 3][None] if spread else None)
+    camera = GridCamera(pose, rays, spread)
     fine = "colour" in outputs and samples > 1
     arrays = pixel_arrays(size, [name for name in outputs if not (fine and name == "colour")])
-    draw_into(arrays, scene, pose, rays, spread, lamp, threads)
+    draw_into(arrays, scene, camera, shading, threads)
     if fine:
         many = pixel_arrays((size[0] * samples, size[1] * samples), ("colour",))
-        draw_into(many, scene, pose, rays * samples, spread, lamp, threads)
+        draw_into(many, scene, camera._replace(rays=rays * samples), shading, threads)
         arrays = arrays._replace(colour=_mean_of_squares(many.colour, samples))
     picture = picture_of(arrays, outputs)
     if "free" in outputs:
-        picture = replace(
-            picture, free=observed_free_space(scene.tables, pose, rays, spread, arrays.depth)
-        )
+        picture = replace(picture, free=observed_free_space(scene.tables, camera, arrays.depth))
     return picture
 
 

@@ -15,6 +15,7 @@ from world2minecraft.rendering.ray_caster.picture_kernel import (
     band_memory,
     draw_rows,
 )
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.thread_pool import bands, run_parallel
@@ -78,10 +79,8 @@ def pixel_arrays(size: tuple[int, int], outputs: Collection[str]) -> PixelArrays
 def draw_into(
     arrays: PixelArrays,
     scene: BlockScene,
-    pose: np.ndarray,
-    rays: np.ndarray,
-    spread: float,
-    lamp: ShadingParameters,
+    camera: GridCamera,
+    shading: ShadingParameters,
     threads: int = 1,
 ) -> None:
     """Draw a picture.
@@ -89,18 +88,15 @@ def draw_into(
     Args:
         arrays: filled in place.
         scene: what is drawn.
-        pose: float64 [3, 4], camera to grid.
-        rays: float64 [4], fx, fy, cx, cy in pixels, or pixels a metre for parallel rays.
-        spread: 1 for a pinhole camera, 0 for parallel rays.
-        lamp: the light.
+        camera: from where.
+        shading: the light.
         threads: bands of rows drawn at a time; the result is the same for any.
     """
 
     def band(rows: tuple[int, int]) -> None:
         draw_rows(
-            scene.tables, scene.side_px, pose, rays, spread, rows[0], rows[1], lamp,
-            *band_memory(), arrays,
-        )  # fmt: skip
+            scene.tables, scene.side_px, camera, rows[0], rows[1], shading, band_memory(), arrays
+        )
 
     if arrays.wanted & NORMAL:
         arrays.normal[:] = 0

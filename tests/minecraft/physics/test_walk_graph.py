@@ -12,9 +12,9 @@ from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box, step
 from world2minecraft.minecraft.physics.collisions import find_overlaps
 from world2minecraft.minecraft.physics.shortest_paths import (
+    clearance_m,
+    connected_parts,
     distances_m,
-    elbow_room_m,
-    parts,
     reachable,
     shortest_path,
 )
@@ -178,7 +178,7 @@ def test_one_drops_three_blocks_and_no_more(height, falls):
     assert graph.feet[high, 1] == 61 + height
     assert (shortest_path(graph, high, low) is not None) is falls
     assert shortest_path(graph, low, high) is None
-    assert parts(graph)[low] == parts(graph)[high] or not falls
+    assert connected_parts(graph)[low] == connected_parts(graph)[high] or not falls
 
 
 def test_doors_are_opened_on_the_way_and_iron_ones_are_not():
@@ -259,7 +259,7 @@ def test_headroom_and_ground_are_told():
 def test_worlds_without_much_in_them(states):
     graph = walk_graph(volume_of(states))
     assert len(graph) == int(states.sum()) and len(graph.edge_to) == 0
-    assert len(parts(graph)) == len(graph)
+    assert len(connected_parts(graph)) == len(graph)
     if not len(graph):
         with pytest.raises(ValueError, match="no place to stand"):
             graph.nearest((0, 0, 0))
@@ -303,7 +303,7 @@ def test_weights_lead_around_what_is_costly():
 
 def test_distance_to_the_edge_grows_inward():
     graph = walk_graph(volume_of(hall(9, 4, 9)))
-    room = elbow_room_m(graph)
+    room = clearance_m(graph)
     assert room[graph.nearest((1.5, 61, 11.5))] == pytest.approx(4.0)
     assert room.min() == 0
 

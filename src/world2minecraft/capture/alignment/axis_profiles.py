@@ -34,12 +34,12 @@ class AxisProfile:
         """The middles of the bins."""
         return self.start_m + (np.arange(len(self.area_m2)) + 0.5) * self.bin_m
 
-    def peaks(self, least_m2: float) -> np.ndarray:
+    def peaks(self, min_area_m2: float) -> np.ndarray:
         """Return the places of the local maxima of at least an area, rising."""
         bins = np.concatenate([[0.0], self.bin_area_m2, [0.0]])
         height = bins[1:-1] + (bins[:-2] + bins[2:]) / 2
         padded = np.concatenate([[0.0], height, [0.0]])
-        top = (height >= padded[:-2]) & (height > padded[2:]) & (self.area_m2 >= least_m2)
+        top = (height >= padded[:-2]) & (height > padded[2:]) & (self.area_m2 >= min_area_m2)
         return self.centers_m()[top]
 
     def area_at(self, place_m: float) -> float:
@@ -65,9 +65,9 @@ def axis_profile(points_m: np.ndarray, axis: int, bin_m: float = 0.03) -> AxisPr
     patches = np.floor(points_m[:, others] / CELL_M).astype(np.int64)
     patches -= patches.min(axis=0)
     patch = patches[:, 0] * (patches[:, 1].max() + 1) + patches[:, 1]
-    held = np.unique(patch * count + bins)
-    near = np.unique(np.concatenate([held - 1, held, held + 1]))
-    return AxisProfile(start, bin_m, _area_per_bin(near, count), _area_per_bin(held, count))
+    occupied = np.unique(patch * count + bins)
+    near = np.unique(np.concatenate([occupied - 1, occupied, occupied + 1]))
+    return AxisProfile(start, bin_m, _area_per_bin(near, count), _area_per_bin(occupied, count))
 
 
 def _area_per_bin(codes: np.ndarray, count: int) -> np.ndarray:

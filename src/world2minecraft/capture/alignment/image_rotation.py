@@ -90,13 +90,13 @@ def find_quarter_turns(frames: Sequence[FrameFiles], world_up: np.ndarray) -> in
     if not poses:
         return 0
     up = np.stack([np.asarray(pose)[:3, :3].T @ world_up for pose in poses])[:, :2]
-    telling = up[np.linalg.norm(up, axis=1) > MIN_UP_IN_IMAGE]
-    if not len(telling):
+    informative = up[np.linalg.norm(up, axis=1) > MIN_UP_IN_IMAGE]
+    if not len(informative):
         return 0
     # Of up in the image: above, right of it, below, left of it.
-    sides = telling @ np.array([[0.0, 1.0, 0.0, -1.0], [-1.0, 0.0, 1.0, 0.0]])
+    sides = informative @ np.array([[0.0, 1.0, 0.0, -1.0], [-1.0, 0.0, 1.0, 0.0]])
     votes = np.bincount(sides.argmax(axis=1), minlength=4)
-    return int(votes.argmax()) if votes.max() > 0.5 * len(telling) else 0
+    return int(votes.argmax()) if votes.max() > 0.5 * len(informative) else 0
 
 
 def rotate_frame(frame: FrameFiles, quarter_turns: int) -> FrameFiles:

@@ -37,7 +37,7 @@ LIMITS_M = (0.05, 0.03, 0.02, 0.012, 0.012)
 SPREAD_FACTOR = 8.0  # A level face's limit is at least that many times the median distance from it.
 # Walls lean and tables stand askew more often than floors slope: with one say for all, the shared
 # kitchen's floor would lean by 0.5 degrees.
-WALL_SAY, FLOOR_SAY = 0.1, 4.0
+WALL_WEIGHT, FLOOR_WEIGHT = 0.1, 4.0
 DAMPING_M2 = 0.02  # Moments that a face must exceed to be heard: 0.15 m from its middle on average.
 SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_RANGE_M = (1.5, 12.0)
@@ -90,8 +90,10 @@ def find_faces(level: OrientedPoints) -> Faces:
                 axes.append(np.full(len(near), axis))
                 owners.append(np.full(len(near), count))
                 noise = 1 / (level.sigma_m[near] ** 2 + MIN_SIGMA_M**2)
-                say = WALL_SAY if axis < 2 else FLOOR_SAY if abs(place) < LIMITS_M[0] else 1.0
-                weights.append(say * noise / points_per_cell(level.points_m[near], axis))
+                face_weight = (
+                    WALL_WEIGHT if axis < 2 else FLOOR_WEIGHT if abs(place) < LIMITS_M[0] else 1.0
+                )
+                weights.append(face_weight * noise / points_per_cell(level.points_m[near], axis))
                 count += 1
     if not count:
         return Faces(np.zeros((0, 3)), np.zeros(0, int), np.zeros(0, int), np.zeros(0), 0)
@@ -99,14 +101,14 @@ def find_faces(level: OrientedPoints) -> Faces:
     return Faces(points, np.concatenate(axes), np.concatenate(owners), weights, count)
 
 
-def _separate_peaks(found: AxisProfile, least_m2: float) -> list[float]:
+def _separate_peaks(found: AxisProfile, min_area_m2: float) -> list[float]:
     """Return the peaks that have no larger one within twice the first limit."""
-    largest_first = sorted(found.peaks(least_m2), key=lambda place: -found.area_at(float(place)))
-    kept: list[float] = []
+    largest_first = sorted(found.peaks(min_area_m2), key=lambda place: -found.area_at(float(place)))
+    separate: list[float] = []
     for place in largest_first:
-        if all(abs(place - other) > 2 * LIMITS_M[0] for other in kept):
-            kept.append(float(place))
-    return kept
+        if all(abs(place - other) > 2 * LIMITS_M[0] for other in separate):
+            separate.append(float(place))
+    return separate
 
 
 def _gauss_newton_step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
@@ -230,8 +232,8 @@ def realign(scan: Scan, surface: OrientedPoints) -> Scan:
 def _rotation_to_walls(level: OrientedPoints) -> np.ndarray:
     """Return the turn about z that puts walls along the axes and the first camera's look to +y."""
     yaw_deg = find_yaw(level)
-    look = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
-    heading_deg = np.degrees(np.arctan2(look[1], look[0]))
+    view_direction = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
+    heading_deg = np.degrees(np.arctan2(view_direction[1], view_direction[0]))
     quarters = round((90.0 - heading_deg) / 90.0)
     return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
 
@@ -269,11 +271,11 @@ def _check_size(size: np.ndarray) -> None:
         ("deep", size[1], SIDE_RANGE_M),
         ("high", size[2], HEIGHT_RANGE_M),
     )
-    for word, length, (least, most) in sides:
-        if not least <= length <= most:
+    for word, length, (least, maximum) in sides:
+        if not least <= length <= maximum:
             raise ImplausibleRoomError(
                 f"the room would be {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m; {least:g} to "
-                f"{most:g} m {word} is plausible: check the depth unit and that poses are in metres"
+                f"{maximum:g} m {word} is plausible: check the depth unit and that poses are in metres"
             )
 
 
@@ -283,8 +285,8 @@ def _notes(ground: Ground, box: RoomBox, size: np.ndarray) -> tuple[str, ...]:
         notes.append("no floor was seen; the lowest points stand for it")
     sides = [name for side, name in COMPASS_OF_SIDE.items() if side not in box.seen]
     if sides:
-        told = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
-        notes.append(f"no wall was seen at {told}; the room ends where its points end")
+        names = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
+        notes.append(f"no wall was seen at {names}; the room ends where its points end")
     if "z+" not in box.seen:
         notes.append(f"no ceiling was seen; the room is taken to be {size[2]:.2f} m high")
     return tuple(notes)

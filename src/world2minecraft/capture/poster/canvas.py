@@ -104,9 +104,9 @@ class Sheet:
     def picture(self, pixels: np.ndarray, corner: Point, size: Point, smooth: bool = True) -> None:
         """Put uint8 [H, W, 3] into a box, stretched to it."""
         target = (round(size[0] * SUPERSAMPLING), round(size[1] * SUPERSAMPLING))
-        how = Image.Resampling.BICUBIC if smooth else Image.Resampling.NEAREST
+        resampling = Image.Resampling.BICUBIC if smooth else Image.Resampling.NEAREST
         at = (round(corner[0] * SUPERSAMPLING), round(corner[1] * SUPERSAMPLING))
-        self.image.paste(Image.fromarray(pixels).resize(target, how), at)
+        self.image.paste(Image.fromarray(pixels).resize(target, resampling), at)
 
     def finished(self) -> np.ndarray:
         """Return the page, uint8 [H, W, 3]."""
@@ -116,8 +116,8 @@ class Sheet:
 def to_ascii(words: str) -> str:
     """Return a text in letters that the font has: those of ASCII, accents left out."""
     split = unicodedata.normalize("NFKD", words)
-    kept = "".join(letter for letter in split if not unicodedata.combining(letter))
-    return kept.encode("ascii", "replace").decode()
+    letters = "".join(letter for letter in split if not unicodedata.combining(letter))
+    return letters.encode("ascii", "replace").decode()
 
 
 def _elide(words: str, keep: int) -> str:

@@ -59,19 +59,19 @@ def draw_poster(summary: "CaptureSummary") -> np.ndarray:
     if survey.plan is not None and survey.directions is not None:
         draw_plan(
             sheet, survey.plan, survey.directions, left, (LEFT_PX, tall), frozenset(marks),
-            survey.judged.capture.scale != "unknown", summary.route.kind != "solid",
+            survey.validated.capture.scale != "unknown", summary.route.kind != "solid",
         )  # fmt: skip
         top = TOP_PX
         if survey.pictures:
             draw_photos(sheet, survey.pictures, marks, right, (RIGHT_PX, 380), 4, 3)
             top += 380 + 18
         draw_view_directions(sheet, survey.directions, (right[0], top), (RIGHT_PX, 170))
-        _doubts(sheet, summary.doubts, (right[0], top + 190), TOP_PX + tall)
+        _write_diagnostics(sheet, summary.diagnostics, (right[0], top + 190), TOP_PX + tall)
     else:
         columns, rows = _contact_sheet_grid(len(survey.pictures))
         draw_photos(sheet, survey.pictures, marks, left, (LEFT_PX, tall), columns, rows)
         _charts(sheet, summary, right)
-        _doubts(sheet, summary.doubts, (right[0], TOP_PX + 400), TOP_PX + tall)
+        _write_diagnostics(sheet, summary.diagnostics, (right[0], TOP_PX + 400), TOP_PX + tall)
     _foot(sheet, summary.next_command)
     return sheet.finished()
 
@@ -96,13 +96,13 @@ def picture_marks(summary: "CaptureSummary") -> dict[int, str]:
 def _head(sheet: Sheet, summary: "CaptureSummary") -> None:
     name = Path(summary.folder.name).name or "capture"
     sheet.text((EDGE_PX, 26), sheet.clipped(name, 42, 900), 42, INK, bold=True)
-    worst = _verdict(summary.doubts)
-    width = sheet.width(worst, 20) + 54
+    verdict = _verdict(summary.diagnostics)
+    width = sheet.width(verdict, 20) + 54
     at = (WIDTH_PX - EDGE_PX - width, 32)
-    level = summary.doubts[0].level if summary.doubts else "ok"
+    level = summary.diagnostics[0].level if summary.diagnostics else "ok"
     sheet.box(at, (width, 40), PAPER, LEVELS[level], 20, 1.5)
     _icon(sheet, level, (at[0] + 22, at[1] + 20))
-    sheet.text((at[0] + 40, at[1] + 20), worst, 20, LEVELS[level], anchor="lm")
+    sheet.text((at[0] + 40, at[1] + 20), verdict, 20, LEVELS[level], anchor="lm")
     route = summary.route
     words = f"{route.called[0].upper()}{route.called[1:]} ({summary.source})"
     usable = f"{summary.usable} of {summary.frames} frames usable"
@@ -112,9 +112,9 @@ def _head(sheet: Sheet, summary: "CaptureSummary") -> None:
     sheet.line([(EDGE_PX, 120), (WIDTH_PX - EDGE_PX, 120)], RULE, 1)
 
 
-def _verdict(doubts: tuple[Diagnostic, ...]) -> str:
-    stops = sum(doubt.level == "stop" for doubt in doubts)
-    warns = sum(doubt.level == "warn" for doubt in doubts)
+def _verdict(diagnostics: tuple[Diagnostic, ...]) -> str:
+    stops = sum(diagnostic.level == "stop" for diagnostic in diagnostics)
+    warns = sum(diagnostic.level == "warn" for diagnostic in diagnostics)
     if stops:
         return "cannot become a room yet"
     if warns:
@@ -144,20 +144,24 @@ def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
         sheet.text((below[0], below[1] + 32), text, 17, FAINT)
 
 
-def _doubts(sheet: Sheet, doubts: tuple[Diagnostic, ...], corner: Point, bottom: float) -> None:
+def _write_diagnostics(
+    sheet: Sheet, diagnostics: tuple[Diagnostic, ...], corner: Point, bottom: float
+) -> None:
     """Write the doubts from the worst to what is well, as many as there is room for."""
     top, step = corner[1], BODY_PX + 6
-    for place, doubt in enumerate(doubts):
+    for place, diagnostic in enumerate(diagnostics):
         width = RIGHT_PX - 34
-        lines = [(words, INK) for words in sheet.wrapped(doubt.text, BODY_PX, width)[:3]]
-        if doubt.advice and doubt.level != "ok":
-            lines += [(words, FAINT) for words in sheet.wrapped(doubt.advice, BODY_PX, width)[:2]]
-        left_over = len(doubts) - place
+        lines = [(words, INK) for words in sheet.wrapped(diagnostic.text, BODY_PX, width)[:3]]
+        if diagnostic.advice and diagnostic.level != "ok":
+            lines += [
+                (words, FAINT) for words in sheet.wrapped(diagnostic.advice, BODY_PX, width)[:2]
+            ]
+        left_over = len(diagnostics) - place
         if top + len(lines) * step > bottom - (step if left_over > 1 else 0) + 4:
             words = f"and {left_over} more: w2m scan prints them"
             sheet.text((corner[0] + 34, top + 2), words, BODY_PX, FAINT)
             return
-        _icon(sheet, doubt.level, (corner[0] + 12, top + step / 2 - 1))
+        _icon(sheet, diagnostic.level, (corner[0] + 12, top + step / 2 - 1))
         for words, colour in lines:
             sheet.text((corner[0] + 34, top), words, BODY_PX, colour)
             top += step
@@ -189,7 +193,7 @@ def _foot(sheet: Sheet, command: str) -> None:
 def poster_png(summary: "CaptureSummary") -> bytes:
     """Return the page as a PNG that says whose it is; the same capture gives the same bytes."""
     stream = io.BytesIO()
-    told = PngInfo()
-    told.add_text("Software", SOFTWARE_TAG)
-    Image.fromarray(draw_poster(summary)).save(stream, "PNG", pnginfo=told)
+    info = PngInfo()
+    info.add_text("Software", SOFTWARE_TAG)
+    Image.fromarray(draw_poster(summary)).save(stream, "PNG", pnginfo=info)
     return stream.getvalue()

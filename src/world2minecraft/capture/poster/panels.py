@@ -39,9 +39,9 @@ def draw_view_directions(
 ) -> None:
     """Draw the chart into a box: headings across, north at both ends; up at the top."""
     sheet.text(corner, "Looked at: heading and tilt", 18)
-    most = int(directions.seen.max())
+    maximum = int(directions.seen.max())
     sheet.text(
-        (corner[0] + size[0], corner[1]), f"darkest: {most} pictures", 15, FAINT, anchor="ra"
+        (corner[0] + size[0], corner[1]), f"darkest: {maximum} pictures", 15, FAINT, anchor="ra"
     )
     left, top = corner[0] + 62, corner[1] + 28
     wide, tall = size[0] - 62, size[1] - 28 - 22
@@ -94,11 +94,11 @@ def select_pictures(
 ) -> list[Picture]:
     """Return evenly spread pictures; up to a quarter of the places go to doubtful ones."""
     doubtful = [picture for picture in pictures if picture.index in marks]
-    kept = evenly_spaced(doubtful, min(len(doubtful), count // 4)) if doubtful else []
-    names = {picture.index for picture in kept}
+    marked = evenly_spaced(doubtful, min(len(doubtful), count // 4)) if doubtful else []
+    names = {picture.index for picture in marked}
     others = [picture for picture in pictures if picture.index not in names]
-    others = evenly_spaced(others, count - len(kept)) if others else []
-    return sorted([*kept, *others], key=lambda picture: picture.index)
+    others = evenly_spaced(others, count - len(marked)) if others else []
+    return sorted([*marked, *others], key=lambda picture: picture.index)
 
 
 def _draw_tile(sheet: Sheet, picture: Picture, mark: str, at: Point, size: Point) -> None:
@@ -124,7 +124,7 @@ def _draw_tile(sheet: Sheet, picture: Picture, mark: str, at: Point, size: Point
 
 def draw_bars(
     sheet: Sheet, title: str, values: np.ndarray, limit: float, corner: Point, size: Point,
-    words: tuple[str, str], most: float = 0.0,
+    words: tuple[str, str], maximum: float = 0.0,
 ) -> None:  # fmt: skip
     """Draw one bar a picture; those under ``limit`` in orange, with a line at the limit.
 
@@ -136,21 +136,21 @@ def draw_bars(
         corner: of the box.
         size: of the box.
         words: what stands under the left and the right end.
-        most: what fills the chart's height; 0 for the largest value.
+        maximum: what fills the chart's height; 0 for the largest value.
     """
     sheet.text(corner, title, 18)
     top, low = corner[1] + 28, corner[1] + size[1] - CAPTION_PX
     known = values[np.isfinite(values)]
-    most = most or max(float(known.max(initial=0)), 2 * limit, 1e-9)
+    maximum = maximum or max(float(known.max(initial=0)), 2 * limit, 1e-9)
     step = size[0] / max(1, len(values))
     for place, value in enumerate(values):
         if not np.isfinite(value):
             continue
-        tall = max(2.0, (low - top) * float(value) / most)
+        tall = max(2.0, (low - top) * float(value) / maximum)
         left = corner[0] + place * step
         fill = WARN if value < limit else FIRST
         sheet.box((left, low - tall), (max(1.0, step - min(2, step / 4)), tall), fill)
-    line = low - (low - top) * limit / most
+    line = low - (low - top) * limit / maximum
     sheet.line([(corner[0], line), (corner[0] + size[0], line)], FAINT, 0.5)
     sheet.line([(corner[0], low), (corner[0] + size[0], low)], FAINT, 0.5)
     sheet.text((corner[0], low + 5), words[0], 15, FAINT)
@@ -282,8 +282,8 @@ def _draw_cameras(
         colour = blend_colours(FIRST, LAST, index / max(1, count - 1))
         sheet.line([points[index], points[index + 1]], PAPER, 4)
         sheet.line([points[index], points[index + 1]], colour, 2)
-    long = min(CONE_M * place.px_per_m, 46.0)
-    long = max(long, 20.0)
+    length = min(CONE_M * place.px_per_m, 46.0)
+    length = max(length, 20.0)
     for index in np.unique(np.linspace(0, count - 1, min(CONES, count)).round().astype(int)):
         look = poses[index, :2, 2]
         flat = float(np.hypot(*look))
@@ -294,7 +294,7 @@ def _draw_cameras(
         )
         if flat > 0.15:
             _draw_view_cone(
-                sheet, points[index], float(np.arctan2(look[1], look[0])), long * flat, colour
+                sheet, points[index], float(np.arctan2(look[1], look[0])), length * flat, colour
             )
         sheet.dot(points[index], 4, colour, PAPER)
     if not walked:
@@ -305,9 +305,9 @@ def _draw_cameras(
         _draw_flag(sheet, points[-1], "end", LAST)
 
 
-def _draw_view_cone(sheet: Sheet, at: Point, angle: float, long: float, colour: Colour) -> None:
+def _draw_view_cone(sheet: Sheet, at: Point, angle: float, length: float, colour: Colour) -> None:
     ends = [
-        (at[0] + long * np.cos(angle + side), at[1] - long * np.sin(angle + side))
+        (at[0] + length * np.cos(angle + side), at[1] - length * np.sin(angle + side))
         for side in (np.radians(HALF_DEG), -np.radians(HALF_DEG))
     ]
     sheet.shape([at, *ends], colour, 0.62)
@@ -342,9 +342,9 @@ def _draw_direction_rose(sheet: Sheet, directions: ViewDirections, middle: Point
     for index, share in enumerate(directions.sectors()):
         angle = np.radians(90 - 45 * index)
         gap = share < 0.1
-        long = 12 + 32 * (1.0 if gap else float(share))
+        length = 12 + 32 * (1.0 if gap else float(share))
         edge = [
-            (middle[0] + long * np.cos(angle + turn), middle[1] - long * np.sin(angle + turn))
+            (middle[0] + length * np.cos(angle + turn), middle[1] - length * np.sin(angle + turn))
             for turn in np.radians(np.linspace(-20, 20, 9))
         ]
         sheet.shape([middle, *edge], WARN if gap else FIRST, 0.35 if gap else 0.75)

@@ -40,7 +40,7 @@ class Diagnostic:
 
 def diagnose_capture(survey: Survey, route: Route) -> tuple[Diagnostic, ...]:
     """Judge what was found; what stops comes first, then what harms, then what is well."""
-    judges: tuple[Callable[[Survey, Route], Iterator[Diagnostic]], ...] = (
+    checks: tuple[Callable[[Survey, Route], Iterator[Diagnostic]], ...] = (
         _check_extras,
         _check_count,
         _check_skipped,
@@ -55,9 +55,9 @@ def diagnose_capture(survey: Survey, route: Route) -> tuple[Diagnostic, ...]:
         _check_scale,
         _check_colour,
     )
-    found = [doubt for judge in judges for doubt in judge(survey, route)]
+    found = [diagnostic for check in checks for diagnostic in check(survey, route)]
     order = ("stop", "warn", "ok")
-    return tuple(sorted(found, key=lambda doubt: order.index(doubt.level)))
+    return tuple(sorted(found, key=lambda diagnostic: order.index(diagnostic.level)))
 
 
 def _check_extras(survey: Survey, route: Route) -> Iterator[Diagnostic]:
@@ -74,16 +74,16 @@ def is_installed(module: str) -> bool:
 
 
 def _check_count(survey: Survey, route: Route) -> Iterator[Diagnostic]:
-    count = len(survey.judged.frames)
+    count = len(survey.validated.frames)
     if route.kind == "solid":
         return
-    if not survey.judged.posed and count < MIN_PHOTOS:
+    if not survey.validated.posed and count < MIN_PHOTOS:
         text = f"only {count} {_plural('picture', count)}; places are found from 3 or more"
         advice = "take 40 to 100 from all over the room, each overlapping"
-        if survey.judged.capture.source == "photo":
+        if survey.validated.capture.source == "photo":
             advice += "; or let a network guess: --depth hf:ORG/NAME"
         yield Diagnostic("stop", "few", text, advice)
-    elif (route.from_pictures or not survey.judged.posed) and count < FEW_PHOTOS:
+    elif (route.from_pictures or not survey.validated.posed) and count < FEW_PHOTOS:
         text = f"only {count} pictures; 40 to 100 from all sides show a room"
         more = "take more, each sharing two thirds with the one before"
         advice = "film longer, around the room along its walls" if route.kind == "video" else more
@@ -94,8 +94,8 @@ def _check_count(survey: Survey, route: Route) -> Iterator[Diagnostic]:
 
 
 def _check_skipped(survey: Survey, route: Route) -> Iterator[Diagnostic]:
-    skipped = survey.judged.skipped
-    total = len(survey.judged.frames) + len(skipped)
+    skipped = survey.validated.skipped
+    total = len(survey.validated.frames) + len(skipped)
     for reason, count in Counter(reason for _, reason in skipped).most_common(3):
         lost = "pose" in reason or "tracking" in reason
         advice = "move slower, with texture in view" if lost else ""
@@ -119,18 +119,18 @@ def _check_room(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     for note in plan.notes:
         words = " ".join(note.split()[:2])
         yield Diagnostic("warn", words, note, advice.get(words, ""))
-    if survey.judged.has_depth and not plan.problem and not plan.notes:
+    if survey.validated.has_depth and not plan.problem and not plan.notes:
         yield Diagnostic("ok", "room", "floor, ceiling and all four walls were met")
 
 
 def _check_movement(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if survey.plan is None or route.kind == "solid" or len(survey.plan.cameras) < 3:
         return
-    if survey.judged.capture.scale == "unknown":
+    if survey.validated.capture.scale == "unknown":
         return
     places = survey.plan.cameras[:, :3, 3]
     spread = float(np.quantile(np.linalg.norm(places - np.median(places, axis=0), axis=1), 0.9))
-    typical = survey.judged.typical_depth_m
+    typical = survey.validated.typical_depth_m
     if spread > (STILL_SHARE * typical if typical else STILL_M):
         return
     text = f"all cameras stand within {2 * spread:.2f} m; the camera turned but did not walk"
@@ -194,23 +194,23 @@ def _check_overlap(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     known = survey.shares[np.isfinite(survey.shares)]
     if len(known) < 2:
         return
-    middle = float(np.median(known))
+    median = float(np.median(known))
     jumps = int((known < ISOLATED_SHARE).sum())
-    if middle < LOW_OVERLAP or jumps > 0.25 * len(known):
-        text = f"neighbours share about {middle:.0%}; {jumps} of {len(known)} share next to nothing"
-        if middle < ISOLATED_SHARE:
+    if median < LOW_OVERLAP or jumps > 0.25 * len(known):
+        text = f"neighbours share about {median:.0%}; {jumps} of {len(known)} share next to nothing"
+        if median < ISOLATED_SHARE:
             text = f"{jumps} of {len(known)} neighbours share next to nothing"
         advice = "each picture should share two thirds with the last"
         if route.kind == "video":
             advice = "film slowly, a step a second"
         yield Diagnostic("warn", "overlap", text, advice)
     else:
-        yield Diagnostic("ok", "overlap", f"neighbours share about {middle:.0%}")
+        yield Diagnostic("ok", "overlap", f"neighbours share about {median:.0%}")
 
 
 def _check_depth(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     plan = survey.plan
-    if plan is None or not survey.judged.has_depth or route.kind == "solid":
+    if plan is None or not survey.validated.has_depth or route.kind == "solid":
         return
     if plan.holes > MAX_HOLE_SHARE:
         text = f"{plan.holes:.0%} of the depth is holes"
@@ -226,7 +226,7 @@ def _check_depth(survey: Survey, route: Route) -> Iterator[Diagnostic]:
     if plan.holes <= MAX_HOLE_SHARE and plan.far_m <= MAX_RANGE_M:
         text = f"depth from {plan.near_m:.1f} to {plan.far_m:.1f} m, {plan.holes:.0%} of it holes"
         yield Diagnostic("ok", "depth", text)
-    if survey.judged.capture.one_matrix:
+    if survey.validated.capture.one_matrix:
         text = "depth and colour share one stated matrix; the colour camera is estimated"
         yield Diagnostic("ok", "one matrix", text)
 
@@ -242,7 +242,7 @@ def _check_directions(survey: Survey, route: Route) -> Iterator[Diagnostic]:
         yield Diagnostic("warn", "gap", f"no picture looks {_listed(gaps)}", "turn to every wall")
     else:
         yield Diagnostic("ok", "gap", "every heading is looked at")
-    if survey.judged.has_depth:
+    if survey.validated.has_depth:
         return  # The alignment knows whether floor and ceiling were met.
     if seen.share_below() == 0:
         text = "no picture looks steeply down; the floor may be missing"
@@ -258,16 +258,16 @@ def _check_scale(survey: Survey, route: Route) -> Iterator[Diagnostic]:
         yield Diagnostic("warn", "scale", text, SCALE_ADVICE)
     elif route.kind == "unposed rgbd":
         return  # Depth in metres gives it.
-    elif survey.judged.capture.scale == "unknown":
+    elif survey.validated.capture.scale == "unknown":
         text = "its poses have no unit; the size is judged from heights that are usual"
         yield Diagnostic("warn", "scale", text, SCALE_ADVICE)
-    elif survey.judged.capture.scale == "estimated":
-        text = f"its scale is an estimate, {survey.judged.capture.scale_sigma:.0%} unsure"
+    elif survey.validated.capture.scale == "estimated":
+        text = f"its scale is an estimate, {survey.validated.capture.scale_sigma:.0%} unsure"
         yield Diagnostic("ok", "scale", text, SCALE_ADVICE)
 
 
 def _check_colour(survey: Survey, route: Route) -> Iterator[Diagnostic]:
-    if not any(frame.colour_path for frame in survey.judged.frames):
+    if not any(frame.colour_path for frame in survey.validated.frames):
         text = "no colour images: blocks will have the colours of their classes"
         yield Diagnostic("warn", "colour", text)
 

@@ -48,16 +48,20 @@ class Picture:
     bare: float
 
 
-def sample_pictures(frames: Sequence[FrameFiles], most: int = MAX_PICTURES) -> list[Picture]:
+def sample_pictures(
+    frames: Sequence[FrameFiles], max_pictures: int = MAX_PICTURES
+) -> list[Picture]:
     """Decode some of the frames' colour images, evenly spread; damaged ones are passed over.
 
     Args:
         frames: the usable frames of a capture.
-        most: at most that many; fewer where the pictures are large.
+        max_pictures: at most that many; fewer where the pictures are large.
     """
     shown = [(index, frame) for index, frame in enumerate(frames) if frame.colour_path]
     pictures = []
-    for index, frame in evenly_spaced(shown, _affordable([frame for _, frame in shown], most)):
+    for index, frame in evenly_spaced(
+        shown, _affordable([frame for _, frame in shown], max_pictures)
+    ):
         try:
             colour = read_small(frame.colour_path, WORK_PX) if frame.colour_path else None
         except InputError:
@@ -67,13 +71,13 @@ def sample_pictures(frames: Sequence[FrameFiles], most: int = MAX_PICTURES) -> l
     return pictures
 
 
-def _affordable(frames: Sequence[FrameFiles], most: int) -> int:
+def _affordable(frames: Sequence[FrameFiles], max_pictures: int) -> int:
     """Return how many pictures may be decoded; at least 12, so that there is something to see."""
     if not frames or frames[0].colour_path is None:
-        return most
+        return max_pictures
     width, height = read_header(frames[0].colour_path).size
     each = width * height / 1e6 * (DRAFT_COST if _is_jpeg(frames[0].colour_path) else 1.0)
-    return int(np.clip(BUDGET_MPX / each, min(12, most), most))
+    return int(np.clip(BUDGET_MPX / each, min(12, max_pictures), max_pictures))
 
 
 def _is_jpeg(place: ImagePlace) -> bool:

@@ -51,23 +51,25 @@ _DESCRIPTIONS = {
 }
 
 
-def choose_route(judged: ValidatedCapture) -> Route:
+def choose_route(validated: ValidatedCapture) -> Route:
     """Return the route of a judged capture."""
-    kind = _kind(judged)
+    kind = _kind(validated)
     each = FRAME_S
     if kind in ("photos", "video", "unposed rgbd"):
         each += POSE_S
     if kind in ("photos", "video", "posed photos"):
         each += STEREO_S
-    return Route(kind, _INPUT_NAMES[kind], _DESCRIPTIONS[kind], BUILD_S + each * len(judged.frames))
+    return Route(
+        kind, _INPUT_NAMES[kind], _DESCRIPTIONS[kind], BUILD_S + each * len(validated.frames)
+    )
 
 
-def _kind(judged: ValidatedCapture) -> Kind:
-    source = judged.capture.source
+def _kind(validated: ValidatedCapture) -> Kind:
+    source = validated.capture.source
     if source.startswith("solid"):  # Rendered sequences have exact depth too, and are frames.
         return "solid"
-    if judged.has_depth:
-        return "rgbd" if judged.posed else "unposed rgbd"
-    if judged.posed:
+    if validated.has_depth:
+        return "rgbd" if validated.posed else "unposed rgbd"
+    if validated.posed:
         return "posed photos"
     return "video" if source == "video" else "photos"

@@ -24,23 +24,23 @@ class Survey:
     where that is not known. ``plan`` and ``directions`` are None where there are no poses.
     """
 
-    judged: ValidatedCapture
+    validated: ValidatedCapture
     pictures: tuple[Picture, ...]
     shares: np.ndarray
     plan: TopView | None
     directions: ViewDirections | None
 
 
-def survey_capture(judged: ValidatedCapture) -> Survey:
+def survey_capture(validated: ValidatedCapture) -> Survey:
     """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
-    if judged.posed:
-        pictures = sample_pictures(judged.frames, PICTURES_POSED)
-        plan = make_top_view(judged)
-        lenses = [frame.colour_camera or frame.depth_camera for frame in judged.frames]
+    if validated.posed:
+        pictures = sample_pictures(validated.frames, PICTURES_POSED)
+        plan = make_top_view(validated)
+        lenses = [frame.colour_camera or frame.depth_camera for frame in validated.frames]
         # With depth, how much neighbours share matters little; stereo lives of it.
         unknown = np.full(max(0, len(pictures) - 1), np.nan)
-        shares = unknown if judged.has_depth else neighbour_overlaps(pictures)
+        shares = unknown if validated.has_depth else neighbour_overlaps(pictures)
         seen = count_view_directions(lenses, plan.cameras)
-        return Survey(judged, tuple(pictures), shares, plan, seen)
-    pictures = sample_pictures(judged.frames)
-    return Survey(judged, tuple(pictures), neighbour_overlaps(pictures), None, None)
+        return Survey(validated, tuple(pictures), shares, plan, seen)
+    pictures = sample_pictures(validated.frames)
+    return Survey(validated, tuple(pictures), neighbour_overlaps(pictures), None, None)

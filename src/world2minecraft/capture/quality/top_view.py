@@ -59,33 +59,35 @@ class TopView:
     trust: float | None = None
 
 
-def make_top_view(judged: ValidatedCapture) -> TopView:
+def make_top_view(validated: ValidatedCapture) -> TopView:
     """Lay some frames of a posed capture into a plan; without depth, the cameras alone."""
-    poses = np.array([np.asarray(frame.camera_to_world) for frame in judged.frames])
-    with_depth = [frame for frame in judged.frames if frame.depth_path]
+    poses = np.array([np.asarray(frame.camera_to_world) for frame in validated.frames])
+    with_depth = [frame for frame in validated.frames if frame.depth_path]
     if not with_depth:
-        return _camera_top_view(judged, poses)
-    gathered = _PointCollector(judged, evenly_spaced(with_depth, ALIGNMENT_FRAMES))
+        return _camera_top_view(validated, poses)
+    gathered = _PointCollector(validated, evenly_spaced(with_depth, ALIGNMENT_FRAMES))
     problem, found = "", None
     try:
-        found = align(gathered.views(), judged.capture.world_up)
+        found = align(gathered.views(), validated.capture.world_up)
     except ImplausibleRoomError as error:
         problem = str(error)
     if not sum(map(len, gathered.points)):
         raise CaptureError(
-            judged.capture.folder,
+            validated.capture.folder,
             f"none of the {len(gathered.holes)} depth images looked at has any depth that the "
             "device trusts; scan again, nearer and slower",
         )
-    scan_to_level = _level_frame(judged, poses) if found is None else found.scan_to_room
+    scan_to_level = _level_frame(validated, poses) if found is None else found.scan_to_room
     return _rasterise(gathered, scan_to_level @ poses, scan_to_level, found, problem)
 
 
 class _PointCollector:
     """Reads views once for ``align`` and keeps some coloured points of each on the way."""
 
-    def __init__(self, judged: ValidatedCapture, frames: Sequence[FrameFiles]):
-        self._stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
+    def __init__(self, validated: ValidatedCapture, frames: Sequence[FrameFiles]):
+        self._stream = CaptureViews(
+            validated.frames, validated.encoding, validated.capture.full_trust
+        )
         self._frames = frames
         self.points: list[np.ndarray] = [np.zeros((0, 3), np.float32)]
         self.colours: list[np.ndarray] = [np.zeros((0, 3), np.uint8)]
@@ -128,22 +130,22 @@ def _sample_colours(view: View, points: np.ndarray) -> np.ndarray:
     return colours
 
 
-def _level_frame(judged: ValidatedCapture, poses: np.ndarray) -> np.ndarray:
+def _level_frame(validated: ValidatedCapture, poses: np.ndarray) -> np.ndarray:
     """Return a turn that sets the scan upright, first look to the north, from what is known."""
-    up = judged.capture.world_up
+    up = validated.capture.world_up
     turned = np.eye(4)
     turned[:3, :3] = rotation_to_z(estimate_up(poses) if up is None else np.asarray(up))
-    look = turned[:3, :3] @ poses[0, :3, 2]
-    if np.hypot(look[0], look[1]) > 0.1:
-        angle = np.pi / 2 - np.arctan2(look[1], look[0])
+    view_direction = turned[:3, :3] @ poses[0, :3, 2]
+    if np.hypot(view_direction[0], view_direction[1]) > 0.1:
+        angle = np.pi / 2 - np.arctan2(view_direction[1], view_direction[0])
         turn = np.eye(4)
         turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
         turned = turn @ turned
     return turned
 
 
-def _camera_top_view(judged: ValidatedCapture, poses: np.ndarray) -> TopView:
-    cameras = _level_frame(judged, poses) @ poses
+def _camera_top_view(validated: ValidatedCapture, poses: np.ndarray) -> TopView:
+    cameras = _level_frame(validated, poses) @ poses
     places = cameras[:, :2, 3]
     low, high = places.min(axis=0), places.max(axis=0)
     margin = max(MARGIN_M, 0.15 * float((high - low).max()))
@@ -257,10 +259,10 @@ def _fill_holes(sums: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.nd
     """Close small holes: a cell without points takes those of its neighbours, if three have any."""
     for _ in range(3):
         near, near_sums = np.zeros_like(weight), np.zeros_like(sums)
-        held = (weight > 0).astype(np.float64)
+        filled = (weight > 0).astype(np.float64)
         mean = sums / np.maximum(weight, 1e-9)[..., None]
-        padded = np.pad(held, 1)
-        padded_mean = np.pad(mean * held[..., None], ((1, 1), (1, 1), (0, 0)))
+        padded = np.pad(filled, 1)
+        padded_mean = np.pad(mean * filled[..., None], ((1, 1), (1, 1), (0, 0)))
         for down in range(3):
             for right in range(3):
                 rows = slice(down, down + weight.shape[0])

@@ -68,15 +68,15 @@ class PhotoFolderSource:
             raise CaptureError(
                 folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
             )
-        kept, skipped = _select_photos(paths)
-        if len(kept) < MIN_FRAMES:
+        accepted, skipped = _select_photos(paths)
+        if len(accepted) < MIN_FRAMES:
             why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
-            count = f"{len(kept)} photo" + "s" * (len(kept) != 1)
+            count = f"{len(accepted)} photo" + "s" * (len(accepted) != 1)
             reason = f"holds {count} that can be used{why}; take 30 or more of the room"
             raise CaptureError(folder, reason)
-        kept = evenly_thinned(kept, options.frames)
+        accepted = evenly_thinned(accepted, options.frames)
         depths = _depth_files(folder, colour_folder)
-        frames = _frames(kept, depths)
+        frames = _frames(accepted, depths)
         notes = [*_notes(colour_folder, paths), _lens_note(frames)]
         if depths:
             paired = sum(frame.depth_path is not None for frame in frames)
@@ -135,7 +135,7 @@ def _select_photos(paths: list[AnyPath]) -> tuple[list[_PhotoFile], list[tuple[s
     usual = float(np.median(sides)) if sides else 0.0
     taken = [item.facts.by_camera for item in found if item.facts]
     by_phone = sum(taken) * 2 > len(taken)
-    kept: list[_PhotoFile] = []
+    accepted: list[_PhotoFile] = []
     skipped: list[tuple[str, str]] = []
     seen: dict[str, str] = {}
     sizes = Counter(path.stat().st_size for path in paths)
@@ -147,8 +147,8 @@ def _select_photos(paths: list[AnyPath]) -> tuple[list[_PhotoFile], list[tuple[s
         if reason:
             skipped.append((item.path.name, reason))
         else:
-            kept.append(item)
-    return kept, skipped
+            accepted.append(item)
+    return accepted, skipped
 
 
 def _inspect(path: AnyPath) -> _PhotoFile:
@@ -200,9 +200,9 @@ def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
     }
 
 
-def _frames(kept: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
+def _frames(accepted: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
     frames, used = [], set()
-    for item in kept:
+    for item in accepted:
         plain = re.sub(r"[^A-Za-z0-9_.-]+", "_", item.path.stem).lstrip(".-")[:80] or "photo"
         name, count = plain, 1
         while name in used:
@@ -224,10 +224,10 @@ def _frames(kept: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[Fra
 
 
 def _lens_note(frames: tuple[FrameFiles, ...]) -> str:
-    told = [frame.colour_camera.fx_px for frame in frames if frame.colour_camera]
-    if not told:
+    focals = [frame.colour_camera.fx_px for frame in frames if frame.colour_camera]
+    if not focals:
         return "the photos say nothing of their lens; it is found with their places"
-    return f"the lens of {len(told)} of {len(frames)} photos is a first guess from their EXIF"
+    return f"the lens of {len(focals)} of {len(frames)} photos is a first guess from their EXIF"
 
 
 def _notes(folder: AnyPath, photos: list[AnyPath]) -> list[str]:

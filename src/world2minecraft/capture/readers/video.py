@@ -234,26 +234,26 @@ def block_shift(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.hypot(v, u).mean())
 
 
-def select_frames(look: VideoAnalysis, wanted: int) -> list[int]:
+def select_frames(analysis: VideoAnalysis, wanted: int) -> list[int]:
     """Return which pictures to take, ascending: a steady way apart, each the sharpest near by.
 
     Args:
-        look: of the video.
+        analysis: of the video.
         wanted: how many at most; a camera that moves little gives fewer.
     """
-    way = float(look.path[-1]) if len(look.path) else 0.0
-    count = min(wanted, int(way / FRAME_STEP) + 1, len(look.path))
+    way = float(analysis.path[-1]) if len(analysis.path) else 0.0
+    count = min(wanted, int(way / FRAME_STEP) + 1, len(analysis.path))
     if count < 2:
-        return [int(look.sharpness.argmax())] if len(look.path) else []
+        return [int(analysis.sharpness.argmax())] if len(analysis.path) else []
     step = way / (count - 1)
     chosen: list[int] = []
     for place in np.arange(count) * step:
-        low = int(np.searchsorted(look.path, place - SEARCH_STEPS * step))
-        high = int(np.searchsorted(look.path, place + SEARCH_STEPS * step, side="right"))
+        low = int(np.searchsorted(analysis.path, place - SEARCH_STEPS * step))
+        high = int(np.searchsorted(analysis.path, place + SEARCH_STEPS * step, side="right"))
         near = np.arange(max(low, chosen[-1] + 1 if chosen else 0), high)
         if len(near):
-            off = np.abs(look.path[near] - place) / step
-            chosen.append(int(near[(look.sharpness[near] * (1 - 0.5 * off)).argmax()]))
+            off = np.abs(analysis.path[near] - place) / step
+            chosen.append(int(near[(analysis.sharpness[near] * (1 - 0.5 * off)).argmax()]))
     return chosen
 
 
@@ -277,20 +277,20 @@ class VideoSource:
             raise CaptureError(folder, "holds no video, or several; give one by its own name")
         if path.stat().st_size == 0:
             raise DamagedFileError(path, "is empty; copy it again")
-        look = analyse_video(path)
-        _check_video(path, look)
+        analysis = analyse_video(path)
+        _check_video(path, analysis)
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
-        chosen = select_frames(look, wanted)
+        chosen = select_frames(analysis, wanted)
         if len(chosen) < MIN_FRAMES:
             places = f"{len(chosen)} place" + "s" * (len(chosen) != 1)
             raise CaptureError(
                 path,
                 f"shows only {places}: the camera hardly moves "
-                f"in its {look.duration_s:.0f} s; film while walking sideways through the room",
+                f"in its {analysis.duration_s:.0f} s; film while walking sideways through the room",
             )
-        frames = _frames(path, look, chosen)
+        frames = _frames(path, analysis, chosen)
         return Capture(
-            folder, "video", frames, notes=_notes(look, frames), lens="guess", scale="unknown"
+            folder, "video", frames, notes=_notes(analysis, frames), lens="guess", scale="unknown"
         )
 
 
@@ -307,51 +307,51 @@ def _video_in(place: AnyPath) -> AnyPath | None:
     return videos[0] if len(videos) == 1 else None
 
 
-def _check_video(path: AnyPath, look: VideoAnalysis) -> None:
+def _check_video(path: AnyPath, analysis: VideoAnalysis) -> None:
     """Refuse a video that cannot be used.
 
     Raises:
         LimitError: its pictures are too large. DamagedFileError: it ends early.
     """
-    width, height = look.size
+    width, height = analysis.size
     if width * height > MAX_PIXELS:
         raise LimitError(
             path,
             f"has pictures of {width}x{height}; at most 64 megapixels are read: make it smaller",
         )
-    if not len(look.times):
+    if not len(analysis.times):
         raise DamagedFileError(path, "has no picture that can be decoded; copy it again")
     # A stated length of seconds more than what is there: the copy broke off.
-    if look.stated_s > look.duration_s + 2.0 + 0.1 * look.stated_s:
+    if analysis.stated_s > analysis.duration_s + 2.0 + 0.1 * analysis.stated_s:
         raise DamagedFileError(
             path,
-            f"is cut short: {look.duration_s:.1f} s of its {look.stated_s:.1f} s are there; "
+            f"is cut short: {analysis.duration_s:.1f} s of its {analysis.stated_s:.1f} s are there; "
             "copy it again",
         )
 
 
-def _frames(path: AnyPath, look: VideoAnalysis, chosen: list[int]) -> tuple[FrameFiles, ...]:
+def _frames(path: AnyPath, analysis: VideoAnalysis, chosen: list[int]) -> tuple[FrameFiles, ...]:
     numbers = {time: number for number, time in enumerate(open_video(path).times)}
-    camera = _camera(look)
+    camera = _camera(analysis)
     frames = []
     for index in chosen:
-        number = numbers.get(int(look.times[index]))
+        number = numbers.get(int(analysis.times[index]))
         if number is None:
             continue
         image: ImagePlace = VideoFrame(path, number)
-        if look.quarter_turns:
-            image = RotatedImage(image, look.quarter_turns)
-        time_s = float(look.times[index] * look.tick_s)
+        if analysis.quarter_turns:
+            image = RotatedImage(image, analysis.quarter_turns)
+        time_s = float(analysis.times[index] * analysis.tick_s)
         frames.append(
             FrameFiles(f"frame-{number:06d}", None, image, camera, time_s=round(time_s, 6))
         )
     return tuple(frames)
 
 
-def _camera(look: VideoAnalysis) -> Camera | None:
+def _camera(analysis: VideoAnalysis) -> Camera | None:
     """Return a first guess of the lens where the phone wrote it down."""
-    width, height = look.size if look.quarter_turns % 2 == 0 else look.size[::-1]
-    focal_mm = _focal_35mm(look.metadata)
+    width, height = analysis.size if analysis.quarter_turns % 2 == 0 else analysis.size[::-1]
+    focal_mm = _focal_35mm(analysis.metadata)
     if focal_mm is None:
         return None
     focal_px = focal_mm / DIAGONAL_MM * (width**2 + height**2) ** 0.5
@@ -369,13 +369,13 @@ def _focal_35mm(metadata: dict[str, Any]) -> float | None:
     return None
 
 
-def _notes(look: VideoAnalysis, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
+def _notes(analysis: VideoAnalysis, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
     notes = [
-        f"{len(frames)} of the video's {len(look.times):,} pictures are taken: sharp ones, well "
-        f"apart ({look.duration_s:.0f} s, {look.size[0]}x{look.size[1]})"
+        f"{len(frames)} of the video's {len(analysis.times):,} pictures are taken: sharp ones, well "
+        f"apart ({analysis.duration_s:.0f} s, {analysis.size[0]}x{analysis.size[1]})"
     ]
-    if look.quarter_turns:
+    if analysis.quarter_turns:
         notes.append("the pictures are turned upright, as the video says")
-    if not look.whole:
+    if not analysis.whole:
         notes.append("the video breaks off; what comes before is used")
     return tuple(notes)

@@ -246,15 +246,15 @@ def _contradictions(
     best: float,
 ) -> list[str]:
     """Return what speaks for another reading of the known lengths, or against the whole."""
-    said = []
+    contradictions = []
     others = np.abs(np.log(tried / best)) > MAX_LOG_DIFFERENCE
     if others.any() and fit[others].max() > fit.max() - 1.5:
         other = float(tried[others][int(np.argmax(fit[others]))])
-        said.append(
+        contradictions.append(
             f"with another face taken for the {knowns[0].name} the scale would be {other:.3g}: "
             "one more known length would tell"
         )
     camera_m = best * measures.camera
     if measures.floor_seen and not 0.8 <= camera_m <= 2.2:
-        said.append(f"by that, the cameras were held {camera_m:.2f} m over the floor")
-    return said
+        contradictions.append(f"by that, the cameras were held {camera_m:.2f} m over the floor")
+    return contradictions

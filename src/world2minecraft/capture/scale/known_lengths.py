@@ -41,10 +41,10 @@ class KnownLength:
     def __post_init__(self):
         if self.name not in LENGTHS_M:
             raise UnknownNameError("known length", self.name, LENGTHS_M)
-        least, most = LENGTHS_M[self.name]
-        if not least <= self.length_m <= most:
+        minimum, maximum = LENGTHS_M[self.name]
+        if not minimum <= self.length_m <= maximum:
             raise UsageError(
-                f"{self.name} must be {least:g} to {most:g} m, not {self.length_m:g}; "
+                f"{self.name} must be {minimum:g} to {maximum:g} m, not {self.length_m:g}; "
                 "lengths are in metres"
             )
         if self.measured is not None and not 0 < self.measured < np.inf:

@@ -32,18 +32,20 @@ TOP_QUANTILE = 0.995
 MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
-def collect_unscaled(views: Iterable[View], most_each: int = 4096) -> OrientedPoints:
+def collect_unscaled(views: Iterable[View], max_per_view: int = 4096) -> OrientedPoints:
     """Gather the flat patches of views in any unit; all lengths of the result are in that unit.
 
     Args:
         views: read twice, one view at a time; those without depth give nothing.
-        most_each: of a view with more patches, that many are taken, evenly spread.
+        max_per_view: of a view with more patches, that many are taken, evenly spread.
     """
-    middle = _median_depth(views)
-    if middle <= 0:
-        return collect_oriented_points((), most_each)
-    factor = USUAL_DEPTH_M / middle
-    return scale_points(collect_oriented_points(_scale_views(views, factor), most_each), 1 / factor)
+    median = _median_depth(views)
+    if median <= 0:
+        return collect_oriented_points((), max_per_view)
+    factor = USUAL_DEPTH_M / median
+    return scale_points(
+        collect_oriented_points(_scale_views(views, factor), max_per_view), 1 / factor
+    )
 
 
 def scale_points(surface: OrientedPoints, factor: float) -> OrientedPoints:
@@ -60,13 +62,13 @@ def scale_points(surface: OrientedPoints, factor: float) -> OrientedPoints:
 
 def _median_depth(views: Iterable[View]) -> float:
     """Return the median over the views of their median depths, 0 where none has depth."""
-    middles = []
+    medians = []
     for view in views:
         if view.depth_m is not None:
             depth = view.depth_m[::EVERY_PIXEL, ::EVERY_PIXEL]
             if (depth > 0).any():
-                middles.append(float(np.median(depth[depth > 0])))
-    return float(np.median(middles)) if middles else 0.0
+                medians.append(float(np.median(depth[depth > 0])))
+    return float(np.median(medians)) if medians else 0.0
 
 
 def _scale_views(views: Iterable[View], factor: float) -> Iterator[View]:
@@ -194,12 +196,12 @@ def _ceiling_height(level: OrientedPoints, camera: float) -> float | None:
     """Return the height of the lowest large face that looks down over the cameras."""
     down = level.points_m[level.normals[:, 2] < -MIN_FACING_COSINE]
     found = axis_profile(down, 2, 0.03)
-    least = MIN_CEILING_OVER_CAMERA * camera
-    places = [float(at) for at in found.peaks(MIN_CEILING_M2) if at > least]
+    min_height = MIN_CEILING_OVER_CAMERA * camera
+    places = [float(at) for at in found.peaks(MIN_CEILING_M2) if at > min_height]
     if not places:
         return None
-    most = max(found.area_at(at) for at in places)
-    lowest = next(at for at in places if found.area_at(at) >= MIN_CEILING_SHARE * most)
+    largest = max(found.area_at(at) for at in places)
+    lowest = next(at for at in places if found.area_at(at) >= MIN_CEILING_SHARE * largest)
     return float(np.median(down[np.abs(down[:, 2] - lowest) < 0.045, 2]))
 
 

@@ -110,7 +110,7 @@ def triangulate_and_adjust(
     photos: list[Features],
     links: MatchGraph,
     poses: dict[int, np.ndarray],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     gate_px: float,
     parameters: SfmParameters,
     free: bool = True,
@@ -123,7 +123,7 @@ def triangulate_and_adjust(
         photos: the features of all photos.
         links: what they share.
         poses: camera-to-world of those that are placed, by number.
-        lenses: the shared lenses; with ``free`` False each keeps its camera.
+        groups: the shared lenses; with ``free`` False each keeps its camera.
         gate_px: an observation farther from its point is dropped; of a picture 640 wide.
         parameters: the seed and more.
         free: move poses and lenses, not points alone.
@@ -133,35 +133,35 @@ def triangulate_and_adjust(
     unit = pixel_unit(photos)
     gate_px = gate_px * unit
     with pycolmap_session() as pycolmap:
-        model = _build_model(pycolmap, photos, poses, lenses, free)
+        model = _build_model(pycolmap, photos, poses, groups, free)
         graph = _build_graph(pycolmap, photos, links, poses)
         manager = pycolmap.ObservationManager(model, graph)
         _triangulate(pycolmap, model, graph, manager, gate_px, parameters)
         manager.filter_all_points3D(gate_px, MIN_ANGLE_DEG)
         if model.num_points3D():
             options = _adjustment_options(pycolmap, free, unit, tolerance)
-            fixed = [n + 1 for n, lens in enumerate(lenses) if lens.is_fixed or not free]
-            held = (
-                add_anchors(pycolmap, model, stated or {}, camera_by_photo(lenses)) if free else []
+            fixed = [n + 1 for n, group in enumerate(groups) if group.is_fixed or not free]
+            anchors = (
+                add_anchors(pycolmap, model, stated or {}, camera_by_photo(groups)) if free else []
             )
-            _adjust(pycolmap, model, options, fixed, held)
+            _adjust(pycolmap, model, options, fixed, anchors)
             manager.filter_all_points3D(gate_px, MIN_ANGLE_DEG)
         return _read_model(photos, model, poses)
 
 
 def _build_model(
-    pycolmap: Any, photos: list[Features], poses: dict, lenses: list[CameraGroup], free: bool
+    pycolmap: Any, photos: list[Features], poses: dict, groups: list[CameraGroup], free: bool
 ):
     model = pycolmap.Reconstruction()
-    for number, lens in enumerate(lenses):
-        placed = [i for i in lens.photos if i in poses]
+    for number, group in enumerate(groups):
+        placed = [i for i in group.photos if i in poses]
         simple = (
-            free and len(placed) < MIN_PHOTOS_FOR_RADIAL and not any(lens.camera.distortion[1:])
+            free and len(placed) < MIN_PHOTOS_FOR_RADIAL and not any(group.camera.distortion[1:])
         )
-        camera = to_colmap(pycolmap, lens.camera, number + 1, simple)
+        camera = to_colmap(pycolmap, group.camera, number + 1, simple)
         model.add_camera_with_trivial_rig(camera)
         for i in placed:
-            pixels = np.concatenate([photos[i].pixels, anchor_pixels(lens.camera)])
+            pixels = np.concatenate([photos[i].pixels, anchor_pixels(group.camera)])
             image = pycolmap.Image(
                 name=str(i), keypoints=pixels, camera_id=number + 1, image_id=i + 1
             )
@@ -211,19 +211,19 @@ def _adjustment_options(pycolmap: Any, free: bool, unit: float, tolerance: float
     return options
 
 
-def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int], held: list[int]) -> None:
+def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int], anchors: list[int]) -> None:
     """Move what the options let move to where it fits best, but for lenses and points listed."""
     config = pycolmap.BundleAdjustmentConfig()
     for image in sorted(model.reg_image_ids()):
         config.add_image(image)
     for camera in fixed:
         config.set_constant_cam_intrinsics(camera)
-    for point in held:
+    for point in anchors:
         config.add_constant_point(point)
-    if not held:
+    if not anchors:
         config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
     pycolmap.create_default_bundle_adjuster(options, config, model).solve()
-    for point in held:
+    for point in anchors:
         model.delete_point3D(point)
 
 

@@ -52,7 +52,7 @@ MIN_PHOTOS = 3
 def run_mapper(
     photos: list[Features],
     links: MatchGraph,
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> list[Model]:
@@ -63,37 +63,37 @@ def run_mapper(
     """
     with pycolmap_session() as pycolmap:
         pycolmap.set_random_seed(parameters.seed)
-        cache = _database_cache(pycolmap, photos, links, lenses)
+        cache = _database_cache(pycolmap, photos, links, groups)
         manager = pycolmap.ReconstructionManager()
         pipeline = pycolmap.IncrementalPipeline(
-            _options(pycolmap, lenses, parameters), cache, manager
+            _options(pycolmap, groups, parameters), cache, manager
         )
         placed = [0]
 
-        def told() -> None:  # Python's own turn too: Ctrl-C is seen here.
+        def on_photo_placed() -> None:  # Python's own turn too: Ctrl-C is seen here.
             placed[0] += 1
             steps.done("places", min(placed[0], len(photos)), len(photos))
 
         kinds = pycolmap.IncrementalPipelineCallback
-        pipeline.add_callback(int(kinds.NEXT_IMAGE_REG_CALLBACK), told)
+        pipeline.add_callback(int(kinds.NEXT_IMAGE_REG_CALLBACK), on_photo_placed)
         pipeline.run()
         models = [_read_model(manager.get(n)) for n in range(manager.size())]
     return sorted(models, key=lambda model: (-len(model), sorted(model)))
 
 
 def _database_cache(
-    pycolmap: Any, photos: list[Features], links: MatchGraph, lenses: list[CameraGroup]
+    pycolmap: Any, photos: list[Features], links: MatchGraph, groups: list[CameraGroup]
 ) -> Any:
     """Return what mapping reads, made in memory: no file and no database."""
     cache = pycolmap.DatabaseCache()
-    for number, lens in enumerate(lenses):
-        camera = to_colmap(pycolmap, lens.camera, number + 1, simple=lens.known != "stated")
-        camera.has_prior_focal_length = lens.known != "unknown"
+    for number, group in enumerate(groups):
+        camera = to_colmap(pycolmap, group.camera, number + 1, simple=group.known != "stated")
+        camera.has_prior_focal_length = group.known != "unknown"
         cache.add_camera(camera)
         rig = pycolmap.Rig(rig_id=number + 1)
         rig.add_ref_sensor(camera.sensor_id)
         cache.add_rig(rig)
-        for i in lens.photos:
+        for i in group.photos:
             image = pycolmap.Image(
                 name=str(i), keypoints=photos[i].pixels, camera_id=number + 1, image_id=i + 1
             )
@@ -108,7 +108,7 @@ def _database_cache(
     return cache
 
 
-def _options(pycolmap: Any, lenses: list[CameraGroup], parameters: SfmParameters) -> Any:
+def _options(pycolmap: Any, groups: list[CameraGroup], parameters: SfmParameters) -> Any:
     options = pycolmap.IncrementalPipelineOptions()
     for part in (options, options.mapper, options.triangulation):
         part.random_seed = parameters.seed
@@ -118,7 +118,7 @@ def _options(pycolmap: Any, lenses: list[CameraGroup], parameters: SfmParameters
     options.max_num_models = 10
     options.min_focal_length_ratio, options.max_focal_length_ratio = MIN_FOCAL, MAX_FOCAL
     options.max_extra_param = MAX_DISTORTION
-    fixed = {number + 1 for number, lens in enumerate(lenses) if lens.is_fixed}
+    fixed = {number + 1 for number, group in enumerate(groups) if group.is_fixed}
     options.constant_cameras = options.mapper.constant_cameras = fixed
     if fixed:
         options.mapper.abs_pose_refine_focal_length = False
@@ -198,9 +198,9 @@ def find_poses(
     )
     features = extract_features(photos, chosen, steps)
     reasons.check_enough(features, MIN_PHOTOS)
-    lenses = group_cameras(features)
-    links = match_photos(features, lenses, chosen, steps)
-    found, notes, models = map_from_scratch(features, lenses, links, chosen, steps)
+    groups = group_cameras(features)
+    links = match_photos(features, groups, chosen, steps)
+    found, notes, models = map_from_scratch(features, groups, links, chosen, steps)
     if len(found.poses) < MIN_PLACED_SHARE * len(features):
         raise reasons.too_few_error(len(found.poses), len(features))
     steps.end()
@@ -216,13 +216,13 @@ def find_poses(
         change,
         left_out=tuple(out),
         notes=tuple(notes),
-        facts={"models": models, **focal_facts(features, found, lenses)},
+        facts={"models": models, **focal_facts(features, found, groups)},
     )
 
 
 def map_from_scratch(
     photos: list[Features],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     links: MatchGraph,
     parameters: SfmParameters,
     steps: ProgressSteps,
@@ -232,25 +232,25 @@ def map_from_scratch(
     Raises:
         CaptureError: no model of three photos was found.
     """
-    models, lenses = _best_trial(photos, lenses, links, parameters, steps)
+    models, groups = _best_trial(photos, groups, links, parameters, steps)
     if not models or len(models[0]) < MIN_PHOTOS:
-        raise reasons.no_model_error(photos, links, camera_by_photo(lenses))
+        raise reasons.no_model_error(photos, links, camera_by_photo(groups))
     whole, count = merge_models(models)
     notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
     poses = {i: pose for i, (pose, _) in sorted(whole.items())}
     cameras = {i: camera for i, (_, camera) in whole.items()}
     gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
-    found = refine_poses(photos, links, poses, replace_cameras(lenses, cameras), gates, parameters)
+    found = refine_poses(photos, links, poses, replace_cameras(groups, cameras), gates, parameters)
     if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
-        raise reasons.no_model_error(photos, links, camera_by_photo(lenses))
-    if any(lens.is_fixed for lens in lenses):
+        raise reasons.no_model_error(photos, links, camera_by_photo(groups))
+    if any(group.is_fixed for group in groups):
         notes.append("the photos cannot tell their lens: a usual one was assumed")
     return found, notes, len(models)
 
 
 def _best_trial(
     photos: list[Features],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     links: MatchGraph,
     parameters: SfmParameters,
     steps: ProgressSteps,
@@ -261,10 +261,10 @@ def _best_trial(
     others are tried.
     """
     linked = {i for pair in links.matches for i in pair}
-    best: tuple[list[Model], list[CameraGroup]] = ([], lenses)
+    best: tuple[list[Model], list[CameraGroup]] = ([], groups)
     if len(linked) < MIN_PHOTOS:
         return best
-    for trial in _initial_cameras(lenses):
+    for trial in _initial_cameras(groups):
         models = [
             model
             for model in run_mapper(photos, links, trial, parameters, steps)
@@ -277,25 +277,25 @@ def _best_trial(
     return best
 
 
-def _initial_cameras(lenses: list[CameraGroup]) -> list[list[CameraGroup]]:
+def _initial_cameras(groups: list[CameraGroup]) -> list[list[CameraGroup]]:
     """Return the lenses to begin from, one trial after another."""
-    held = [replace(lens, known="assumed") for lens in lenses]
-    others = [[_with_focal(lens, focal) for lens in lenses] for focal in OTHER_FOCALS]
-    return [lenses, held, *(others if any(lens.known == "unknown" for lens in lenses) else [])]
+    fixed = [replace(group, known="assumed") for group in groups]
+    others = [[_with_focal(group, focal) for group in groups] for focal in OTHER_FOCALS]
+    return [groups, fixed, *(others if any(group.known == "unknown" for group in groups) else [])]
 
 
-def _with_focal(lens: CameraGroup, focal: float) -> CameraGroup:
-    if lens.known != "unknown":
-        return lens
-    size = lens.camera.width_px, lens.camera.height_px
-    return replace(lens, camera=default_camera(*size, focal))
+def _with_focal(group: CameraGroup, focal: float) -> CameraGroup:
+    if group.known != "unknown":
+        return group
+    size = group.camera.width_px, group.camera.height_px
+    return replace(group, camera=default_camera(*size, focal))
 
 
 def refine_poses(
     photos: list[Features],
     links: MatchGraph,
     poses: dict[int, np.ndarray],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     gates_px: tuple[float, ...],
     parameters: SfmParameters,
     stated: dict[int, np.ndarray] | None = None,
@@ -305,34 +305,36 @@ def refine_poses(
     for gate in gates_px:
         last = gate == gates_px[-1]
         found = triangulate_and_adjust(
-            photos, links, poses, lenses, gate, parameters,
+            photos, links, poses, groups, gate, parameters,
             tolerance=1e-5 if last else 1e-3, stated=stated,
         )  # fmt: skip
         poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= MIN_POINTS}
-        lenses = replace_cameras(lenses, found.cameras)
+        groups = replace_cameras(groups, found.cameras)
         if last and len(poses) < len(found.poses):
             found = triangulate_and_adjust(
-                photos, links, poses, lenses, gate, parameters, tolerance=1e-5, stated=stated
+                photos, links, poses, groups, gate, parameters, tolerance=1e-5, stated=stated
             )
     if found is None:
         raise ValueError("there must be a gate")
     return found
 
 
-def replace_cameras(lenses: list[CameraGroup], cameras: dict) -> list[CameraGroup]:
+def replace_cameras(groups: list[CameraGroup], cameras: dict) -> list[CameraGroup]:
     """Return the lenses with the cameras that were found for their photos."""
     return [
-        replace(lens, camera=next((cameras[i] for i in lens.photos if i in cameras), lens.camera))
-        for lens in lenses
+        replace(
+            group, camera=next((cameras[i] for i in group.photos if i in cameras), group.camera)
+        )
+        for group in groups
     ]
 
 
-def focal_facts(photos: list[Features], found: SparseModel, lenses: list[CameraGroup]) -> dict:
+def focal_facts(photos: list[Features], found: SparseModel, groups: list[CameraGroup]) -> dict:
     """Return the focal length found and given for the lens of most photos, in pixels."""
-    main = max(lenses, key=lambda lens: sum(i in found.poses for i in lens.photos))
+    main = max(groups, key=lambda group: sum(i in found.poses for i in group.photos))
     placed = next((i for i in main.photos if i in found.poses), None)
     return {
-        "lenses": len(lenses),
+        "lenses": len(groups),
         "focal_given": main.known,
         "focal_given_px": None if main.known == "unknown" else round(main.camera.fx_px, 2),
         "focal_found_px": None if placed is None else round(found.cameras[placed].fx_px, 2),

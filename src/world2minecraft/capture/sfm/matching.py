@@ -170,18 +170,18 @@ class MatchGraph:
 
 def match_photos(
     photos: list[Features],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> MatchGraph:
     """Return the links of photos whose lenses are about right."""
     with threadpool_limits(1, "blas"):  # Small products: our threads are enough.
-        return _match_and_verify(photos, lenses, parameters, steps)
+        return _match_and_verify(photos, groups, parameters, steps)
 
 
 def _match_and_verify(
     photos: list[Features],
-    lenses: list[CameraGroup],
+    groups: list[CameraGroup],
     parameters: SfmParameters,
     steps: ProgressSteps,
 ) -> MatchGraph:
@@ -191,9 +191,9 @@ def _match_and_verify(
     geometry: dict[Pair, Any] = {}
     with pycolmap_session() as pycolmap:
         cameras = {
-            i: to_colmap(pycolmap, lens.camera, number + 1, simple=False)
-            for number, lens in enumerate(lenses)
-            for i in lens.photos
+            i: to_colmap(pycolmap, group.camera, number + 1, simple=False)
+            for number, group in enumerate(groups)
+            for i in group.photos
         }
         options = _options(pycolmap, max(max(photo.size) for photo in photos), parameters)
 
@@ -234,6 +234,6 @@ def _verify_pair(pycolmap: Any, photos: list[Features], cameras: dict, pair: Pai
         cameras[j], photos[j].pixels[both[:, 1]],
         rows, options,
     )  # fmt: skip
-    kept = np.asarray(one.inlier_matches, np.int64).reshape(-1, 2)[:, 0]
-    one.inlier_matches = np.ascontiguousarray(both[kept].astype(np.uint32))
-    return both[kept], one
+    inliers = np.asarray(one.inlier_matches, np.int64).reshape(-1, 2)[:, 0]
+    one.inlier_matches = np.ascontiguousarray(both[inliers].astype(np.uint32))
+    return both[inliers], one

@@ -25,19 +25,19 @@ def explain_left_out(
 ) -> list[tuple[str, str]]:
     """Return name and reason of each photo that is not among those placed."""
     inside = set(placed)
-    usual = float(np.median([photo.sharpness for photo in photos]))
+    median_sharpness = float(np.median([photo.sharpness for photo in photos]))
     return [
-        (photo.name, _reason(i, photos, inside, links, usual))
+        (photo.name, _reason(i, photos, inside, links, median_sharpness))
         for i, photo in enumerate(photos)
         if i not in inside
     ]
 
 
 def _reason(
-    i: int, photos: list[Features], inside: set[int], links: MatchGraph, usual: float
+    i: int, photos: list[Features], inside: set[int], links: MatchGraph, median_sharpness: float
 ) -> str:
     photo = photos[i]
-    blurred = photo.sharpness < BLURRED_SHARE * usual
+    blurred = photo.sharpness < BLURRED_SHARE * median_sharpness
     if len(photo.pixels) < MIN_FEATURES:
         return f"shows only {len(photo.pixels)} details ({'blurred' if blurred else 'bare'})"
     if blurred:
@@ -116,8 +116,8 @@ def to_sparse_scene(
     photos: list[Features],
     found: SparseModel,
     change: Similarity | None = None,
-    kept: dict[int, tuple[Camera, np.ndarray]] | None = None,
-    **told: Any,
+    unchanged: dict[int, tuple[Camera, np.ndarray]] | None = None,
+    **details: Any,
 ) -> SparseScene:
     """Return the solved photos as a SparseScene.
 
@@ -125,11 +125,11 @@ def to_sparse_scene(
         photos: all photos, in their order.
         found: poses and points.
         change: carries these to the wanted frame.
-        kept: cameras and poses by number that are given out as they are, not rounded.
-        told: ``explain_left_out``, ``notes`` and ``facts``.
+        unchanged: cameras and poses by number that are given out as they are, not rounded.
+        details: ``explain_left_out``, ``notes`` and ``facts``.
     """
-    kept = kept or {}
-    order = sorted({*found.poses, *kept})
+    unchanged = unchanged or {}
+    order = sorted({*found.poses, *unchanged})
     number = np.full(len(photos), -1)
     number[order] = range(len(order))
     poses = np.array([found.poses.get(i, np.eye(4)) for i in order])
@@ -138,8 +138,8 @@ def to_sparse_scene(
         poses, points = change.poses(poses), change.points(points)
     poses = np.round(poses, DIGITS) + 0.0  # No minus zero.
     for row, i in enumerate(order):
-        if i in kept:
-            poses[row] = kept[i][1]
+        if i in unchanged:
+            poses[row] = unchanged[i][1]
     pixels = _pixels(photos, found)
     facts = {
         "photos_given": len(photos),
@@ -147,11 +147,11 @@ def to_sparse_scene(
         "error_px": round(found.median_px, 4) if len(found.error_px) else None,
         "points": len(points),
         "triangulation_deg": round(median_triangulation_angle_deg(found), 3),
-        **told.pop("facts", {}),
+        **details.pop("facts", {}),
     }
     return SparseScene(
         tuple(photos[i].name for i in order),
-        tuple(kept[i][0] if i in kept else found.cameras[i] for i in order),
+        tuple(unchanged[i][0] if i in unchanged else found.cameras[i] for i in order),
         poses,
         np.round(points, DIGITS).astype(np.float32),
         _colours(photos, found),
@@ -160,7 +160,7 @@ def to_sparse_scene(
         pixels.astype(np.float32),
         round(float(found.error_px.mean()), 6) if len(found.error_px) else 0.0,
         facts=facts,
-        **told,
+        **details,
     )
 
 

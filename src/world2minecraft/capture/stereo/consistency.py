@@ -21,10 +21,10 @@ def check_consistency(depth, rays, others, to_others, cameras, tolerance):
         ``votes`` uint8 [h, w], how many agree, and ``mean`` float32 [h, w], the mean of the
         pixel's own depth and of those that agree, carried to its ray.
     """
-    high, wide = depth.shape
-    votes, mean = np.zeros((high, wide), np.uint8), np.zeros((high, wide), np.float32)
-    for y in range(high):
-        for x in range(wide):
+    height, width = depth.shape
+    votes, mean = np.zeros((height, width), np.uint8), np.zeros((height, width), np.float32)
+    for y in range(height):
+        for x in range(width):
             z = np.float64(depth[y, x])
             if z <= 0:
                 continue
@@ -51,36 +51,36 @@ def check_consistency(depth, rays, others, to_others, cameras, tolerance):
 
 
 @njit
-def filter_speckles(depth, least_px, step):
-    """Return the depth map without islands of under ``least_px`` pixels, 0 in their place.
+def filter_speckles(depth, min_size_px, step):
+    """Return the depth map without islands of under ``min_size_px`` pixels, 0 in their place.
 
     Args:
         depth: float32 [h, w] z-depth, 0 where there is none.
-        least_px: pixels of the smallest island that stays.
+        min_size_px: pixels of the smallest island that stays.
         step: neighbours hang together where their depths differ by less than this share.
     """
-    high, wide = depth.shape
+    height, width = depth.shape
     result = depth.copy()
-    visited = np.zeros(high * wide, np.bool_)
-    island = np.empty(high * wide, np.int64)
-    for start in range(high * wide):
-        if visited[start] or depth[start // wide, start % wide] <= 0:
+    visited = np.zeros(height * width, np.bool_)
+    island = np.empty(height * width, np.int64)
+    for start in range(height * width):
+        if visited[start] or depth[start // width, start % width] <= 0:
             continue
         visited[start] = True
         island[0] = start
         done, count = 0, 1
         while done < count:
-            y, x = island[done] // wide, island[done] % wide
+            y, x = island[done] // width, island[done] % width
             done += 1
             for way in range(4):
                 v, u = y + (way == 0) - (way == 1), x + (way == 2) - (way == 3)
-                if v < 0 or u < 0 or v >= high or u >= wide or visited[v * wide + u]:
+                if v < 0 or u < 0 or v >= height or u >= width or visited[v * width + u]:
                     continue
                 if depth[v, u] > 0 and abs(depth[v, u] - depth[y, x]) < step * depth[y, x]:
-                    visited[v * wide + u] = True
-                    island[count] = v * wide + u
+                    visited[v * width + u] = True
+                    island[count] = v * width + u
                     count += 1
-        if count < least_px:
+        if count < min_size_px:
             for k in range(count):
-                result[island[k] // wide, island[k] % wide] = 0
+                result[island[k] // width, island[k] % width] = 0
     return result

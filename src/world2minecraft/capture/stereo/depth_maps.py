@@ -200,11 +200,11 @@ def filter_consistent(
     """Return the depth of a photo that its neighbours' depths confirm."""
     photo = small[number]
     votes, mean = count_votes(number, small, swept, neighbours[number], values.agreement)
-    asked = max(1, len(neighbours[number]))
-    depth_m = np.where(votes >= min(values.agreeing, asked), mean, np.float32(0))
-    least_px = round(values.island_share * depth_m.size)
-    depth_m = filter_speckles(depth_m, least_px, values.island_step)
-    trust = TRUST[np.clip(4 - min(asked, 4) + votes, 0, 4)]
+    neighbour_count = max(1, len(neighbours[number]))
+    depth_m = np.where(votes >= min(values.agreeing, neighbour_count), mean, np.float32(0))
+    min_size_px = round(values.island_share * depth_m.size)
+    depth_m = filter_speckles(depth_m, min_size_px, values.island_step)
+    trust = TRUST[np.clip(4 - min(neighbour_count, 4) + votes, 0, 4)]
     return DepthMap(photo.name, photo.camera, depth_m, np.where(depth_m > 0, trust, np.uint8(0)))
 
 

@@ -155,8 +155,8 @@ def _known_depths(depth_m, trust, guide_px, guide_m):
     weight = np.where((trust == SURE_TRUST) & (depth_m > 0), 1.0, 0.0)
     known_m = np.where(weight > 0, depth_m, 1.0).astype(np.float64)
     u, v = np.floor(guide_px).astype(np.int64).reshape(-1, 2).T
-    high, wide = depth_m.shape
-    here = (u >= 0) & (v >= 0) & (u < wide) & (v < high) & (guide_m > 0)
+    height, wide = depth_m.shape
+    here = (u >= 0) & (v >= 0) & (u < wide) & (v < height) & (guide_m > 0)
     order = np.flatnonzero(here)
     order = order[np.argsort(-guide_m[order], kind="stable")]  # The nearest is written last.
     known_m[v[order], u[order]] = guide_m[order]
@@ -167,8 +167,8 @@ def _known_depths(depth_m, trust, guide_px, guide_m):
 def _fit_to_known(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
     """Return the network's depth in metres, NaN where it has none; None where it fits badly."""
     usable = np.isfinite(predicted) & ((predicted > 0) | (kind == "inverse"))
-    asked = usable & (weight > 0)
-    guess, true_m, much = predicted[asked], known_m[asked], weight[asked]
+    sampled = usable & (weight > 0)
+    guess, true_m, much = predicted[sampled], known_m[sampled], weight[sampled]
     if much.sum() < MIN_WEIGHT:
         return None
     if kind == "metric":
@@ -181,7 +181,7 @@ def _fit_to_known(predicted, kind: Kind, known_m, weight) -> np.ndarray | None:
         usable &= inverse > 1e-6
         guess_m = 1 / np.where(usable, inverse, 1.0)
     guess_m = np.where(usable, guess_m, np.nan)
-    off = np.abs(np.nan_to_num(guess_m[asked], nan=0.0) / true_m - 1)
+    off = np.abs(np.nan_to_num(guess_m[sampled], nan=0.0) / true_m - 1)
     return guess_m if _weighted_median(off, much) <= MAX_FIT_ERROR else None
 
 
@@ -255,8 +255,10 @@ def network_maps(
     found: list[tuple[np.ndarray, float]] = []
     for number, photo in enumerate(small):
         predicted = guide.predict(photo.colour, photo.camera)
-        laid = align_to_points(predicted, guide.kind, photo.guide_px, photo.guide_m)
-        found.append((predicted, np.nan) if laid is None else (laid[0].astype(np.float32), laid[1]))
+        fitted = align_to_points(predicted, guide.kind, photo.guide_px, photo.guide_m)
+        found.append(
+            (predicted, np.nan) if fitted is None else (fitted[0].astype(np.float32), fitted[1])
+        )
         progress(STAGE, number + 1, len(small), photo.name)
     factors = [factor for _, factor in found if factor == factor]  # NaN is not itself.
     if not factors:

@@ -35,24 +35,24 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
     Returns:
         uint8 [h, w, D]; 127, which says nothing, where fewer than two neighbours see the place.
     """
-    high, wide = grey.shape
+    height, width = grey.shape
     count = len(sources)
     side = 2 * radius + 1
-    costs = np.empty((high, wide, len(inverse)), np.uint8)
+    costs = np.empty((height, width, len(inverse)), np.uint8)
     mean, spread = _window_statistics(grey, radius, noise)
-    ring = np.zeros((count, side, wide + 2 * radius), np.float32)
-    seen = np.zeros((count, side, wide), np.float32)
+    ring = np.zeros((count, side, width + 2 * radius), np.float32)
+    seen = np.zeros((count, side, width), np.float32)
     padded = _padded(grey, radius)
-    sums = np.zeros((count, 3, wide + 2 * radius), np.float32)
-    scores = np.empty((count, wide), np.float32)
-    best = np.empty((best_of, wide), np.float32)
-    box = np.empty((3, wide), np.float32)
-    at_x, at_y = np.empty(wide, np.float32), np.empty(wide, np.float32)
+    sums = np.zeros((count, 3, width + 2 * radius), np.float32)
+    scores = np.empty((count, width), np.float32)
+    best = np.empty((best_of, width), np.float32)
+    box = np.empty((3, width), np.float32)
+    at_x, at_y = np.empty(width, np.float32), np.empty(width, np.float32)
     for d in range(len(inverse)):
         sums[:] = 0
-        for row in range(-radius, high + radius):
+        for row in range(-radius, height + radius):
             at = (row + radius) % side
-            inside = min(max(row, 0), high - 1)
+            inside = min(max(row, 0), height - 1)
             y = row - radius
             for n in range(count):
                 if row >= radius + 1:
@@ -75,11 +75,11 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
 @njit
 def _padded(grey, radius):
     """The picture with its edge repeated ``radius`` pixels outwards."""
-    high, wide = grey.shape
-    result = np.empty((high + 2 * radius, wide + 2 * radius), np.float32)
-    for y in range(high + 2 * radius):
-        for x in range(wide + 2 * radius):
-            v, u = min(max(y - radius, 0), high - 1), min(max(x - radius, 0), wide - 1)
+    height, width = grey.shape
+    result = np.empty((height + 2 * radius, width + 2 * radius), np.float32)
+    for y in range(height + 2 * radius):
+        for x in range(width + 2 * radius):
+            v, u = min(max(y - radius, 0), height - 1), min(max(x - radius, 0), width - 1)
             result[y, x] = grey[v, u]
     return result
 
@@ -87,13 +87,13 @@ def _padded(grey, radius):
 @njit
 def _window_statistics(grey, radius, noise):
     """The sum of each window of the photo, and one by the root of its variance."""
-    high, wide = grey.shape
+    height, width = grey.shape
     padded = _padded(grey, radius)
     side = 2 * radius + 1
     area = np.float32(side * side)
-    mean, spread = np.empty((high, wide), np.float32), np.empty((high, wide), np.float32)
-    for y in range(high):
-        for x in range(wide):
+    mean, spread = np.empty((height, width), np.float32), np.empty((height, width), np.float32)
+    for y in range(height):
+        for x in range(width):
             total, square = np.float32(0), np.float32(0)
             for j in range(side):
                 for i in range(side):
@@ -109,15 +109,15 @@ def _window_statistics(grey, radius, noise):
 @njit
 def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values, seen):
     """Read a row of the photo out of a neighbour, by way of a plane, and repeat its ends."""
-    high, wide = size
+    height, width = size
     y0, half = np.float32(v) + np.float32(0.5), np.float32(0.5)
     ax = turn[0, 1] * y0 + turn[0, 2] + shift[0] * inverse
     ay = turn[1, 1] * y0 + turn[1, 2] + shift[1] * inverse
     az = turn[2, 1] * y0 + turn[2, 2] + shift[2] * inverse
-    last_x, last_y = np.float32(wide - 1.001), np.float32(high - 1.001)
+    last_x, last_y = np.float32(width - 1.001), np.float32(height - 1.001)
     none, one = np.float32(0), np.float32(1)
-    wide_here = len(seen)
-    for u in range(wide_here):
+    row_width = len(seen)
+    for u in range(row_width):
         x0 = np.float32(u) + half
         z = az + turn[2, 0] * x0
         by = one / max(z, np.float32(1e-6))
@@ -126,7 +126,7 @@ def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values,
         inside = (z > none) & (x >= none) & (y >= none) & (x <= last_x) & (y <= last_y)
         seen[u] = one if inside else none
         at_x[u], at_y[u] = min(max(x, none), last_x), min(max(y, none), last_y)
-    for u in range(wide_here):
+    for u in range(row_width):
         x, y = at_x[u], at_y[u]
         i, j = np.uint32(x), np.uint32(y)
         a, b = x - np.float32(i), y - np.float32(j)
@@ -136,7 +136,7 @@ def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values,
         values[u + radius] = np.floor(value * np.float32(2) + half) * half
     for k in range(radius):
         values[k] = values[radius]
-        values[wide_here + radius + k] = values[wide_here + radius - 1]
+        values[row_width + radius + k] = values[row_width + radius - 1]
 
 
 @njit
@@ -155,14 +155,14 @@ def _score_row(sums, mean, spread, seen, side, noise, box, scores):
     """Return the correlation of each window of a row; -2 where the neighbour does not reach."""
     area = np.float32(side * side)
     extra = area * np.float32(noise)
-    wide = len(scores)
+    width = len(scores)
     for c in range(3):
-        for x in range(wide):
+        for x in range(width):
             box[c, x] = sums[c, x]
         for k in range(1, side):
-            for x in range(wide):
+            for x in range(width):
                 box[c, x] += sums[c, x + k]
-    for x in range(wide):
+    for x in range(width):
         total = box[0, x]
         variance = box[1, x] - total * total / area + extra
         score = (box[2, x] - mean[x] * total) * spread[x]
@@ -173,19 +173,19 @@ def _score_row(sums, mean, spread, seen, side, noise, box, scores):
 @njit
 def _mean_best_scores(scores, best, costs, d):
     """Write the mean of the best scores of each pixel of a row as a cost."""
-    count, wide = scores.shape
-    most = len(best)
+    count, width = scores.shape
+    best_count = len(best)
     best[:] = -2
     for n in range(count):
-        for x in range(wide):
+        for x in range(width):
             value = scores[n, x]
-            for k in range(most):
-                kept = best[k, x]
-                best[k, x] = max(kept, value)
-                value = min(kept, value)
-    for x in range(wide):
+            for k in range(best_count):
+                current = best[k, x]
+                best[k, x] = max(current, value)
+                value = min(current, value)
+    for x in range(width):
         total, found = np.float32(0), np.float32(0)
-        for k in range(most):
+        for k in range(best_count):
             if best[k, x] > np.float32(-1.5):
                 total += best[k, x]
                 found += np.float32(1)
@@ -203,58 +203,58 @@ def aggregate_costs(costs, small_step, large_step):
         small_step: what a change by one plane between two pixels costs.
         large_step: what a larger change costs.
     """
-    high, wide, planes = costs.shape
-    total = np.zeros((high, wide, planes), np.float32)
+    height, width, planes = costs.shape
+    total = np.zeros((height, width, planes), np.float32)
     # [direction, row before or here, pixel with a margin, plane with a margin]
-    paths = np.empty((3, 2, wide + 2, planes + 2), np.float32)
-    least = np.empty((3, 2, wide + 2), np.float32)
+    paths = np.empty((3, 2, width + 2, planes + 2), np.float32)
+    min_costs = np.empty((3, 2, width + 2), np.float32)
     along = np.empty((2, planes + 2), np.float32)
     for way in range(2):
         paths[:] = 0
-        least[:] = 0
-        for row in range(high):
-            y = row if way == 0 else high - 1 - row
+        min_costs[:] = 0
+        for row in range(height):
+            y = row if way == 0 else height - 1 - row
             now, before = row % 2, 1 - row % 2
-            _reset_paths(paths, least, now)
+            _reset_paths(paths, min_costs, now)
             along[:] = 0
             along[:, 0] = along[:, planes + 1] = np.inf
-            along_least = np.float32(0)
-            for column in range(wide):
-                x = column if way == 0 else wide - 1 - column
+            along_min = np.float32(0)
+            for column in range(width):
+                x = column if way == 0 else width - 1 - column
                 here = column % 2
-                along_least = _advance_path(
-                    costs[y, x], along[1 - here], along_least, along[here], total[y, x],
+                along_min = _advance_path(
+                    costs[y, x], along[1 - here], along_min, along[here], total[y, x],
                     small_step, large_step,
                 )  # fmt: skip
                 for k in range(3):
-                    least[k, now, x + 1] = _advance_path(
-                        costs[y, x], paths[k, before, x + k], least[k, before, x + k],
+                    min_costs[k, now, x + 1] = _advance_path(
+                        costs[y, x], paths[k, before, x + k], min_costs[k, before, x + k],
                         paths[k, now, x + 1], total[y, x], small_step, large_step,
                     )  # fmt: skip
     return total
 
 
 @njit
-def _reset_paths(paths, least, now):
+def _reset_paths(paths, min_costs, now):
     """Paths that come in from the sides begin with nothing."""
-    wide, planes = paths.shape[2] - 2, paths.shape[3] - 2
+    width, planes = paths.shape[2] - 2, paths.shape[3] - 2
     for k in range(3):
-        for side in (0, wide + 1):
-            least[k, now, side] = 0
+        for side in (0, width + 1):
+            min_costs[k, now, side] = 0
             paths[k, now, side, :] = 0
-        for x in range(wide + 2):
+        for x in range(width + 2):
             for row in range(2):
                 paths[k, row, x, 0] = paths[k, row, x, planes + 1] = np.inf
 
 
 @njit
-def _advance_path(costs, before, before_least, here, total, small_step, large_step):
+def _advance_path(costs, before, previous_min, here, total, small_step, large_step):
     """Carry a path on by one pixel and add it to the sum; return its least cost."""
-    small, jump = np.float32(small_step), before_least + np.float32(large_step)
+    small, jump = np.float32(small_step), previous_min + np.float32(large_step)
     smallest = np.float32(np.inf)
     for d in range(len(costs)):
         way = min(before[d + 1], min(before[d], before[d + 2]) + small)
-        value = np.float32(costs[d]) + (min(way, jump) - before_least)
+        value = np.float32(costs[d]) + (min(way, jump) - previous_min)
         here[d + 1] = value
         total[d] += value
         smallest = min(smallest, value)
@@ -264,10 +264,10 @@ def _advance_path(costs, before, before_least, here, total, small_step, large_st
 @njit
 def select_planes(total):
     """Return float32 [h, w]: the plane of the least sum, between planes by a parabola."""
-    high, wide, planes = total.shape
-    found = np.empty((high, wide), np.float32)
-    for y in range(high):
-        for x in range(wide):
+    height, width, planes = total.shape
+    found = np.empty((height, width), np.float32)
+    for y in range(height):
+        for x in range(width):
             best = 0
             for d in range(1, planes):
                 if total[y, x, d] < total[y, x, best]:
@@ -321,13 +321,13 @@ def _stack_images(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 def _add_sparse_point_costs(costs, photo, inverse, guide_cost):
     """Raise the costs of planes far from a sparse point, in the pixels around it."""
-    high, wide, planes = costs.shape
+    height, width, planes = costs.shape
     at = (1 / photo.guide_m - inverse[0]) / (inverse[1] - inverse[0])
     away = np.minimum(np.abs(np.arange(planes)[None] - at[:, None]) / 2, 1) * guide_cost
     u, v = np.floor(photo.guide_px).astype(int).T
     for dy in (-1, 0, 1):
         for dx in (-1, 0, 1):
-            y, x = np.clip(v + dy, 0, high - 1), np.clip(u + dx, 0, wide - 1)
+            y, x = np.clip(v + dy, 0, height - 1), np.clip(u + dx, 0, width - 1)
             costs[y, x] = np.minimum(costs[y, x] + away, 254).astype(np.uint8)
 
 

@@ -8,11 +8,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from world2minecraft.minecraft.bedrock.states import (
-    bedrock_of_java,
-    bedrock_table,
-    java_of_bedrock,
-)
+from world2minecraft.minecraft.bedrock.states import bedrock_table, bedrock_to_java, java_to_bedrock
 from world2minecraft.minecraft.block_colours import DYES
 from world2minecraft.minecraft.block_states import BlockState, known_blocks, parse_state
 from world2minecraft.minecraft.nbt import Byte, Float
@@ -41,14 +37,14 @@ def bedrock_data(
         place: where it stands in the world.
     """
     parsed = parse_state(state)
-    data = _told_by_state(parsed, java[1] if java else {}, place)
+    data = _data_from_state(parsed, java[1] if java else {}, place)
     if data is None and java is not None and java[0] in SIGNS:
         texts = {theirs: _sign_side(java[1], ours) for ours, theirs in SIDES}
         data = {"id": SIGNS[java[0]], **texts, "IsWaxed": Byte(bool(java[1].get("is_waxed", 0)))}
     return None if data is None else {**data, "x": place[0], "y": place[1], "z": place[2]}
 
 
-def _told_by_state(
+def _data_from_state(
     state: BlockState, java: Mapping[str, Any], place: Place
 ) -> dict[str, Any] | None:
     """Return what Bedrock keeps in data and Java in a state."""
@@ -65,7 +61,7 @@ def _told_by_state(
         number = HEADS.index(stem.removesuffix("_wall"))
         return {"id": "Skull", "SkullType": Byte(number), "Rotation": Float(turn)}
     if name.startswith("potted_"):
-        plant = bedrock_of_java(f"minecraft:{POTTED.get(name[7:], name[7:])}")
+        plant = java_to_bedrock(f"minecraft:{POTTED.get(name[7:], name[7:])}")
         held = {} if plant is None else {"PlantBlock": palette_entry(*plant)}
         return {"id": "FlowerPot", **held}
     if name.endswith("shulker_box"):
@@ -87,10 +83,10 @@ def java_state(state: str, data: Mapping[str, Any]) -> str:
     parsed = parse_state(state)
     name, kind = parsed.name.partition(":")[2], data.get("id")
     if kind == "Bed" and name.endswith("_bed"):
-        return _named(parsed, f"{_dye(data.get('color', 0))}_bed")
+        return _renamed_state(parsed, f"{_dye(data.get('color', 0))}_bed")
     if kind == "Banner" and name.endswith("_banner"):
         wall = "_wall" if name.endswith("_wall_banner") else ""
-        return _named(parsed, f"{_dye(15 - _number(data.get('Base', 15)))}{wall}_banner")
+        return _renamed_state(parsed, f"{_dye(15 - _number(data.get('Base', 15)))}{wall}_banner")
     if kind == "Skull" and name.endswith(("_skull", "_head")):
         return _head(parsed, data)
     if kind == "ShulkerBox" and name.endswith("shulker_box"):
@@ -102,7 +98,7 @@ def java_state(state: str, data: Mapping[str, Any]) -> str:
             if STEPS[_partner_side(half)] == step:
                 return str(half)
     if kind == "FlowerPot" and name == "flower_pot" and isinstance(data.get("PlantBlock"), Mapping):
-        plant = java_of_entry(data["PlantBlock"])
+        plant = java_from_entry(data["PlantBlock"])
         bare = parse_state(plant).name.partition(":")[2] if plant else ""
         back = {plain: potted for potted, plain in POTTED.items()}
         potted = f"potted_{back.get(bare, bare)}"
@@ -130,7 +126,7 @@ def java_data(data: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
     return None
 
 
-def is_told(data: Mapping[str, Any]) -> bool:
+def is_in_state(data: Mapping[str, Any]) -> bool:
     """Whether Java keeps all that a Bedrock block entity says: things in a chest it does not."""
     return data.get("id") in KINDS and not _list(data.get("Items"))
 
@@ -140,13 +136,13 @@ def palette_entry(name: str, states: Mapping[str, Any]) -> dict[str, Any]:
     return {"name": name, "states": dict(states), "version": bedrock_table().version}
 
 
-def java_of_entry(entry: Mapping[str, Any]) -> str | None:
+def java_from_entry(entry: Mapping[str, Any]) -> str | None:
     """Return the Java state of an entry of a palette; None where the table has none."""
     states = entry.get("states", {})
-    return java_of_bedrock(str(entry["name"]), states if isinstance(states, Mapping) else {})
+    return bedrock_to_java(str(entry["name"]), states if isinstance(states, Mapping) else {})
 
 
-def _named(state: BlockState, name: str) -> str:
+def _renamed_state(state: BlockState, name: str) -> str:
     return str(BlockState(name, state.properties))
 
 
@@ -154,10 +150,10 @@ def _head(state: BlockState, data: Mapping[str, Any]) -> str:
     kind = HEADS[min(max(_number(data.get("SkullType", 0)), 0), len(HEADS) - 1)]
     ending = "skull" if kind in ("skeleton", "wither_skeleton") else "head"
     if state.name.endswith(("_wall_skull", "_wall_head")):
-        return _named(state, f"{kind}_wall_{ending}")
+        return _renamed_state(state, f"{kind}_wall_{ending}")
     turn = data.get("Rotation", 0.0)
     turn = float(turn) if isinstance(turn, int | float) and abs(turn) < 1e6 else 0.0
-    return _named(state.having(rotation=str(round(turn / 22.5) % 16)), f"{kind}_{ending}")
+    return _renamed_state(state.having(rotation=str(round(turn / 22.5) % 16)), f"{kind}_{ending}")
 
 
 def _patterns(data: Mapping[str, Any]) -> list[dict[str, Any]]:

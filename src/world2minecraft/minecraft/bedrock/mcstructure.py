@@ -16,19 +16,19 @@ from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.minecraft.bedrock.block_entities import (
     bedrock_data,
-    is_told,
+    is_in_state,
     java_data,
-    java_of_entry,
+    java_from_entry,
     java_state,
     palette_entry,
 )
 from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
-from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, java_of_bedrock
+from world2minecraft.minecraft.bedrock.states import bedrock_to_java, is_preserved, java_to_bedrock
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.nbt import NbtLimits
 from world2minecraft.minecraft.rules.connections import update_connections
-from world2minecraft.minecraft.unlabelled_volume import check_size, palette_of, unlabelled
+from world2minecraft.minecraft.unlabelled_volume import build_palette, check_size, unlabelled_volume
 
 FORMAT_VERSION = 1
 MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.
@@ -112,7 +112,7 @@ class McstructureFormat(FileFormat):
 
 def _bedrock(state: str) -> tuple[str, dict[str, Any]]:
     """Return the Bedrock block of a state, air where there is none."""
-    return bedrock_of_java(state) or ("minecraft:air", {})
+    return java_to_bedrock(state) or ("minecraft:air", {})
 
 
 def _bedrock_palette(
@@ -158,13 +158,13 @@ def _position_data(volume: BlockVolume) -> dict[str, Any]:
 def _count_losses(volume: BlockVolume, losses: Losses) -> None:
     counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
     for state, count in zip(volume.palette, counts.tolist(), strict=True):
-        bedrock = bedrock_of_java(state)
+        bedrock = java_to_bedrock(state)
         if bedrock is None:
             losses.add(f"blocks of {parse_state(state).name}, which Bedrock has not", count)
             continue
-        back = java_of_bedrock(*bedrock) or AIR
+        back = bedrock_to_java(*bedrock) or AIR
         back = java_state(back, bedrock_data(state) or {})
-        if not is_kept(state, back):
+        if not is_preserved(state, back):
             losses.add("blocks with a state that Bedrock does not tell", count)
     state_at = _states_by_place(volume)
     for entity in volume.block_entities:
@@ -204,18 +204,18 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
     wet = _wet_cells(layers, texts)
     names = [*texts, AIR]  # -1 is the last: what a structure leaves alone is air here.
     placed = _with_data(held.get("block_position_data", {}), layers[0], names, shape, source)
-    every = {*names, *(_wet(text) for text in names), *(state for state, _ in placed.values())}
-    every |= {_wet(state) for state, _ in placed.values()}
-    palette, number_of = palette_of(every, source)
+    every = {*names, *(_is_wet(text) for text in names), *(state for state, _ in placed.values())}
+    every |= {_is_wet(state) for state, _ in placed.values()}
+    palette, number_of = build_palette(every, source)
     ours = np.array([number_of[text] for text in names], np.uint16)
-    in_water = np.array([number_of[_wet(text)] for text in names], np.uint16)
+    in_water = np.array([number_of[_is_wet(text)] for text in names], np.uint16)
     states = np.where(wet, in_water[layers[0]], ours[layers[0]]).reshape(shape)
     block_entities = []
     for number, (state, data) in sorted(placed.items()):
         cell = np.unravel_index(number, shape)
-        states[cell] = number_of[_wet(state) if wet[number] else state]
+        states[cell] = number_of[_is_wet(state) if wet[number] else state]
         java = java_data(data)
-        if not is_told(data):
+        if not is_in_state(data):
             losses.add(f"data of blocks ({str(data.get('id'))[:30]})")
         if java is not None:
             place = tuple(int(c) + low for c, low in zip(cell, (x, y, z), strict=True))
@@ -223,10 +223,10 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
     losses.add("entities", len(structure.get("entities", [])))
     # What Bedrock leaves to its neighbours a Java file must state.
     states, palette = update_connections(states, palette)
-    return _trimmed_palette(states, palette, (x, y, z), block_entities)
+    return _trim_palette(states, palette, (x, y, z), block_entities)
 
 
-def _trimmed_palette(
+def _trim_palette(
     states: np.ndarray,
     palette: tuple[str, ...],
     corner: tuple[int, int, int],
@@ -237,12 +237,12 @@ def _trimmed_palette(
     lookup = np.zeros(len(palette), np.uint16)
     lookup[kept] = np.arange(len(kept))
     names = tuple(palette[number] for number in kept)
-    return unlabelled(lookup[states], names, corner, block_entities)
+    return unlabelled_volume(lookup[states], names, corner, block_entities)
 
 
 def _java_text(entry: Mapping[str, Any], source: Path) -> str:
     """Return the Java state of a palette's entry; an unknown block keeps its Bedrock name."""
-    found = java_of_entry(entry)
+    found = java_from_entry(entry)
     if found is not None:
         return found
     try:
@@ -254,7 +254,7 @@ def _java_text(entry: Mapping[str, Any], source: Path) -> str:
 def _count_unknown(entries: list[Any], cells: np.ndarray, losses: Losses) -> None:
     counts = np.bincount(cells[cells >= 0], minlength=len(entries))
     for entry, count in zip(entries, counts.tolist(), strict=True):
-        if java_of_entry(entry) is None:
+        if java_from_entry(entry) is None:
             losses.add(f"blocks of {str(entry['name'])[:60]}, which Java has not", count)
 
 
@@ -266,7 +266,7 @@ def _wet_cells(layers: list[np.ndarray], texts: list[str]) -> np.ndarray:
     return is_water[layers[1]]
 
 
-def _wet(state: str) -> str:
+def _is_wet(state: str) -> str:
     """Return a state as it stands in water, where it can."""
     parsed = complete(parse_state(state))
     return str(parsed.having(waterlogged="true")) if parsed.get("waterlogged") else state

@@ -39,11 +39,11 @@ def bedrock_table() -> BedrockTable:
 
 
 @lru_cache(maxsize=1 << 16)
-def bedrock_of_java(state: str) -> tuple[str, dict[str, Any]] | None:
+def java_to_bedrock(state: str) -> tuple[str, dict[str, Any]] | None:
     """Return the Bedrock block and its states that a Java state becomes; None where none does.
 
     Example:
-        >>> bedrock_of_java("minecraft:oak_planks")
+        >>> java_to_bedrock("minecraft:oak_planks")
         ('minecraft:planks', {'wood_type': 'oak'})
     """
     parsed = parse_state(state)
@@ -59,14 +59,14 @@ def bedrock_of_java(state: str) -> tuple[str, dict[str, Any]] | None:
     return bedrock, {key: _value(text) for key, _, text in pairs}
 
 
-def java_of_bedrock(name: str, states: Mapping[str, Any]) -> str | None:
+def bedrock_to_java(name: str, states: Mapping[str, Any]) -> str | None:
     """Return the Java state that a Bedrock block comes back as; None where the table has none.
 
     What Bedrock computes from neighbours (the shape of stairs, the sides of panes) comes back at
     its default, and colours that it keeps in block entities come back as the first of them.
 
     Example:
-        >>> java_of_bedrock('minecraft:planks', {'wood_type': 'oak'})
+        >>> bedrock_to_java('minecraft:planks', {'wood_type': 'oak'})
         'minecraft:oak_planks'
     """
     pairs = sorted((key, str(int(v) if isinstance(v, int) else v)) for key, v in states.items())
@@ -77,7 +77,7 @@ def java_of_bedrock(name: str, states: Mapping[str, Any]) -> str | None:
     return str(BlockState(block.name, block.values_at(found[1])))
 
 
-def is_kept(state: str, back: str) -> bool:
+def is_preserved(state: str, back: str) -> bool:
     """Whether a Java state that came back from Bedrock is the same but for what games compute."""
     before, after = complete(parse_state(state)), complete(parse_state(back))
     if before.name != after.name:

@@ -11,7 +11,7 @@ from pathlib import Path
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands.player_scale import (
     function_files,
     pack_mcmeta,
@@ -59,11 +59,11 @@ def write_datapack(
     write_bytes(path, pack_zip(datapack_files(volume, version or game_version(), name)))
 
 
-def namespace_of(name: str) -> str:
+def to_namespace(name: str) -> str:
     """Return a name as a pack's namespace may be: what none can hold of it becomes ``_``.
 
     Example:
-        >>> namespace_of("My Room"), namespace_of("minecraft"), namespace_of("")
+        >>> namespace_of("My Room"), namespace_of("minecraft"), to_namespace("")
         ('my_room', 'room', 'room')
     """
     lowered = re.sub(r"[^a-z0-9_.-]", "_", name.lower())
@@ -79,12 +79,12 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     """Return the pack's files by path. Raises what ``write_datapack`` raises."""
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
         wanted = "must be lower case letters, digits, _ . or -, and not minecraft"
-        raise UsageError(f"data pack name {name!r} {wanted}; try {namespace_of(name)}")
+        raise UsageError(f"data pack name {name!r} {wanted}; try {to_namespace(name)}")
     check_displays(volume, version)
     if not has_packs(version):
         first = game_versions()[0].name
         raise UsageError(f"data packs are written for {first} and later, not {version.name}")
-    volume = in_game(volume, version.data_version)
+    volume = convert_volume(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
     commands = [
@@ -94,12 +94,12 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
         *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
         *entity_commands(volume),
     ]
-    files |= job_files(volume, name, "build", commands, "built")
-    files |= job_files(volume, name, "clear", clear_commands(volume), "cleared")
+    files |= build_job_files(volume, name, "build", commands, "built")
+    files |= build_job_files(volume, name, "clear", clear_commands(volume), "cleared")
     return files
 
 
-def job_files(
+def build_job_files(
     volume: BlockVolume, name: str, verb: str, commands: list[str], done: str
 ) -> dict[str, str]:
     """Return the functions of one job: load the chunks, wait, run the parts, let go."""

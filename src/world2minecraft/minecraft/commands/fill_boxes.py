@@ -7,7 +7,7 @@ from world2minecraft.core.jit import njit
 MAX_FILL = 32_768  # The game's default limit of one fill command.
 
 
-def merge_boxes(states: np.ndarray, limit: int = MAX_FILL) -> np.ndarray:
+def cover_with_boxes(states: np.ndarray, limit: int = MAX_FILL) -> np.ndarray:
     """Cover every cell that is not 0 with boxes of one state that do not overlap.
 
     Greedy: from each free cell in the order y, z, x, a box grows along x, then z, then y.

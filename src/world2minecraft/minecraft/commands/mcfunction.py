@@ -4,8 +4,8 @@ from pathlib import Path
 
 from world2minecraft.core.files import write_text
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import in_game
-from world2minecraft.minecraft.block_names import count_unknown
+from world2minecraft.minecraft.block_entities import convert_volume
+from world2minecraft.minecraft.block_names import count_unknown_blocks
 from world2minecraft.minecraft.commands.parser import read_command_list
 from world2minecraft.minecraft.commands.writer import (
     block_commands,
@@ -35,7 +35,7 @@ def write_command_list(
     """
     version = version or game_version()
     check_displays(volume, version)
-    volume = in_game(volume, version.data_version)
+    volume = convert_volume(volume, version.data_version)
     commands = [
         *block_commands(volume, version),
         *data_commands(volume),
@@ -63,5 +63,5 @@ class CommandListFormat(FileFormat):
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write it for the game's version in the options."""
         version = game_version(options.mc_version)
-        count_unknown(volume, version, losses)
+        count_unknown_blocks(volume, version, losses)
         write_command_list(volume, path, version=version)

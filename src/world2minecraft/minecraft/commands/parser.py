@@ -27,9 +27,9 @@ from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.signs import upgrade_command_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
+    build_palette,
     check_size,
-    palette_of,
-    unlabelled,
+    unlabelled_volume,
 )
 
 # Commands that load chunks, order the parts of a pack, or clear the place of its entities.
@@ -67,7 +67,7 @@ def read_command_list(path: str | Path, losses: Losses | None = None) -> BlockVo
         is none. LimitError: there are too many, or they set too large a box.
     """
     data = read_bytes(path, MAX_BYTES)
-    return _built(_lines(data, path), Path(path), Losses() if losses is None else losses)
+    return _build(_lines(data, path), Path(path), Losses() if losses is None else losses)
 
 
 def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume:
@@ -93,11 +93,11 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
         reason = "is no data pack of this program (it has no function build/part_0)"
         raise InputError(source, f"{reason}; others are not read")
     lines = (line for text in texts for line in _lines(text, source))
-    return _built(lines, source, Losses() if losses is None else losses)
+    return _build(lines, source, Losses() if losses is None else losses)
 
 
 @dataclass
-class _Site:
+class _BuildState:
     """What the commands have asked for so far."""
 
     path: Path
@@ -138,11 +138,11 @@ class _Site:
         return value
 
 
-def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
-    site = _Site(path, losses)
+def _build(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
+    site = _BuildState(path, losses)
     for line in lines:
         try:
-            _obey(site, line)
+            _run_command(site, line)
         except UsageError as error:
             raise DamagedFileError(path, f"has a line that is no command: {error}") from error
     if not site.boxes:
@@ -150,7 +150,7 @@ def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
     boxes = np.frombuffer(site.boxes, np.int32).reshape(-1, 7).astype(np.int64)
     low = boxes[:, :3].min(axis=0)
     shape = check_size(boxes[:, 3:6].max(axis=0) + 1 - low, path)
-    palette, number_of = palette_of(site.states, path)
+    palette, number_of = build_palette(site.states, path)
     ours = [number_of[state] for state in site.states]
     states = np.zeros(shape, np.uint16)
     boxes[:, :3], boxes[:, 3:6] = boxes[:, :3] - low, boxes[:, 3:6] - low
@@ -159,10 +159,10 @@ def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
         states[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = ours[state]
     x, y, z = low.tolist()
     blocks = upgrade_command_signs(_block_entities(site, states, palette, (x, y, z)))
-    return unlabelled(states, palette, (x, y, z), blocks, site.entities)
+    return unlabelled_volume(states, palette, (x, y, z), blocks, site.entities)
 
 
-def _obey(site: _Site, line: str) -> None:
+def _run_command(site: _BuildState, line: str) -> None:
     words = line.split(" ", 1)
     rest = words[1].strip() if len(words) > 1 else ""
     if words[0] == "setblock":
@@ -212,7 +212,7 @@ def _without_mode(state: str, losses: Losses) -> str:
     return ""
 
 
-def _summon(site: _Site, rest: str) -> None:
+def _summon(site: _BuildState, rest: str) -> None:
     name, *place = rest.split(" ", 4)
     data = place.pop() if len(place) > 3 else "{}"
     full = name if ":" in name else f"minecraft:{name}"
@@ -228,7 +228,7 @@ def _summon(site: _Site, rest: str) -> None:
 
 
 def _block_entities(
-    site: _Site, states: np.ndarray, palette: tuple[str, ...], corner: Place
+    site: _BuildState, states: np.ndarray, palette: tuple[str, ...], corner: Place
 ) -> Iterator[BlockEntity]:
     for place, nbt in sorted(site.data.items()):
         cell = tuple(a - b for a, b in zip(place, corner, strict=True))

@@ -13,10 +13,10 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_names import written_state
+from world2minecraft.minecraft.block_names import write_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
-from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, merge_boxes
+from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, cover_with_boxes
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.versions import GameVersion
@@ -35,7 +35,7 @@ def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
     Raises:
         UsageError: a state of the palette is no block state.
     """
-    boxes = merge_boxes(volume.states)
+    boxes = cover_with_boxes(volume.states)
     is_solid = np.array([is_full_cube(state) for state in volume.palette])
     order = np.lexsort((boxes[:, 2], ~is_solid[boxes[:, 0]]))
     names = [state_in_version(state, version) for state in volume.palette]
@@ -52,7 +52,7 @@ def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
 
 def air_commands(volume: BlockVolume, mask: np.ndarray) -> list[str]:
     """Return the commands that empty the cells of a mask, bool [X, Y, Z], of a volume's box."""
-    boxes = merge_boxes(mask.astype(np.uint16))[:, 1:] + np.tile(volume.corner, 2)
+    boxes = cover_with_boxes(mask.astype(np.uint16))[:, 1:] + np.tile(volume.corner, 2)
     return [f"fill {' '.join(map(str, box))} minecraft:air" for box in boxes.tolist()]
 
 
@@ -121,7 +121,7 @@ def entity_tag(volume: BlockVolume) -> str:
 
 def state_in_version(state: str, version: GameVersion) -> str:
     """Return a block state as a version of the game writes it. Raises what ``parse_state`` does."""
-    return written_state(str(parse_state(state)), version.data_version)
+    return write_state(str(parse_state(state)), version.data_version)
 
 
 def snbt(value: Any) -> str:

@@ -35,12 +35,12 @@ def bodies_fit(
 def _free(solid, low, high):
     result = np.ones(len(low), np.bool_)
     for n in range(len(low)):
-        result[n] = not _met(solid, low[n], high[n])
+        result[n] = not _hits(solid, low[n], high[n])
     return result
 
 
 @njit
-def _met(solid, low, high):
+def _hits(solid, low, high):
     nx, ny, nz = solid.kinds.shape
     for i in range(max(0, int(np.floor(low[0]))), min(nx - 1, int(np.floor(high[0]))) + 1):
         # Fences reach half a block into the cell over them.

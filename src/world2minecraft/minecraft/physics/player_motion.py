@@ -14,7 +14,7 @@ from world2minecraft.minecraft.physics.body import (
     GROUND_INERTIA,
     JUMP_SPEED,
     JUMP_WAIT,
-    KEY,
+    KEY_INPUT,
     NEGLIGIBLE,
     SNEAK,
     SPRINT,
@@ -63,13 +63,13 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
     _accelerate(velocity, body.on_ground, keys, crouched, sprints, scale)
     way = np.array(velocity)
     if crouched and body.on_ground and velocity[1] <= 0:
-        way = _kept_from_edges(boxes, body, way, scale)
-    gone = _go(boxes, body, way, crouched, scale)
+        way = _stop_at_edges(boxes, body, way, scale)
+    gone = _move(boxes, body, way, crouched, scale)
     stopped = [bool(abs(g - w) > TOUCH * scale) for g, w in zip(gone, way, strict=True)]
     inertia = GROUND_INERTIA if body.on_ground else AIR_INERTIA
     fall = 0.0 if stopped[1] else velocity[1]
     return Body(
-        position=_sum(body.position, gone),
+        position=_add(body.position, gone),
         velocity=(
             0.0 if stopped[0] else velocity[0] * inertia,
             (fall - GRAVITY * scale) * FALL_DRAG,
@@ -97,7 +97,7 @@ def _fits(boxes: np.ndarray, body: Body, scale: float) -> bool:
 def _accelerate(
     velocity: list[float], on_ground: bool, keys: Keys, crouched: bool, sprints: bool, scale: float
 ) -> None:
-    slow = KEY * (SNEAK if crouched else 1.0)
+    slow = KEY_INPUT * (SNEAK if crouched else 1.0)
     ahead = (keys.forward - keys.back) * slow
     aside = (keys.left - keys.right) * slow
     length = math.hypot(ahead, aside)
@@ -115,7 +115,7 @@ def _push(velocity: list[float], left: float, ahead: float, yaw_deg: float) -> N
     velocity[2] += ahead * cosine + left * sine
 
 
-def _go(
+def _move(
     boxes: np.ndarray, body: Body, way: np.ndarray, crouched: bool, scale: float
 ) -> tuple[float, float, float]:
     """Return how far a body comes, up steps where it stands or lands."""
@@ -131,7 +131,7 @@ def _go(
     return up if farther else gone
 
 
-def _kept_from_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: float) -> np.ndarray:
+def _stop_at_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: float) -> np.ndarray:
     """Return a way on the ground shortened so that something stays under the feet."""
     box = body_box(body.position, scale, crouched=True)
     back = EDGE_STEP * scale
@@ -142,20 +142,20 @@ def _kept_from_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: floa
 
     x, y, z = way.tolist()
     while x and over_nothing(x, 0.0):
-        x = _nearer(x, back)
+        x = _towards_zero(x, back)
     while z and over_nothing(0.0, z):
-        z = _nearer(z, back)
+        z = _towards_zero(z, back)
     while x and z and over_nothing(x, z):
-        x, z = _nearer(x, back), _nearer(z, back)
+        x, z = _towards_zero(x, back), _towards_zero(z, back)
     return np.array([x, y, z])
 
 
-def _nearer(value: float, by: float) -> float:
+def _towards_zero(value: float, by: float) -> float:
     """Return a value brought nearer to 0."""
     return 0.0 if abs(value) <= by else value - math.copysign(by, value)
 
 
-def _sum(
+def _add(
     one: tuple[float, float, float], two: tuple[float, float, float]
 ) -> tuple[float, float, float]:
     return one[0] + two[0], one[1] + two[1], one[2] + two[2]

@@ -60,20 +60,20 @@ def distances_m(
 
 def reachable(graph: WalkGraph, start: int) -> np.ndarray:
     """Return which places one can walk to from a place, bool [N], itself among them."""
-    return _flooded(graph.edge_start, graph.edge_to, start)
+    return _flood(graph.edge_start, graph.edge_to, start)
 
 
-def parts(graph: WalkGraph) -> np.ndarray:
+def connected_parts(graph: WalkGraph) -> np.ndarray:
     """Return the number, int32 [N], of the part of the graph that each place hangs together with.
 
     Places hang together where a step leads between them in one direction at least; parts are
     numbered in the order of their first places.
     """
     back_start, back_to, _ = graph.backward
-    return _numbered(graph.edge_start, graph.edge_to, back_start, back_to)
+    return _label_parts(graph.edge_start, graph.edge_to, back_start, back_to)
 
 
-def elbow_room_m(graph: WalkGraph) -> np.ndarray:
+def clearance_m(graph: WalkGraph) -> np.ndarray:
     """Return how far it is from each place to the nearest that lacks a neighbour, float64 [N]."""
     edges = np.flatnonzero(np.diff(graph.edge_start) < 8)
     if not len(edges):
@@ -152,7 +152,7 @@ def pop(keys, values, size):
 
 
 @njit
-def _flooded(start, to, first):
+def _flood(start, to, first):
     found = np.zeros(len(start) - 1, np.bool_)
     stack = np.empty(len(found), np.int32)
     found[first], stack[0], size = True, first, 1
@@ -168,7 +168,7 @@ def _flooded(start, to, first):
 
 
 @njit
-def _numbered(start, to, back_start, back_to):
+def _label_parts(start, to, back_start, back_to):
     number = np.full(len(start) - 1, -1, np.int32)
     stack = np.empty(len(number), np.int32)
     count = 0

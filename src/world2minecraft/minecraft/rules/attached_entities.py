@@ -34,7 +34,7 @@ def attached_block(
     return own[0], own[1], own[2]
 
 
-def attached(
+def move_attachment(
     nbt: Mapping[str, Any], position: tuple[float, float, float], shift: tuple[int, int, int]
 ) -> dict[str, Any]:
     """Return ``nbt`` with its block moved by ``shift`` and, if need be, brought to the entity.
@@ -48,11 +48,11 @@ def attached(
     if stated is None:
         return dict(nbt)
     x, y, z = (s + d for s, d in zip(stated, shift, strict=True))
-    moved = naming(nbt, (x, y, z))
-    return naming(moved, attached_block(moved, position))
+    moved = name_attached_block(nbt, (x, y, z))
+    return name_attached_block(moved, attached_block(moved, position))
 
 
-def naming(nbt: Mapping[str, Any], block: tuple[int, int, int]) -> dict[str, Any]:
+def name_attached_block(nbt: Mapping[str, Any], block: tuple[int, int, int]) -> dict[str, Any]:
     """Return an entity's tags with another block to hang on, in the form that they have."""
     if "block_pos" in nbt:
         return {**nbt, "block_pos": np.array(block, np.int32)}

@@ -22,7 +22,7 @@ from world2minecraft.minecraft.bit_packing import (
     straddled_word_count,
     unpack_straddled,
 )
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
@@ -33,27 +33,27 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_FILE_BYTES,
     MISSHAPEN,
+    build_palette,
     check_size,
-    enclosing,
-    joined,
+    enclosing_box,
+    join_volumes,
     own_tag,
-    palette_of,
     stated_corner,
-    unlabelled,
+    unlabelled_volume,
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
 LIMITS = NbtLimits()
 MAX_REGIONS = 4096
 VERSIONS = range(4, 8)  # 1.13 to today; before them blocks had the names of 1.12.
-LEAST_BITS = 2
+MIN_BITS = 2
 DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
 Corner = tuple[int, int, int]
 
@@ -102,7 +102,7 @@ def write_regions(
         UsageError: there is no region, or an empty one. OutputError: it cannot be written.
     """
     version = version or game_version()
-    regions = {key: in_game(volume, version.data_version) for key, volume in regions.items()}
+    regions = {key: convert_volume(volume, version.data_version) for key, volume in regions.items()}
     if not regions or not all(volume.states.size for volume in regions.values()):
         raise UsageError("a Litematica file holds one region or more, and at least a block each")
     corners = np.array([volume.corner for volume in regions.values()])
@@ -146,7 +146,7 @@ def _metadata(regions: Mapping[str, BlockVolume], name: str, size: np.ndarray) -
 def _region(volume: BlockVolume, low: np.ndarray, version: GameVersion) -> dict[str, Any]:
     corner = np.array(volume.corner)
     cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
-    bits = bit_width(len(volume.palette), LEAST_BITS)
+    bits = bit_width(len(volume.palette), MIN_BITS)
     words = np.zeros(straddled_word_count(len(cells), bits), np.uint64)
     pack_straddled(cells, bits, words)
     blocks = [
@@ -166,10 +166,10 @@ def _region(volume: BlockVolume, low: np.ndarray, version: GameVersion) -> dict[
 
 
 def _entity_out(entity: Entity, number: int, corner: np.ndarray) -> dict[str, Any]:
-    nbt = attached(entity_nbt(entity, number), entity.position, (0, 0, 0))
+    nbt = move_attachment(entity_nbt(entity, number), entity.position, (0, 0, 0))
     x, y, z = (np.array(entity.position) - corner).tolist()
     dx, dy, dz = (-corner).tolist()
-    return {**attached(nbt, (x, y, z), (dx, dy, dz)), "Pos": [x, y, z]}
+    return {**move_attachment(nbt, (x, y, z), (dx, dy, dz)), "Pos": [x, y, z]}
 
 
 def _xyz(values: np.ndarray) -> dict[str, int]:
@@ -197,7 +197,7 @@ def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
         return next(iter(regions.values()))
     if losses is not None:
         losses.add("names of regions", len(regions))
-    return joined(list(regions.values()), path)
+    return join_volumes(list(regions.values()), path)
 
 
 def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, BlockVolume]:
@@ -212,7 +212,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         if not 1 <= len(named) <= MAX_REGIONS:
             raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
         boxes = {name: _box(region, source) for name, region in named.items()}
-        check_size(enclosing(list(boxes.values()))[1], source)
+        check_size(enclosing_box(list(boxes.values()))[1], source)
         cells = sum(math.prod(size.tolist()) for _, size in boxes.values())
         if cells > MAX_CELLS:  # Regions may lie in one another.
             reason = f"its regions have {cells:,} blocks together"
@@ -226,7 +226,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no Litematica file{missing}") from error
     if losses is not None:
-        _tell(root, losses)
+        _count_losses(root, losses)
     return found
 
 
@@ -250,7 +250,7 @@ def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> n
     corner = stated_corner(root, source)
     if corner is None:
         return np.zeros(3, np.int64)
-    return np.array(corner) - enclosing(list(boxes.values()))[0]
+    return np.array(corner) - enclosing_box(list(boxes.values()))[0]
 
 
 def _region_volume(
@@ -262,11 +262,11 @@ def _region_volume(
 ) -> BlockVolume:
     low, size = box
     texts = palette_texts(region["BlockStatePalette"], data_version, source)
-    palette, number_of = palette_of(texts, source)
+    palette, number_of = build_palette(texts, source)
     lookup = np.array([number_of[text] for text in texts], np.uint16)
     states = np.empty(tuple(size.tolist()), np.uint16)
     words = region.pop("BlockStates")  # Its memory is free when the blocks are made.
-    bits = bit_width(max(len(texts), 1), LEAST_BITS)
+    bits = bit_width(max(len(texts), 1), MIN_BITS)
     if words.dtype != np.int64 or len(words) < straddled_word_count(states.size, bits):
         raise DamagedFileError(source, f"says {states.size:,} blocks and holds fewer")
     wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
@@ -277,7 +277,7 @@ def _region_volume(
     x, y, z = corner.tolist()
     held = [_block_entity(nbt, corner) for nbt in region.get("TileEntities", [])]
     start = np.array([int(region["Position"][axis]) for axis in "xyz"]) + shift
-    return unlabelled(
+    return unlabelled_volume(
         states,
         palette,
         (x, y, z),
@@ -296,11 +296,11 @@ def _entity(nbt: Mapping[str, Any], start: np.ndarray) -> Entity:
     dx, dy, dz = start.tolist()
     x, y, z = (float(value) for value in nbt["Pos"])
     place = (x + dx, y + dy, z + dz)
-    rest = attached(nbt, place, (dx, dy, dz))
+    rest = move_attachment(nbt, place, (dx, dy, dz))
     return Entity(place, str(nbt["id"]), {k: rest[k] for k in rest if k not in ("id", "Pos")})
 
 
-def _tell(root: Mapping[str, Any], losses: Losses) -> None:
+def _count_losses(root: Mapping[str, Any], losses: Losses) -> None:
     """Count what is in the file and has no place in a volume."""
     for region in root["Regions"].values():
         for key in ("PendingBlockTicks", "PendingFluidTicks"):

@@ -29,9 +29,9 @@ from world2minecraft.minecraft.schematics.pre_flattening import (
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
+    build_palette,
     check_size,
-    palette_of,
-    unlabelled,
+    unlabelled_volume,
 )
 
 LIMITS = NbtLimits()
@@ -75,13 +75,13 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
     held = [upgrade_block_entity(nbt, corner) for nbt in root.get("TileEntities", [])]
     states, palette = _with_entities(states, palette, held, corner)
     if states.size <= MAX_JOINED_CELLS:
-        states, palette = _used(*update_connections(*join_halves(states, palette)), palette)
+        states, palette = _trim_palette(*update_connections(*join_halves(states, palette)), palette)
     else:
         losses.add("connections of blocks, for the schematic is too large to compute them")
     losses.add("biomes", int("Biomes" in root))
     kept = [entity for entity in held if entity.id]
     entities = [upgrade_entity(nbt, corner) for nbt in root.get("Entities", [])]
-    return unlabelled(states, palette, corner, kept, entities)
+    return unlabelled_volume(states, palette, corner, kept, entities)
 
 
 def _blocks(
@@ -103,7 +103,7 @@ def _blocks(
         text_of[key], is_known = legacy_state(key >> 4, key & 15, names)
         if not is_known:
             losses.add("blocks of mods, kept by their old number or name", int(counts[key]))
-    palette, number_of = palette_of(text_of.values(), source)
+    palette, number_of = build_palette(text_of.values(), source)
     lookup = np.zeros(1 << 16, np.uint16)
     for key, text in text_of.items():
         lookup[key] = number_of[text]
@@ -142,7 +142,7 @@ def _with_entities(
     return states, tuple(texts)
 
 
-def _used(
+def _trim_palette(
     states: np.ndarray, palette: tuple[str, ...], before: tuple[str, ...]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Leave out the states that no block has any more, and sort the others."""

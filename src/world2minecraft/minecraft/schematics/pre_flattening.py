@@ -18,7 +18,7 @@ import numpy as np
 from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
-from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_sign
 
 COLOURS = (
@@ -92,7 +92,7 @@ def upgrade_entity(nbt: Mapping[str, Any], corner: Corner) -> Entity:
         KeyError, TypeError, ValueError: it lacks its name or its place.
     """
     x, y, z = (float(value) + low for value, low in zip(nbt["Pos"], corner, strict=True))
-    rest = attached(nbt, (x, y, z), corner)
+    rest = move_attachment(nbt, (x, y, z), corner)
     rest = {key: rest[key] for key in rest if key not in ("id", "Pos")}
     return Entity((x, y, z), _name(str(nbt["id"])), rest)
 

@@ -11,8 +11,8 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import read_varints, write_varints
-from world2minecraft.minecraft.block_entities import in_game
-from world2minecraft.minecraft.block_names import read_state, written_state
+from world2minecraft.minecraft.block_entities import convert_volume
+from world2minecraft.minecraft.block_names import read_state, write_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.file_format import Losses
@@ -24,14 +24,14 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
+    build_palette,
     check_size,
-    palette_of,
-    unlabelled,
+    unlabelled_volume,
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
@@ -62,11 +62,11 @@ def write_schem(
         UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
     """
     version = version or game_version()
-    volume = in_game(volume, version.data_version)
+    volume = convert_volume(volume, version.data_version)
     if max(volume.states.shape) > 0xFFFF or not volume.states.size:
         raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
     palette = {
-        written_state(state, version.data_version): number
+        write_state(state, version.data_version): number
         for number, state in enumerate(volume.palette)
     }
     if len(palette) != len(volume.palette):
@@ -204,7 +204,7 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     shift = _shift(tree, version)
     nbts = blocks.get("BlockEntities", tree.get("TileEntities", []))
     held = [_block_entity(nbt, corner, version) for nbt in nbts]
-    return unlabelled(
+    return unlabelled_volume(
         states,
         palette,
         corner,
@@ -245,7 +245,7 @@ def _palette(
         if not 0 <= number <= 0xFFFF or number in text_of:
             raise DamagedFileError(source, f"its palette has a bad or repeated number {number}")
         text_of[int(number)] = state
-    palette, number_of = palette_of(text_of.values(), source)
+    palette, number_of = build_palette(text_of.values(), source)
     return palette, {number: number_of[state] for number, state in text_of.items()}
 
 
@@ -276,6 +276,6 @@ def _block_entity(nbt: dict[str, Any], corner: Corner, version: int) -> BlockEnt
 def _entity(nbt: dict[str, Any], corner: Corner, version: int, shift: Corner) -> Entity:
     start = corner if version == 3 else (0, 0, 0)
     x, y, z = (float(low + step) for low, step in zip(start, nbt["Pos"], strict=True))
-    rest = attached(nbt.get("Data", {}) if version == 3 else nbt, (x, y, z), shift)
+    rest = move_attachment(nbt.get("Data", {}) if version == 3 else nbt, (x, y, z), shift)
     rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
     return Entity((x, y, z), str(nbt["Id"]), rest)

@@ -16,7 +16,7 @@ from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
@@ -29,17 +29,17 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.rules.attached_entities import TILE, attached, attached_block
+from world2minecraft.minecraft.rules.attached_entities import TILE, attached_block, move_attachment
 from world2minecraft.minecraft.signs import upgrade_signs
 from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
 from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
+    build_palette,
     check_size,
     own_tag,
-    palette_of,
     stated_corner,
-    unlabelled,
+    unlabelled_volume,
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
@@ -293,7 +293,7 @@ def write_structure(
 
 def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool = True) -> bytes:
     """Return the bytes of a structure file. Args and errors as ``write_structure``."""
-    volume = in_game(volume, version.data_version)
+    volume = convert_volume(volume, version.data_version)
     # Bottom up, as builders do: y, then z, then x.
     cells = volume.states.transpose(1, 2, 0)
     air = volume.palette.index(AIR)
@@ -333,7 +333,7 @@ def _block_nbt(
 
 
 def _entity_out(entity: Entity, number: int, corner: Corner) -> dict[str, Any]:
-    nbt = attached(entity_nbt(entity, number), entity.position, (0, 0, 0))
+    nbt = move_attachment(entity_nbt(entity, number), entity.position, (0, 0, 0))
     block = np.subtract(attached_block(nbt, entity.position), corner)
     place = np.subtract(entity.position, corner)
     return {"pos": place.tolist(), "blockPos": block.tolist(), "nbt": nbt}
@@ -377,7 +377,7 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     blocks = BlockList.of(root["blocks"], source)
     game = int(root.get("DataVersion", DEFAULT_GAME))
     texts = palette_texts(_palette(root, source, losses, variant), game, source)
-    palette, number_of = palette_of(texts, source)
+    palette, number_of = build_palette(texts, source)
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):
         raise DamagedFileError(source, f"has a block that its palette of {len(texts)} lacks")
@@ -392,7 +392,7 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     corner = stated_corner(root, source) or (0, 0, 0)
     held = [_block_entity(places[n].tolist(), nbt, corner) for n, nbt in blocks.nbt.items()]
     entities = [_entity(nbt, corner) for nbt in root.get("entities", [])]
-    return unlabelled(states, palette, corner, upgrade_signs(held, game), entities)
+    return unlabelled_volume(states, palette, corner, upgrade_signs(held, game), entities)
 
 
 def _put_air(states: np.ndarray) -> int:
@@ -430,5 +430,5 @@ def _entity(held: Mapping[str, Any], corner: Corner) -> Entity:
         nbt["block_pos"] = held.get("blockPos", nbt["block_pos"])
     elif TILE[0] in nbt:
         nbt |= dict(zip(TILE, map(int, held["blockPos"]), strict=True))
-    rest = attached(nbt, (x, y, z), corner)
+    rest = move_attachment(nbt, (x, y, z), corner)
     return Entity((x, y, z), str(nbt["id"]), {k: rest[k] for k in rest if k not in ("id", "Pos")})

@@ -14,13 +14,13 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import UNREADABLE, write_bytes
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.minecraft.commands.datapack import job_files, namespace_of
+from world2minecraft.minecraft.commands.datapack import build_job_files, to_namespace
 from world2minecraft.minecraft.commands.player_scale import pack_mcmeta, pack_zip, size_functions
 from world2minecraft.minecraft.commands.writer import entity_tag
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.schematics.structure import parse_structure, structure_bytes
-from world2minecraft.minecraft.unlabelled_volume import MAX_CELLS, joined
+from world2minecraft.minecraft.unlabelled_volume import MAX_CELLS, join_volumes
 from world2minecraft.minecraft.versions import GameVersion, game_version
 
 PIECE = 48  # What a structure block loads and saves, since 1.16.
@@ -65,20 +65,20 @@ def write_structure_pack(
             f"Minecraft {version.name} places no structures by command; choose 1.19 or later, or "
             "write a .schem"
         )
-    space = namespace_of(name)
+    space = to_namespace(name)
     files: dict[str, str | bytes] = {
         "pack.mcmeta": pack_mcmeta(f"Places {space}", version),
         **size_functions(volume.blocks_per_metre),
     }
     tag = entity_tag(volume)  # Placed again, the entities of the first time go.
     commands = [f"kill @e[tag={tag}]"] if volume.entities else []
-    for number, piece in pieces(_tagged(volume, tag)).items():
+    for number, piece in split_into_pieces(_with_tag(volume, tag)).items():
         title = "_".join([space, *map(str, number)])
         data = structure_bytes(piece, version)
         files |= {f"data/{space}/{folder}/{title}.nbt": data for folder in FOLDERS}
         place = " ".join(map(str, piece.corner))
         commands.append(f"place template {space}:{title} {place}")
-    files |= job_files(volume, space, "place", commands, "placed")
+    files |= build_job_files(volume, space, "place", commands, "placed")
     write_bytes(path, pack_zip(files))
 
 
@@ -104,7 +104,7 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
     try:
         with zipfile.ZipFile(source) as archive:
             names = set(archive.namelist())
-            files = _placed(archive, source)
+            files = _list_placements(archive, source)
             sizes = [archive.getinfo(name).file_size for name, _ in files if name in names]
             if len(files) > MAX_PIECES or sum(sizes) > MAX_BYTES:
                 raise LimitError(
@@ -120,10 +120,12 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
                     raise LimitError(source, f"its pieces have over {MAX_CELLS:,} blocks together")
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is no readable zip ({error})") from error
-    return joined(parts, source)
+    return join_volumes(parts, source)
 
 
-def _placed(archive: zipfile.ZipFile, source: Path) -> list[tuple[str, tuple[int, int, int]]]:
+def _list_placements(
+    archive: zipfile.ZipFile, source: Path
+) -> list[tuple[str, tuple[int, int, int]]]:
     """Return the file of each piece, and where the function places it."""
     parts = sorted(name for name in archive.namelist() if _PART.fullmatch(name))
     found = {}
@@ -148,7 +150,7 @@ def _read_piece(
     return piece
 
 
-def pieces(volume: BlockVolume) -> dict[tuple[int, int, int], BlockVolume]:
+def split_into_pieces(volume: BlockVolume) -> dict[tuple[int, int, int], BlockVolume]:
     """Return the volume in boxes of at most 48 blocks a side, by their number along x, y, z."""
     counts = [-(-side // PIECE) for side in volume.states.shape]
     return {(x, y, z): _piece(volume, (x, y, z)) for x, y, z in np.ndindex(*counts)}
@@ -182,7 +184,7 @@ def _piece(volume: BlockVolume, number: tuple[int, int, int]) -> BlockVolume:
     )
 
 
-def _tagged(volume: BlockVolume, tag: str) -> BlockVolume:
+def _with_tag(volume: BlockVolume, tag: str) -> BlockVolume:
     def with_tag(entity: Entity) -> Entity:
         return replace(entity, nbt={**entity.nbt, "Tags": [*entity_tags(entity.nbt), tag]})
 

@@ -16,7 +16,7 @@ from world2minecraft.core.errors import InputError, ServerError, UsageError, one
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.commands.writer import (
     air_commands,
@@ -113,7 +113,7 @@ def plan_build(
         UsageError: a state or an entity's id is none, or the box leaves the world's layers.
     """
     _check_layers(volume, version)
-    volume = in_game(volume, version.data_version)
+    volume = convert_volume(volume, version.data_version)
     lost = Losses() if losses is None else losses
     air = (volume.states == 0) & (True if built is None else built)
     blocks = [*air_commands(volume, air), *block_commands(volume, version)]

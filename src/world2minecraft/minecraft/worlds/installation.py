@@ -133,7 +133,7 @@ def _check_space(files: list[Path], saves: Path) -> None:
         raise OutputError(saves, f"its disk has {free >> 20} MB free; {needed >> 20} are needed")
 
 
-def world_of(source: Path) -> Path:
+def find_world(source: Path) -> Path:
     """Return the world folder of a run, of its ``build`` folder, or the folder itself.
 
     Raises:

@@ -16,8 +16,8 @@ from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_STATES,
     MISSHAPEN,
-    palette_of,
-    unlabelled,
+    build_palette,
+    unlabelled_volume,
 )
 from world2minecraft.minecraft.worlds.anvil import read_region, region_position
 from world2minecraft.minecraft.worlds.chunks import Section, read_chunk
@@ -54,19 +54,19 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     regions = region_files(root)
     if not regions:
         raise InputError(root, "holds no region files of an overworld; nothing to read")
-    found = _gather([path for path in regions if _may_meet(path, box)], box)
-    palette, number_of = palette_of(found.numbers, root)
+    found = _gather([path for path in regions if _may_overlap(path, box)], box)
+    palette, number_of = build_palette(found.numbers, root)
     numbers = np.array([number_of[state] for state in found.numbers], np.uint16)
     states, corner = _fill(root, found.sections, numbers, box)
     if box is None:
-        states, corner = _trimmed(states, corner)
+        states, corner = _trim(states, corner)
     high = np.array(corner) + states.shape
 
     def inside(position: Any) -> bool:
         return bool((np.array(corner) <= position).all() and (position < high).all())
 
     found.add_entity_files(entity_files(regions, box), box)
-    return unlabelled(
+    return unlabelled_volume(
         states,
         palette,
         corner,
@@ -104,11 +104,11 @@ def region_files(root: Path) -> list[Path]:
 
 
 def _gather(regions: list[Path], box: Box | None) -> "_Found":
-    found = _Found()
+    found = _ChunkContents()
     known: dict[bytes, str] = {}
     unpacked = 0
     for path in regions:
-        for place, data in read_region(path, lambda place: _meets(place, box)):
+        for place, data in read_region(path, lambda place: _overlaps(place, box)):
             unpacked += len(data)
             root, sections = read_chunk(data, place, path, known)
             for section in sections:
@@ -123,7 +123,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_Found":
     return found
 
 
-class _Found:
+class _ChunkContents:
     """What is kept of the chunks that were read, and how much memory it takes."""
 
     def __init__(self) -> None:
@@ -145,7 +145,7 @@ class _Found:
     def add_entity_files(self, paths: list[Path], box: Box | None) -> None:
         """Read files of entities; since 1.17 they are none of the regions'."""
         for path in paths:
-            for _, data in read_region(path, lambda place: _meets(place, box)):
+            for _, data in read_region(path, lambda place: _overlaps(place, box)):
                 _, root = read_nbt(data, path)
                 self.entities += self.within(_entities(root.get("Entities"), path), path)
 
@@ -165,10 +165,10 @@ def _is_level(section: Section, box: Box) -> bool:
 def entity_files(regions: list[Path], box: Box | None) -> list[Path]:
     """Return the files of entities beside a world's regions that may hold some of a box."""
     folder = regions[0].parent.parent / "entities"
-    return [path for path in sorted(folder.glob("r.*.mca")) if _may_meet(path, box)]
+    return [path for path in sorted(folder.glob("r.*.mca")) if _may_overlap(path, box)]
 
 
-def _may_meet(path: Path, box: Box | None) -> bool:
+def _may_overlap(path: Path, box: Box | None) -> bool:
     """Whether a region may hold chunks of a box: of others not even the head is read."""
     if box is None:
         return True
@@ -176,7 +176,7 @@ def _may_meet(path: Path, box: Box | None) -> bool:
     return box[0] < x + 512 and x < box[3] and box[2] < z + 512 and z < box[5]
 
 
-def _meets(place: Place, box: Box | None) -> bool:
+def _overlaps(place: Place, box: Box | None) -> bool:
     if box is None:
         return True
     x, z = place[0] * 16, place[1] * 16
@@ -214,7 +214,7 @@ def _fill(
     return states, (x, y, z)
 
 
-def _trimmed(
+def _trim(
     states: np.ndarray, corner: tuple[int, int, int]
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
     """Cut away the layers of air around the blocks."""

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError, OutputError, UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
@@ -63,7 +63,7 @@ def write_world(
         UsageError: the volume is higher or lower than the game's world.
     """
     target, version = Path(folder), version or game_version()
-    volume = in_game(volume, version.level_data_version)
+    volume = convert_volume(volume, version.level_data_version)
     _check_heights(volume, version)
     _check_free(target)
     try:

@@ -20,7 +20,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume, Layout
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.minecraft.physics.body import HEIGHT
-from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
+from world2minecraft.minecraft.physics.shortest_paths import connected_parts, reachable
 from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
 from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.procgen.sensors.navmesh import is_inside
@@ -118,7 +118,11 @@ def _indoors(
     walled = _enclosed_by_walls(graph, blocked, cells)
     inside = walled & (roof < blocked.shape[1])
     least = MIN_ROOM_M2 / (graph.spacing / graph.blocks_per_metre) ** 2
-    for choice in (inside, walled, parts(graph) == np.bincount(parts(graph)).argmax()):
+    for choice in (
+        inside,
+        walled,
+        connected_parts(graph) == np.bincount(connected_parts(graph)).argmax(),
+    ):
         if choice.sum() >= least:
             return choice
     return np.ones(len(graph), bool)

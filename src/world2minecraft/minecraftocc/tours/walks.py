@@ -13,9 +13,9 @@ from scipy.ndimage import gaussian_filter1d
 from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
 from world2minecraft.minecraft.physics.shortest_paths import (
+    clearance_m,
+    connected_parts,
     distances_m,
-    elbow_room_m,
-    parts,
     shortest_path,
 )
 from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
@@ -40,12 +40,12 @@ class WalkArea:
     @cached_property
     def part(self) -> np.ndarray:
         """Int32 [N]: what hangs together."""
-        return parts(self.graph)
+        return connected_parts(self.graph)
 
     @cached_property
     def weights(self) -> np.ndarray:
         """Float64 [N]: how much longer a metre counts, the nearer to a wall."""
-        return 1 + NARROW_COST * np.maximum(0.0, 1 - elbow_room_m(self.graph) / ELBOW_M)
+        return 1 + NARROW_COST * np.maximum(0.0, 1 - clearance_m(self.graph) / ELBOW_M)
 
     @property
     def cell_m2(self) -> float:

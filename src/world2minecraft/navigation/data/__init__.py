@@ -1,5 +1,6 @@
 """From walks to questions: streams become trajectories, trajectories become items, items a set.
 
-``stream`` reads walks, ``cleaning`` cuts them, ``discretise`` makes moves of them, ``keyframes``
-takes their pictures, ``next_view`` and ``next_action`` ask about them, ``building`` does it all.
+``planned_walks`` and ``recorded_walks`` give streams, ``stream_cleaning`` cuts them into walks,
+``walk_discretization`` makes moves of them, ``keyframes`` and ``pictures`` their pictures,
+``tasks`` the questions, ``set_building`` the whole set.
 """

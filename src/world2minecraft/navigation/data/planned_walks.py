@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.core.coordinates import apply, invert
-from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m, shortest_path
+from world2minecraft.minecraft.physics.shortest_paths import clearance_m, shortest_path
 from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.language.landmark_names import unambiguous_landmarks
 from world2minecraft.navigation.scene import VlnScene
@@ -49,7 +49,7 @@ class TourPlanner:
 
     def __init__(self, scene: VlnScene):
         self._scene, self._graph = scene, scene.graph
-        self._elbow = elbow_room_m(scene.graph)
+        self._elbow = clearance_m(scene.graph)
         self._weights = 1 + NARROW_COST * np.maximum(0.0, 1 - self._elbow / ELBOW_M)
         self._tree = KDTree(scene.graph.feet)
         self._goals = _goals(scene)

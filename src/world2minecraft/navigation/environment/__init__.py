@@ -1,6 +1,6 @@
 """The environment ``World2Minecraft-VLN-v0`` of gymnasium: one line makes it over any world.
 
-``gymnasium.make("world2minecraft.navigation.environment:World2Minecraft-VLN-v0", scene="worlds/house")``
+``gymnasium.make("world2minecraft.navigation.environment:World2Minecraft-VLN-v0", scene=PATH)``
 imports this package, which registers it; so does ``import world2minecraft.navigation.environment``.
 """
 

@@ -1,8 +1,8 @@
-"""A set of items handed to trainers and simulators, as they read files.
+"""Exports of a set for trainers and simulators, in the formats that they read.
 
-``exporting`` does it; ``llamafactory``, ``easyr1``, ``trl``, ``vlnce`` and ``r2r`` are the formats;
-``parts`` says which rows go together, ``pictures`` checks and copies images, ``tokens`` and
-``steps`` tell what a recipe will do before it runs, ``contracts`` holds the loaders' rules.
+``set_export`` does it; ``llamafactory``, ``easyr1``, ``trl``, ``vlnce`` and ``r2r`` are the
+formats; ``options`` groups the rows, ``pictures`` checks and copies images, ``training_costs`` says
+what a recipe will take before it runs, ``loader_checks`` holds the loaders' rules.
 """
 
 from world2minecraft.navigation.exporters.options import ExportOptions

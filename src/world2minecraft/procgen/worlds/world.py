@@ -11,7 +11,7 @@ from world2minecraft.construction.spawn import Spawn, find_spawn
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
+from world2minecraft.minecraft.physics.shortest_paths import connected_parts, reachable
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
 from world2minecraft.procgen.houses.house import check_house
 from world2minecraft.procgen.houses.rooms import furnish_cells
@@ -76,7 +76,7 @@ def find_walkable_spawn(volume: BlockVolume, house: BlockHouse) -> Spawn:
     lowest = floors[[room.storey == 0 for room in house.rooms]].any(axis=0)
     if not lowest.any():
         return best
-    part = parts(graph)
+    part = connected_parts(graph)
     largest = np.bincount(part[floors.any(axis=0)], minlength=part.max() + 1)
     most = largest[part] == largest[part[lowest]].max()
     places = np.flatnonzero(lowest & most)

@@ -14,6 +14,7 @@ from world2minecraft.core.jit import inlined, lean
 from world2minecraft.rendering.picture import MAX_PIXELS, MAX_SAMPLES, Picture
 from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 
 # The kernel of batches: pictures of many poses in one call, without Python between them.
 
@@ -39,31 +40,32 @@ class BatchPixels(NamedTuple):
     wanted: int
 
 
+class BatchPart(NamedTuple):
+    """Which rows of which pictures one thread draws."""
+
+    start: int  # the first picture
+    stride: int  # from one picture to the next
+    first: int  # the first row, a whole number of tiles
+    last: int  # past the last row
+    slot: int  # the picture of arrays that have fewer than N
+
+
 @lean
-def draw_poses(
-    tables, side_px, poses, rays, spread, start, stride, first, last, slot, lamp, cells, scratch,
-    out,
-):  # fmt: skip
-    """Fill the rows ``first`` to ``last`` of every ``stride``-th picture, from ``start`` on.
+def draw_poses(tables, side_px, poses, rays, part, shading, memory, out):
+    """Fill a part of the pictures of pinhole cameras.
 
     Args:
         tables: ``SceneTables``, with textures of ``side_px``.
         side_px: the side of a texture.
         poses: float64 [N, 3, 4], camera to grid.
-        rays: float64 [N, 4], see ``draw_rows``.
-        spread: 1 for pinhole cameras, 0 for parallel rays.
-        start: the first picture.
-        stride: from one picture to the next.
-        first: the first row, a whole number of tiles.
-        last: past the last row.
-        slot: where arrays without N pictures are written to.
-        lamp: the light.
-        cells: int64 [CELLS, 3], the caller's own.
-        scratch: float64 [SCRATCH], the caller's own.
+        rays: float64 [N, 4], see ``GridCamera``.
+        part: ``BatchPart``.
+        shading: ``ShadingParameters``.
+        memory: ``BandMemory``, the caller's own.
         out: ``BatchPixels``.
     """
-    count = len(poses)
-    for n in range(start, count, stride):
+    count, slot = len(poses), part.slot
+    for n in range(part.start, count, part.stride):
         picture = PixelArrays(
             out.depth[picture_row(out.depth, n, slot, count)],
             out.distance[picture_row(out.distance, n, slot, count)],
@@ -79,9 +81,8 @@ def draw_poses(
             out.colour[picture_row(out.colour, n, slot, count)],
             out.wanted,
         )
-        draw_rows(
-            tables, side_px, poses[n], rays[n], spread, first, last, lamp, cells, scratch, picture
-        )
+        camera = GridCamera(poses[n], rays[n], 1.0)
+        draw_rows(tables, side_px, camera, part.first, part.last, shading, memory, picture)
 
 
 @inlined

@@ -9,6 +9,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.arrays import (
     BatchArrays,
+    BatchPart,
     BatchPixels,
     Size,
     array_specs,
@@ -23,6 +24,7 @@ from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import TILE, band_memory, draw_rows
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
@@ -92,9 +94,9 @@ def render_batch(
     if len(matrices) == 0:
         return arrays
     views = views_of(scene, each, matrices)
-    lamp = shading_parameters(light, scene, background, views.poses[:, :, 3])
+    shading = shading_parameters(light, scene, background, views.poses[:, :, 3])
     draw_views(
-        KernelScene(scene.tables, scene.side_px), views, lamp, outputs, samples, threads, arrays
+        KernelScene(scene.tables, scene.side_px), views, shading, outputs, samples, threads, arrays
     )
     return arrays
 
@@ -140,7 +142,7 @@ def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[
 def draw_views(
     stage: KernelScene,
     views: Views,
-    lamp: ShadingParameters,
+    shading: ShadingParameters,
     outputs: Collection[str],
     samples: int,
     threads: int,
@@ -158,7 +160,7 @@ def draw_views(
     if depth is not None:
         out = out._replace(depth=depth)
     out.normal[...] = 0.0
-    draw = _drawer(stage, views, lamp, samples, out)
+    draw = _drawer(stage, views, shading, samples, out)
     if by_rows:
         parts = bands(height, max(1, threads), TILE)
         run_parallel(lambda rows: draw(0, 1, rows, 0), parts)
@@ -166,16 +168,15 @@ def draw_views(
         run_parallel(lambda slot: draw(slot, slots, (0, height), slot), range(slots))
     if arrays.free is not None and depth is not None:
         for n in range(count):
-            arrays.free[n] = observed_free_space(
-                stage.tables, views.poses[n], views.rays[n], 1.0, depth[n]
-            )
+            camera = GridCamera(views.poses[n], views.rays[n], 1.0)
+            arrays.free[n] = observed_free_space(stage.tables, camera, depth[n])
 
 
 Drawer = Callable[[int, int, tuple[int, int], int], None]
 
 
 def _drawer(
-    stage: KernelScene, views: Views, lamp: ShadingParameters, samples: int, out: BatchPixels
+    stage: KernelScene, views: Views, shading: ShadingParameters, samples: int, out: BatchPixels
 ) -> Drawer:
     """Return what draws some rows of every so many pictures."""
     height, width = views.size
@@ -183,17 +184,16 @@ def _drawer(
     fine = pixel_arrays((height * samples, width * samples), ("colour",)) if apart else None
 
     def draw(start: int, stride: int, rows: tuple[int, int], slot: int) -> None:
-        cells, scratch = band_memory()
-        draw_poses(
-            stage.tables, stage.side_px, views.poses, views.rays, 1.0, start, stride, *rows, slot,
-            lamp, cells, scratch, out,
-        )  # fmt: skip
+        memory = band_memory()
+        part = BatchPart(start, stride, *rows, slot)
+        draw_poses(stage.tables, stage.side_px, views.poses, views.rays, part, shading, memory, out)
         if fine is None:
             return
         for n in range(start, len(views.poses), stride):
+            camera = GridCamera(views.poses[n], views.rays[n] * samples, 1.0)
             draw_rows(
-                stage.tables, stage.side_px, views.poses[n], views.rays[n] * samples, 1.0,
-                rows[0] * samples, rows[1] * samples, lamp, cells, scratch, fine,
+                stage.tables, stage.side_px, camera, rows[0] * samples, rows[1] * samples,
+                shading, memory, fine,
             )  # fmt: skip
             _shrink(fine, samples, rows, out.colour[n])
 

@@ -237,8 +237,8 @@ class RenderPool:
         if not runs:
             return iter(())
         eyes = np.concatenate([run.poses[:, :, 3] for run in runs])
-        lamp = shading_parameters(light, self._scene, background, eyes)
-        return self._draw(runs, Job("", lamp, wanted, samples, make), ordered)
+        shading = shading_parameters(light, self._scene, background, eyes)
+        return self._draw(runs, Job("", shading, wanted, samples, make), ordered)
 
     def _draw(self, runs: list[Views], job: Job, ordered: bool) -> Iterator[tuple[int, Any]]:
         """Hand out the tasks and give what comes back."""
@@ -370,9 +370,9 @@ def _share_tables(scene: BlockScene) -> SharedArrays:
 def _compile(block: SharedArrays, scene: BlockScene) -> None:
     """Draw a tiny picture just as workers do, so that they find all kernels compiled."""
     stage = KernelScene(SceneTables(**block.arrays()), scene.side_px)
-    lamp = pickle.loads(pickle.dumps(shading_parameters(UNIT_EXPOSURE, scene)))
+    shading = pickle.loads(pickle.dumps(shading_parameters(UNIT_EXPOSURE, scene)))
     views = Views((8, 8), np.eye(4)[None, :3].copy(), np.array([[8.0, 8.0, 4.0, 4.0]]))
     outputs = ("colour", "depth", "free")
     rooms = array_specs(1, (8, 8), outputs, scene.semantic.shape)
     arrays = BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
-    draw_views(stage, views, lamp, outputs, 2, 1, arrays)
+    draw_views(stage, views, shading, outputs, 2, 1, arrays)

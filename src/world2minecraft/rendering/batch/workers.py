@@ -41,7 +41,7 @@ class Job:
     """What tasks have in common."""
 
     slots: str  # the name of the memory that pictures are drawn into
-    lamp: ShadingParameters
+    shading: ShadingParameters
     outputs: tuple[str, ...]
     samples: int
     make: Make | None
@@ -128,7 +128,7 @@ class WorkerState:
         slots = self._joined("slots", SharedLayout(job.slots, {}))
         arrays = BatchArrays(**{name: slots.array(at) for name, at in task.places.items()})
         outputs = (*PICTURE_OUTPUTS, *job.outputs)
-        draw_views(self._stage, task.views, job.lamp, outputs, job.samples, 1, arrays)
+        draw_views(self._stage, task.views, job.shading, outputs, job.samples, 1, arrays)
         if job.make is None:
             return None
         numbers = range(len(task.views.poses))

@@ -69,7 +69,7 @@ class BufferSet:
         usage = wgpu_module().BufferUsage
         self.scene, self.out_bytes, self._engine, self._bytes = scene, out_bytes, engine, 0
         self._promise: Any = None
-        self._lamp: ShadingParameters | None = None
+        self._shading: ShadingParameters | None = None
 
         def made(size: int, flags: int) -> Any:
             return engine.device.create_buffer(size=size, usage=flags)
@@ -90,12 +90,12 @@ class BufferSet:
             ],
         )
 
-    def prepare(self, parameters: bytes, lamp: ShadingParameters) -> None:
+    def prepare(self, parameters: bytes, shading: ShadingParameters) -> None:
         """Take what the next submission is drawn with."""
         self._write("parameters", parameters)
-        if self._lamp is not lamp:
-            self._write("tone", tone_words(lamp))
-            self._lamp = lamp
+        if self._shading is not shading:
+            self._write("tone", tone_words(shading))
+            self._shading = shading
 
     def _write(self, name: str, data: bytes | np.ndarray) -> None:
         self._engine.device.queue.write_buffer(self._own[name], 0, data)

@@ -37,6 +37,7 @@ from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import INSTANCE, SEMANTIC
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
@@ -209,16 +210,17 @@ class GpuRenderer:
             for camera_to_room in poses:
                 pose = (scene.room_to_grid @ np.asarray(camera_to_room, np.float64))[:3]
                 check_pose(pose)
-                lamp = shading_parameters(
+                shading = shading_parameters(
                     light, scene, background, pose[:, 3][None] if spread else None
                 )
                 for row in range(0, size[0], plan.band_rows):
-                    yield _Job(pose, row, lamp)
+                    yield _Job(pose, row, shading)
 
         for pose, arrays in self._drawn(ask, plan, group_jobs(jobs(), plan.jobs), outputs):
             picture = picture_of(arrays, outputs)
             if "free" in outputs:
-                free = observed_free_space(scene.tables, pose, np.array(rays), spread, arrays.depth)
+                grid_camera = GridCamera(pose, np.array(rays), spread)
+                free = observed_free_space(scene.tables, grid_camera, arrays.depth)
                 picture = replace(picture, free=free)
             yield picture
 
@@ -262,9 +264,11 @@ class GpuRenderer:
         for work in under_way:
             if work.slot is None:
                 work.slot = self._slot(4 * plan.words * plan.jobs)
-                lamp = work.jobs[0].lamp
-                parameters = parameter_bytes(ask, lamp, self._scene, self._offsets, plan.band_rows)
-                work.slot.prepare(parameters, lamp)
+                shading = work.jobs[0].shading
+                parameters = parameter_bytes(
+                    ask, shading, self._scene, self._offsets, plan.band_rows
+                )
+                work.slot.prepare(parameters, shading)
                 work.slot.submit(_views(work.jobs, self._scene, ask), ask, plan)
         first = under_way[0]
         shape = (len(first.jobs), ask.layout.planes, plan.band_rows, ask.size[1])
@@ -304,7 +308,7 @@ class _Job(NamedTuple):
 
     pose: np.ndarray  # float64 [3, 4], camera to grid
     row: int  # the band's first
-    lamp: ShadingParameters
+    shading: ShadingParameters
 
 
 @dataclass
@@ -319,7 +323,7 @@ def group_jobs(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
     """Give lots of up to so many jobs, in their order; the jobs of a lot have one light."""
     lot: list[_Job] = []
     for job in jobs:
-        if lot and (len(lot) == most or lot[0].lamp is not job.lamp):
+        if lot and (len(lot) == most or lot[0].shading is not job.shading):
             yield lot
             lot = []
         lot.append(job)

@@ -92,7 +92,7 @@ def struct_text() -> str:
 
 def parameter_bytes(
     ask: PictureRequest,
-    lamp: ShadingParameters,
+    shading: ShadingParameters,
     scene: BlockScene,
     offsets: Mapping[str, int],
     band_rows: int,
@@ -101,12 +101,12 @@ def parameter_bytes(
 
     Args:
         ask: what is drawn.
-        lamp: its light.
+        shading: its light.
         scene: of what.
         offsets: where the tables begin, from ``packing``.
         band_rows: rows of one view.
     """
-    tables, tone, layout = scene.tables, lamp.tone, ask.layout
+    tables, tone, layout = scene.tables, shading.tone, ask.layout
     values: dict[str, float] = dict(offsets)
     for name, (x, y, z) in (("size", tables.space.shape), ("first", tables.window[0])):
         values |= {f"{name}_x": x, f"{name}_y": y, f"{name}_z": z}
@@ -117,24 +117,24 @@ def parameter_bytes(
     values |= {"plane_label": layout.label, "at_things": len(tables.semantic)}
     values |= {"height": ask.size[0], "width": ask.size[1], "samples": ask.samples}
     values |= {"band_rows": band_rows, "plane_words": band_rows * ask.size[1]}
-    values |= {"wants_colour": layout.colour, "by_row": lamp.by_row}
+    values |= {"wants_colour": layout.colour, "by_row": shading.by_row}
     values |= {"most_steps": 2 * sum(tables.space.shape) + 8}
     values |= dict(zip(("fx", "fy", "cx", "cy"), ask.rays, strict=True))
     values |= {"spread": ask.spread, "shoulder": min(tone.shoulder, MAX_SHOULDER)}
-    values |= dict(zip(_PAPER, lamp.paper.ravel().tolist(), strict=True))
-    values |= {f"lit_{name}": value for name, value in lamp.lit._asdict().items()}
-    values |= {f"sky_{name}": value for name, value in lamp.background._asdict().items()}
+    values |= dict(zip(_PAPER, shading.paper.ravel().tolist(), strict=True))
+    values |= {f"lit_{name}": value for name, value in shading.lit._asdict().items()}
+    values |= {f"sky_{name}": value for name, value in shading.background._asdict().items()}
     record = np.zeros((), _PARAMETERS)
     for name, _ in SCALARS:
         record[name] = values[name]
     return record.tobytes().ljust(PARAMETER_BYTES, b"\0")
 
 
-def tone_words(lamp: ShadingParameters) -> np.ndarray:
+def tone_words(shading: ShadingParameters) -> np.ndarray:
     """Return the tables of a light, uint32: floats, four screen values a word, floats again."""
-    decode = np.ascontiguousarray(lamp.tone.decode, np.float32).view(np.uint32)
-    encode = np.ascontiguousarray(lamp.tone.encode).view(np.uint32)
-    return np.concatenate([decode, encode, lamp.corners.view(np.uint32).ravel()])
+    decode = np.ascontiguousarray(shading.tone.decode, np.float32).view(np.uint32)
+    encode = np.ascontiguousarray(shading.tone.encode).view(np.uint32)
+    return np.concatenate([decode, encode, shading.corners.view(np.uint32).ravel()])
 
 
 def check_pose(pose: np.ndarray) -> None:

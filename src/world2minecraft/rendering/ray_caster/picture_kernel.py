@@ -101,9 +101,7 @@ def draw_rows(tables, side_px, camera, first, last, shading, memory, out):
             for corner in range(4):
                 x = (u_tile + 0.5 if corner % 2 == 0 else u_end - 0.5) - rays[2]
                 y = (v_tile + 0.5 if corner < 2 else v_end - 0.5) - rays[3]
-                ox, oy, oz, dx, dy, dz = ray_of_pixel(
-                    pose, x / rays[0], y / rays[1], camera.spread
-                )
+                ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x / rays[0], y / rays[1], camera.spread)
                 row = corners[corner]
                 row[0], row[1], row[2], row[3], row[4], row[5] = ox, oy, oz, dx, dy, dz
             packet = trace_packet(tables.space, tables.bounds, corners, memory.cells)
@@ -119,9 +117,7 @@ def draw_rows(tables, side_px, camera, first, last, shading, memory, out):
                 continue
             for v in range(v_tile, v_end):
                 for u in range(u_tile, u_end):
-                    draw_pixel(
-                        tables, side_px, camera, shading, scale, memory, packet, u, v, out
-                    )
+                    draw_pixel(tables, side_px, camera, shading, scale, memory, packet, u, v, out)
 
 
 @inner

@@ -85,7 +85,9 @@ def draw_plane_tile(
                 i = layer if axis == 0 else cell_p
                 j = layer if axis == 1 else (cell_p if axis == 0 else cell_q)
                 k = layer if axis == 2 else cell_q
-                texture, index = prepare_face(tables, shading, face, sun, side, i, j, k, with_colour)
+                texture, index = prepare_face(
+                    tables, shading, face, sun, side, i, j, k, with_colour
+                )
                 semantic, instance = tables.semantic[index], tables.instance[index]
             length = np.sqrt(x * x + y * y + 1.0)
             out.depth[v, u], out.distance[v, u] = t, t * length

@@ -346,9 +346,7 @@ def first_hit(tables, side_px, ray, start, after):
                 tables.looks, tables.look_start, tables.refs, tables.boxes, tables.traits,
                 tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent,
             )  # fmt: skip
-            near, side, element = intersect_elements(
-                elements, side_px, i, j, k, ray, after, until
-            )
+            near, side, element = intersect_elements(elements, side_px, i, j, k, ray, after, until)
             if side != NO_FACE:
                 return Hit(near, i, j, k, side, element)
         t, i, j, k, face = until, a, b, c, ahead

@@ -96,7 +96,9 @@ def shade_hit(tables, side_px, shading, memo, block_px, ray, hit, speed):
             shade = face_shade(nx, ny, nz, cosine, shading.lit)
     if flags & UNSHADED:
         shade = 1.0
-    r, g, b, alpha = texel_colour(tables, side_px, shading.tone, n, side, ex, ey, ez, block_px, cosine)
+    r, g, b, alpha = texel_colour(
+        tables, side_px, shading.tone, n, side, ex, ey, ez, block_px, cosine
+    )
     cache_corner_light(tables.light, shading.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
     p, q = (py if face < 2 else px), (py if face >= 4 else pz)
     p, q = min(max(p, 0.0), 1.0), min(max(q, 0.0), 1.0)
@@ -269,7 +271,9 @@ def is_sunlit(tables, side_px, lit, ox, oy, oz):
 @inner
 def write_pixel(shading, colour, v, u, red, green, blue):
     """Write a linear colour as sRGB."""
-    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(red, green, blue, shading.tone)
+    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = tone_map_pixel(
+        red, green, blue, shading.tone
+    )
 
 
 @inner

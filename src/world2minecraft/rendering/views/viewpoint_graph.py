@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m
+from world2minecraft.minecraft.physics.shortest_paths import clearance_m
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph, walk_graph
 from world2minecraft.rendering.views.visibility import MAX_VIEW_M, ViewBlockers, cast_view_rays
 
@@ -42,7 +42,7 @@ class WalkRoutes:
             return
         share_m2 = _shares_m2(graph)
         indoors = _indoors(self.hiding, graph.feet)
-        room_m = elbow_room_m(graph)
+        room_m = clearance_m(graph)
         cost = _two_way_steps(graph, 1 + OUTSIDE_COST * ~indoors + _narrowness(room_m))
         kept = _best_part(cost, indoors, share_m2)
         self.feet, self.indoors, self.room_m = graph.feet[kept], indoors[kept], room_m[kept]

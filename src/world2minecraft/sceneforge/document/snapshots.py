@@ -1,6 +1,7 @@
 """A whole scene at one revision, as a file: the base of a document and its snapshots.
 
-Arrays of a ``.npz``: those of ``room.npz``; ``objects`` uint8, as ``editing.scene.journal`` packs them; ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the journal that goes on from
+Arrays of a ``.npz``: those of ``room.npz``; ``objects`` uint8, as ``editing.scene.journal`` packs
+them; ``state`` uint8, a JSON object with ``rev``, ``generation`` (of the journal that goes on from
 here) and ``line`` (what undo and redo reach).
 """
 

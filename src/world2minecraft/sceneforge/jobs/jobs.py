@@ -1,8 +1,9 @@
 """Long work beside the editor: each job has a stage, a share, the time left and an end.
 
 A job runs in a thread of its own. What may be cut off at any moment runs in a process that the
-thread listens to (``subprocess_job.run_in_subprocess``); other work is cancelled at its next report. Every state
-is a ``JobState`` of ``wire.ts`` and goes to all tabs, at most ten a second for each job.
+thread listens to (``subprocess_job.run_in_subprocess``); other work is cancelled at its next
+report. Every state is a ``JobState`` of ``wire.ts`` and goes to all tabs, at most ten a second for
+each job.
 """
 
 import threading

@@ -1,8 +1,8 @@
 """Work in a process of its own, which can be cut off at any moment.
 
-The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a task
-and what it needs, and answers with JSON lines: steps, then a result or an error. It ends by itself
-when the program that began it is gone.
+The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a
+task and what it needs, and answers with JSON lines: steps, then a result or an error. It ends by
+itself when the program that began it is gone.
 """
 
 import json

@@ -2,8 +2,8 @@
 
 A build is made by a thread, one at a time, while the scene is edited further; the last few are
 cached. One that takes longer is announced to all tabs as a job. Who walks in the page does so by
-the physics of ``minecraft.physics``: it is sent the shape of each cell, the boxes of each shape, and
-where to begin.
+the physics of ``minecraft.physics``: it is sent the shape of each cell, the boxes of each shape,
+and where to begin.
 """
 
 import asyncio

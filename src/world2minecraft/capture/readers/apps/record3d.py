@@ -218,10 +218,10 @@ def _lenses(path: AnyPath, stated: dict[str, Any]) -> list[Camera | None]:
     each = stated.get("perFrameIntrinsicCoeffs")
     if isinstance(each, list) and each:
         lenses = [parse_numbers(path, "perFrameIntrinsicCoeffs", one, 4) for one in each]
-        told = [bool(np.isfinite(lens).all() and lens.min() > 0) for lens in lenses]
+        known = [bool(np.isfinite(lens).all() and lens.min() > 0) for lens in lenses]
         return [
-            parse_camera(path, size, lens.tolist()) if is_told else None
-            for lens, is_told in zip(lenses, told, strict=True)
+            parse_camera(path, size, lens.tolist()) if is_known else None
+            for lens, is_known in zip(lenses, known, strict=True)
         ]
     matrix = parse_numbers(path, "K", stated.get("K"), 9).reshape(3, 3)
     if matrix[0, 2] == 0 and matrix[1, 2] == 0:  # Column by column, as the app writes it.

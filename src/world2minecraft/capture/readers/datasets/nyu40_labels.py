@@ -53,9 +53,9 @@ def raw_id_classes(table: AnyPath) -> np.ndarray:
     known, classes = nyu40_classes(), np.full(65536, UNKNOWN, np.uint8)
     for row in rows[1:]:
         if len(row) > max(own, nyu40) and row[own].isdecimal() and row[nyu40].isdecimal():
-            number, meant = int(row[own]), int(row[nyu40])
-            if number < 65536 and meant < 65536:
-                classes[number] = known[meant]
+            number, nyu40_id = int(row[own]), int(row[nyu40])
+            if number < 65536 and nyu40_id < 65536:
+                classes[number] = known[nyu40_id]
     return classes
 
 

@@ -79,38 +79,38 @@ def classes_of_label_ids(
     numbers = np.where((numbers < 0) | (numbers > MAX_LABEL_ID), MAX_LABEL_ID, numbers).astype(
         np.int64
     )
-    beside = place.parent / f"{place.stem}.classes.json"
-    if beside.is_file():
-        return _classes_from_map(beside)[numbers], f"classes are told by {beside.name}"
+    map_path = place.parent / f"{place.stem}.classes.json"
+    if map_path.is_file():
+        return _classes_from_map(map_path)[numbers], f"classes are told by {map_path.name}"
     known = numbers[(numbers != MAX_LABEL_ID) & (numbers != UNKNOWN)]
     if not len(known):
         return None, ""
-    most, has_unknown = int(known.max()), bool((numbers == UNKNOWN).any())
-    if most < len(CLASS_NAMES) and (column not in ("label",) or has_unknown):
+    largest, has_unknown = int(known.max()), bool((numbers == UNKNOWN).any())
+    if largest < len(CLASS_NAMES) and (column not in ("label",) or has_unknown):
         return identity_classes()[
             np.minimum(numbers, 255)
         ], f"column {column} is read as our class ids"
-    if most <= 40:
-        said = f"column {column} is read as NYU40 numbers"
-        return nyu40_classes()[numbers], said
-    said = f"column {column} holds numbers up to {most}, which are not known"
-    return None, f"{said}: map them in {beside.name}"
+    if largest <= 40:
+        note = f"column {column} is read as NYU40 numbers"
+        return nyu40_classes()[numbers], note
+    note = f"column {column} holds numbers up to {largest}, which are not known"
+    return None, f"{note}: map them in {map_path.name}"
 
 
-def _classes_from_map(beside: AnyPath) -> np.ndarray:
-    table = read_json(beside, MAX_MAP_BYTES)
+def _classes_from_map(map_path: AnyPath) -> np.ndarray:
+    table = read_json(map_path, MAX_MAP_BYTES)
     classes = np.full(MAX_LABEL_ID + 1, UNKNOWN, np.uint8)
     if not isinstance(table, dict):
-        raise CaptureError(beside, 'must map numbers to names, such as {"5": "chair"}')
+        raise CaptureError(map_path, 'must map numbers to names, such as {"5": "chair"}')
     for number, name in table.items():
         found = class_of_name(str(name))
         if not number.isascii() or not number.isdecimal() or int(number) > MAX_LABEL_ID:
             raise CaptureError(
-                beside, f"maps {number[:20]!r}, which is no number up to {MAX_LABEL_ID}"
+                map_path, f"maps {number[:20]!r}, which is no number up to {MAX_LABEL_ID}"
             )
         if found == UNKNOWN and str(name) != "unknown":
             raise CaptureError(
-                beside, f"names {str(name)[:40]!r}; known are {', '.join(CLASS_NAMES[1:])}"
+                map_path, f"names {str(name)[:40]!r}; known are {', '.join(CLASS_NAMES[1:])}"
             )
         classes[int(number)] = found
     return classes
@@ -136,8 +136,8 @@ def to_uint8_colours(values: np.ndarray) -> np.ndarray | None:
     if values.dtype == np.uint8:
         return np.ascontiguousarray(values)
     finite = np.nan_to_num(values.astype(np.float32))
-    most = float(finite.max(initial=0))
-    if most <= 0:
+    largest = float(finite.max(initial=0))
+    if largest <= 0:
         return None
-    share = 255.0 if most <= 1.0 else 1.0 if most <= 255 else 255 / 65535
+    share = 255.0 if largest <= 1.0 else 1.0 if largest <= 255 else 255 / 65535
     return np.clip(finite * np.float32(share) + np.float32(0.5), 0, 255).astype(np.uint8)

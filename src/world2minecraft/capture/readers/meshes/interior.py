@@ -36,9 +36,9 @@ MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that i
 
 @dataclass(frozen=True, eq=False)
 class SurfaceGrid:
-    """Cells ``held`` bool [X, Y, Z] of side ``cell_m`` from ``origin_m``: which hold surface."""
+    """Cells ``occupied`` bool [X, Y, Z] of side ``cell_m`` from ``origin_m``: which hold surface."""
 
-    held: np.ndarray
+    occupied: np.ndarray
     origin_m: np.ndarray
     cell_m: float
 
@@ -47,7 +47,7 @@ class SurfaceGrid:
         return self.origin_m + (cells + 0.5) * self.cell_m
 
 
-def voxelise_surface(solid: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> SurfaceGrid:
+def voxelise_surface(geometry: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> SurfaceGrid:
     """Return which cells of a box hold surface of a solid in metres.
 
     Raises:
@@ -57,14 +57,14 @@ def voxelise_surface(solid: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> 
     cell_m = max(CELL_M, float((np.prod(size + 2 * PADDING_CELLS * CELL_M) / MAX_CELLS) ** (1 / 3)))
     shape = np.ceil(size / cell_m).astype(int) + 2 * PADDING_CELLS + 1
     origin = np.asarray(low_m - PADDING_CELLS * cell_m, np.float64)
-    held = np.zeros(tuple(shape), np.bool_)
-    if isinstance(solid, Mesh):
-        if _sample_count(solid.vertices, solid.faces, cell_m) > MAX_SAMPLES:
+    occupied = np.zeros(tuple(shape), np.bool_)
+    if isinstance(geometry, Mesh):
+        if _sample_count(geometry.vertices, geometry.faces, cell_m) > MAX_SAMPLES:
             raise ValueError("its triangles have far more surface than a building")
-        _mark_triangles(solid.vertices, solid.faces, origin, cell_m, held)
+        _mark_triangles(geometry.vertices, geometry.faces, origin, cell_m, occupied)
     else:
-        _mark_points(solid.points, origin, cell_m, held)
-    return SurfaceGrid(held, origin, cell_m)
+        _mark_points(geometry.points, origin, cell_m, occupied)
+    return SurfaceGrid(occupied, origin, cell_m)
 
 
 @njit
@@ -90,16 +90,16 @@ def _sample_count(vertices, faces, cell_m):
 
 
 @njit
-def _mark_cell(place, origin, cell_m, held):
+def _mark_cell(place, origin, cell_m, occupied):
     i = int(np.floor((place[0] - origin[0]) / cell_m))
     j = int(np.floor((place[1] - origin[1]) / cell_m))
     k = int(np.floor((place[2] - origin[2]) / cell_m))
-    if 0 <= i < held.shape[0] and 0 <= j < held.shape[1] and 0 <= k < held.shape[2]:
-        held[i, j, k] = True
+    if 0 <= i < occupied.shape[0] and 0 <= j < occupied.shape[1] and 0 <= k < occupied.shape[2]:
+        occupied[i, j, k] = True
 
 
 @njit
-def _mark_triangles(vertices, faces, origin, cell_m, held):
+def _mark_triangles(vertices, faces, origin, cell_m, occupied):
     place = np.empty(3)
     for f in range(len(faces)):
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
@@ -109,13 +109,13 @@ def _mark_triangles(vertices, faces, origin, cell_m, held):
                 s, t = i / parts, j / parts
                 for axis in range(3):
                     place[axis] = (1 - s - t) * a[axis] + s * b[axis] + t * c[axis]
-                _mark_cell(place, origin, cell_m, held)
+                _mark_cell(place, origin, cell_m, occupied)
 
 
 @njit
-def _mark_points(points, origin, cell_m, held):
+def _mark_points(points, origin, cell_m, occupied):
     for n in range(len(points)):
-        _mark_cell(points[n], origin, cell_m, held)
+        _mark_cell(points[n], origin, cell_m, occupied)
 
 
 def backface_share(mesh: Mesh, camera: Camera, camera_to_world: np.ndarray) -> float:
@@ -148,14 +148,14 @@ def find_interior(grid: SurfaceGrid, inside_m: np.ndarray | None = None) -> Inte
         grid: z up.
         inside_m: a place inside that the user names; only the space around it is taken.
     """
-    down, side, up, drop = enclosure_votes(grid.held)
-    side_least, both_least = SIDE_VOTES, BOTH_VOTES
+    down, side, up, drop = enclosure_votes(grid.occupied)
+    min_side_votes, min_both_votes = SIDE_VOTES, BOTH_VOTES
     if inside_m is not None:
-        side_least, both_least = HINTED_SIDE_VOTES, HINTED_BOTH_VOTES
-    enclosed = (side >= side_least) | (side + up >= both_least)
-    inside = ~grid.held & (drop > 0) & (down >= DOWN_VOTES) & enclosed
+        min_side_votes, min_both_votes = HINTED_SIDE_VOTES, HINTED_BOTH_VOTES
+    enclosed = (side >= min_side_votes) | (side + up >= min_both_votes)
+    inside = ~grid.occupied & (drop > 0) & (down >= DOWN_VOTES) & enclosed
     near = ndimage.binary_dilation(
-        grid.held, ndimage.generate_binary_structure(3, 2), iterations=CLEAR_CELLS
+        grid.occupied, ndimage.generate_binary_structure(3, 2), iterations=CLEAR_CELLS
     )
     parts, count = label_components(inside & np.logical_not(near), corners=False)
     chosen = _standing_spaces(parts, count, grid.cell_m)
@@ -193,12 +193,12 @@ def _space_around(parts: np.ndarray, grid: SurfaceGrid, inside_m: np.ndarray) ->
 
 
 @njit
-def _sweep_direction(held, dx, dy, dz, hit):
+def _sweep_direction(occupied, dx, dy, dz, hit):
     """Fill ``hit`` with whether a walk by (dx, dy, dz) from each cell meets a held one.
 
     A step aslant in one plane does not slip between two held cells that meet at their edges.
     """
-    nx, ny, nz = held.shape
+    nx, ny, nz = occupied.shape
     for step_x in range(nx):
         x = nx - 1 - step_x if dx > 0 else step_x
         for step_y in range(ny):
@@ -209,49 +209,49 @@ def _sweep_direction(held, dx, dy, dz, hit):
                 if a < 0 or b < 0 or c < 0 or a >= nx or b >= ny or c >= nz:
                     hit[x, y, z] = False
                     continue
-                found = held[a, b, c] or hit[a, b, c]
+                found = occupied[a, b, c] or hit[a, b, c]
                 if not found and abs(dx) + abs(dy) + abs(dz) == 2:
                     if dz == 0:
-                        found = held[a, y, z] and held[x, b, z]
+                        found = occupied[a, y, z] and occupied[x, b, z]
                     elif dy == 0:
-                        found = held[a, y, z] and held[x, y, c]
+                        found = occupied[a, y, z] and occupied[x, y, c]
                     else:
-                        found = held[x, b, z] and held[x, y, c]
+                        found = occupied[x, b, z] and occupied[x, y, c]
                 hit[x, y, z] = found
 
 
 @njit
-def enclosure_votes(held):
+def enclosure_votes(occupied):
     """Return how many of the 9, 8 and 9 directions down, level and up meet surface, and the drop.
 
     Returns:
         uint8 [X, Y, Z] each; int16 [X, Y, Z], how many cells below the next surface lies, 0 where
         there is none.
     """
-    down, side = np.zeros(held.shape, np.uint8), np.zeros(held.shape, np.uint8)
-    up, hit = np.zeros(held.shape, np.uint8), np.zeros(held.shape, np.bool_)
+    down, side = np.zeros(occupied.shape, np.uint8), np.zeros(occupied.shape, np.uint8)
+    up, hit = np.zeros(occupied.shape, np.uint8), np.zeros(occupied.shape, np.bool_)
     for dx in range(-1, 2):
         for dy in range(-1, 2):
             for dz in range(-1, 2):
                 if dx == 0 and dy == 0 and dz == 0:
                     continue
-                _sweep_direction(held, dx, dy, dz, hit)
+                _sweep_direction(occupied, dx, dy, dz, hit)
                 if dz < 0:
                     down += hit
                 elif dz == 0:
                     side += hit
                 else:
                     up += hit
-    return down, side, up, _drops_to_floor(held)
+    return down, side, up, _drops_to_floor(occupied)
 
 
 @njit
-def _drops_to_floor(held):
-    drop = np.zeros(held.shape, np.int16)
-    for x in range(held.shape[0]):
-        for y in range(held.shape[1]):
-            for z in range(1, held.shape[2]):
-                if held[x, y, z - 1]:
+def _drops_to_floor(occupied):
+    drop = np.zeros(occupied.shape, np.int16)
+    for x in range(occupied.shape[0]):
+        for y in range(occupied.shape[1]):
+            for z in range(1, occupied.shape[2]):
+                if occupied[x, y, z - 1]:
                     drop[x, y, z] = 1
                 elif drop[x, y, z - 1] > 0:
                     drop[x, y, z] = drop[x, y, z - 1] + 1

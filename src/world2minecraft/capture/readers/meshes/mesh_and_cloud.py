@@ -57,7 +57,7 @@ class Mesh:
             put(self, "labels", checks.array("labels", self.labels, np.uint8, (faces,)))
 
     @property
-    def places(self) -> np.ndarray:
+    def positions(self) -> np.ndarray:
         """The vertices, float32 [V, 3]."""
         return self.vertices
 
@@ -93,7 +93,7 @@ class PointCloud:
             put(self, "labels", checks.array("labels", self.labels, np.uint8, (count,)))
 
     @property
-    def places(self) -> np.ndarray:
+    def positions(self) -> np.ndarray:
         """The points, float32 [N, 3]."""
         return self.points
 
@@ -114,13 +114,13 @@ Geometry = Mesh | PointCloud
 class LoadedGeometry:
     """A solid as its file gives it, and what the file or its format states of it.
 
-    A place in the file is one of ``solid`` plus ``offset`` (float64 [3]), so that surveyed
+    A place in the file is one of ``geometry`` plus ``offset`` (float64 [3]), so that surveyed
     coordinates of millions of metres keep their millimetres. ``unit_m`` is metres per unit where
     that is stated; ``usual_up`` is the axis that the format takes for up, ``up_stated`` says that
     it is more than a habit.
     """
 
-    solid: Geometry
+    geometry: Geometry
     kind: str
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     unit_m: float | None = None
@@ -130,11 +130,11 @@ class LoadedGeometry:
     read: int = 0  # Points of the file, before they were thinned.
 
 
-def _transform_points(places: np.ndarray, transform: np.ndarray) -> np.ndarray:
+def _transform_points(positions: np.ndarray, transform: np.ndarray) -> np.ndarray:
     """Return float32 places carried in float64, in blocks that need little memory."""
-    result = np.empty_like(places)
+    result = np.empty_like(positions)
     turn, shift = transform[:3, :3].T, transform[:3, 3]
-    for start in range(0, len(places), 1 << 18):
+    for start in range(0, len(positions), 1 << 18):
         block = slice(start, start + (1 << 18))
-        result[block] = places[block].astype(np.float64) @ turn + shift
+        result[block] = positions[block].astype(np.float64) @ turn + shift
     return result

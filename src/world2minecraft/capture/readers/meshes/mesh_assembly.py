@@ -37,13 +37,13 @@ class MeshPart:
 
 def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
     """Refuse what is too large. Raises LimitError."""
-    for name, count, most in (
+    for name, count, maximum in (
         ("vertices", vertices, MAX_VERTICES),
         ("triangles", faces, MAX_FACES),
     ):
-        if count > most:
+        if count > maximum:
             raise LimitError(
-                place, f"has {count:,} {name}; at most {most:,} are read: export it coarser"
+                place, f"has {count:,} {name}; at most {maximum:,} are read: export it coarser"
             )
 
 

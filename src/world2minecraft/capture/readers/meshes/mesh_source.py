@@ -123,50 +123,50 @@ class ViewRenderer:
     """Renders views of one solid and keeps the last ones; ``name`` is that of its file."""
 
     name: str
-    solid: Mesh | Surfels
+    geometry: Mesh | Surfels
     camera: Camera
     camera_to_world: np.ndarray
     blocks: Blocks
     by_class: bool = False  # Colours of the classes, for what has classes but no colours.
-    _kept: "OrderedDict[int, RenderedView]" = field(default_factory=OrderedDict)
+    _cache: "OrderedDict[int, RenderedView]" = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
-    def seen(self, view: int) -> RenderedView:
+    def render(self, view: int) -> RenderedView:
         """Return depth, colour and labels of a view, all [H, W]."""
         with self._lock:
-            if view in self._kept:
-                self._kept.move_to_end(view)
-                return self._kept[view]
-            found = self._rendered(view)
+            if view in self._cache:
+                self._cache.move_to_end(view)
+                return self._cache[view]
+            found = self._render(view)
             if self.by_class:
                 colours = np.full((256, 3), GREY, np.uint8)
                 colours[: len(CLASS_COLOURS)] = CLASS_COLOURS
                 found = found[0], colours[found[2]], found[2]
-            self._kept[view] = found
-            most = max(2, MAX_CACHE_BYTES // sum(image.nbytes for image in found))
-            while len(self._kept) > most:
-                self._kept.popitem(last=False)
+            self._cache[view] = found
+            max_views = max(2, MAX_CACHE_BYTES // sum(image.nbytes for image in found))
+            while len(self._cache) > max_views:
+                self._cache.popitem(last=False)
             return found
 
-    def _rendered(self, view: int) -> RenderedView:
+    def _render(self, view: int) -> RenderedView:
         world_to_camera = invert_rigid(self.camera_to_world[view])
         runs = self.blocks.runs(self.camera, world_to_camera)
-        if isinstance(self.solid, Mesh):
-            return render_mesh(self.solid, self.camera, world_to_camera, runs)
-        return render_surfels(self.solid, self.camera, world_to_camera, runs)
+        if isinstance(self.geometry, Mesh):
+            return render_mesh(self.geometry, self.camera, world_to_camera, runs)
+        return render_surfels(self.geometry, self.camera, world_to_camera, runs)
 
 
 @dataclass(frozen=True, eq=False)
 class RenderedImage:
     """One image of one view: ``kind`` is colour, depth or labels. An ``ImageSource``."""
 
-    looker: ViewRenderer
+    renderer: ViewRenderer
     view: int
     kind: str
 
     def __str__(self) -> str:
         """The file's name and the view, for messages."""
-        return f"{self.looker.name}/view {self.view} ({self.kind})"
+        return f"{self.renderer.name}/view {self.view} ({self.kind})"
 
     @property
     def stem(self) -> str:
@@ -180,7 +180,7 @@ class RenderedImage:
 
     def header(self) -> ImageHeader:
         """Return size and mode; nothing is rendered."""
-        camera = self.looker.camera
+        camera = self.renderer.camera
         return ImageHeader(camera.width_px, camera.height_px, MODES[self.kind])
 
     def check_whole(self) -> None:
@@ -188,11 +188,11 @@ class RenderedImage:
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3]."""
-        return self.looker.seen(self.view)[1]
+        return self.renderer.render(self.view)[1]
 
     def raw(self) -> np.ndarray:
         """Return float32 metres, or uint8 class ids."""
-        depth, _, labels = self.looker.seen(self.view)
+        depth, _, labels = self.renderer.render(self.view)
         return depth if self.kind == "depth" else labels
 
 
@@ -236,31 +236,31 @@ class MeshSource:
 def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
     """Read a file; the same file is asked for twice, to be judged and to be opened."""
     loaded = load_geometry(place)
-    if not len(loaded.solid.places) or (
-        isinstance(loaded.solid, Mesh) and not len(loaded.solid.faces)
+    if not len(loaded.geometry.positions) or (
+        isinstance(loaded.geometry, Mesh) and not len(loaded.geometry.faces)
     ):
         raise CaptureError(place, "holds no surface at all: no triangles and no points")
-    file_to_world, said = estimate_world_frame(place, loaded, options)
+    file_to_world, frame_note = estimate_world_frame(place, loaded, options)
     inside_m = None
     if options.inside is not None:
         inside_m = apply(file_to_world, np.array(options.inside) - loaded.offset)
-    solid = loaded.solid.moved(file_to_world)
-    poses, spaces = _choose_poses(place, solid, inside_m)
-    if isinstance(solid, Mesh):
-        looked_at, blocks = sort_mesh_into_blocks(solid)
+    geometry = loaded.geometry.moved(file_to_world)
+    poses, spaces = _choose_poses(place, geometry, inside_m)
+    if isinstance(geometry, Mesh):
+        sorted_geometry, blocks = sort_mesh_into_blocks(geometry)
     else:
-        looked_at, blocks = sort_surfels_into_blocks(estimate_surfels(solid))
-    by_class = solid.labels is not None and not solid.coloured
-    looker = ViewRenderer(place.name, looked_at, CAMERA, poses, blocks, by_class)
+        sorted_geometry, blocks = sort_surfels_into_blocks(estimate_surfels(geometry))
+    by_class = geometry.labels is not None and not geometry.coloured
+    renderer = ViewRenderer(place.name, sorted_geometry, CAMERA, poses, blocks, by_class)
     notes = (
-        f"{_size_note(loaded)}; {said}",
+        f"{_size_note(loaded)}; {frame_note}",
         f"looked at from {len(poses)} places in {spaces} closed space{'s' * (spaces > 1)}",
         *loaded.notes,
     )
     return Capture(
         place,
         f"solid ({loaded.kind})",
-        tuple(_frame(looker, view, solid) for view in range(len(poses))),
+        tuple(_frame(renderer, view, geometry) for view in range(len(poses))),
         depth_unit="m",
         notes=notes,
         depth_kind="exact",
@@ -272,43 +272,45 @@ def estimate_world_frame(
     place: AnyPath, loaded: LoadedGeometry, options: ScanOptions
 ) -> tuple[np.ndarray, str]:
     """Return the 4x4 from the solid's own frame to metres with z up, and what to tell of it."""
-    samples = sample_surface(loaded.solid)
+    samples = sample_surface(loaded.geometry)
     if not len(samples.points):
         raise CaptureError(place, "holds no surface at all: its triangles have no area")
     stance = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
     upright = samples.points @ stance.turn.T
     low, high = np.quantile(upright, [0.002, 0.998], axis=0)
-    unit_m, unit_said = find_unit(high - low, loaded.unit_m, options.unit)
+    unit_m, unit_note = find_unit(high - low, loaded.unit_m, options.unit)
     size = (high - low) * unit_m
     if (size < MIN_SIDES_M).any() or (size > MAX_SIDE_M).any():
         raise CaptureError(
             place,
-            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_said}; {stance.told}), "
+            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_note}; {stance.told}), "
             f"which is no room but an object or a landscape; {UNIT_ADVICE}",
         )
     file_to_world = np.eye(4)
     file_to_world[:3, :3] = stance.turn * unit_m
     middle = (low + high) / 2 * unit_m
     file_to_world[:3, 3] = -np.array([middle[0], middle[1], low[2] * unit_m])
-    told = f"{size[0]:.1f} x {size[1]:.1f} m and {size[2]:.1f} m high; {unit_said}; {stance.told}"
-    return file_to_world, told
+    size_note = (
+        f"{size[0]:.1f} x {size[1]:.1f} m and {size[2]:.1f} m high; {unit_note}; {stance.told}"
+    )
+    return file_to_world, size_note
 
 
 def _choose_poses(
-    place: AnyPath, solid: Geometry, inside_m: np.ndarray | None
+    place: AnyPath, geometry: Geometry, inside_m: np.ndarray | None
 ) -> tuple[np.ndarray, int]:
     """Return the poses of the views and how many spaces they look at."""
-    low, high = sample_surface(solid).box()
+    low, high = sample_surface(geometry).box()
     try:
-        grid = voxelise_surface(solid, low - MARGIN_M, high + MARGIN_M)
+        grid = voxelise_surface(geometry, low - MARGIN_M, high + MARGIN_M)
     except ValueError as error:
         raise CaptureError(place, str(error)) from error
     interior = find_interior(grid, inside_m)
     if interior is None:
         raise CaptureError(place, _no_interior_reason(inside_m))
     poses = choose_views(grid, interior)
-    if isinstance(solid, Mesh) and inside_m is None:
-        share = backface_share(solid, CAMERA, poses)
+    if isinstance(geometry, Mesh) and inside_m is None:
+        share = backface_share(geometry, CAMERA, poses)
         if share > MAX_BACKFACE_SHARE:
             raise CaptureError(
                 place,
@@ -331,25 +333,29 @@ def _no_interior_reason(inside_m: np.ndarray | None) -> str:
     )
 
 
-def _frame(looker: ViewRenderer, view: int, solid: Geometry) -> FrameFiles:
-    camera, coloured = looker.camera, solid.coloured or looker.by_class
+def _frame(renderer: ViewRenderer, view: int, geometry: Geometry) -> FrameFiles:
+    camera, coloured = renderer.camera, geometry.coloured or renderer.by_class
     return FrameFiles(
         view_name(view),
-        looker.camera_to_world[view],
-        RenderedImage(looker, view, "colour") if coloured else None,
+        renderer.camera_to_world[view],
+        RenderedImage(renderer, view, "colour") if coloured else None,
         camera if coloured else None,
-        RenderedImage(looker, view, "depth"),
+        RenderedImage(renderer, view, "depth"),
         camera,
-        labels_path=RenderedImage(looker, view, "labels") if solid.labels is not None else None,
+        labels_path=RenderedImage(renderer, view, "labels")
+        if geometry.labels is not None
+        else None,
     )
 
 
 def _size_note(loaded: LoadedGeometry) -> str:
-    if isinstance(loaded.solid, Mesh):
-        return f"{loaded.kind} mesh of {len(loaded.solid.faces):,} triangles"
+    if isinstance(loaded.geometry, Mesh):
+        return f"{loaded.kind} mesh of {len(loaded.geometry.faces):,} triangles"
     thinned = (
-        f", thinned to {len(loaded.solid.points):,}"
-        if loaded.read > len(loaded.solid.points)
+        f", thinned to {len(loaded.geometry.points):,}"
+        if loaded.read > len(loaded.geometry.points)
         else ""
     )
-    return f"{loaded.kind} cloud of {max(loaded.read, len(loaded.solid.points)):,} points{thinned}"
+    return (
+        f"{loaded.kind} cloud of {max(loaded.read, len(loaded.geometry.points)):,} points{thinned}"
+    )

@@ -481,26 +481,26 @@ def _vertex_attributes(
     place: AnyPath, file: PlyFile, twin: PlyFile | None
 ) -> tuple[np.ndarray | None, np.ndarray | None, str]:
     """Return colours and labels of the vertices, and what to tell."""
-    labels, told = _labels(place, file.vertex)
+    labels, note = _labels(place, file.vertex)
     colour = colours_of_columns(file.vertex)
     if twin is not None:
         own_colours = place.stem.endswith(".labels")
         colour = colours_of_columns(twin.vertex) if own_colours else colour
         if labels is None:
-            labels, told = _labels(place, twin.vertex)
+            labels, note = _labels(place, twin.vertex)
     elif place.stem.endswith(".labels"):
         colour = None  # Those of the classes, which are nothing's own.
-    return colour, labels, told
+    return colour, labels, note
 
 
 def _load_mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
-    colour, labels, told = _vertex_attributes(place, file, twin)
+    colour, labels, note = _vertex_attributes(place, file, twin)
     face_labels = None
     if labels is not None:
         face_labels = _majority_label(labels[file.triangles])
     else:
         own, more = _labels(place, file.face)
-        told = told or more
+        note = note or more
         face_labels = None if own is None else own[file.triangle_face]
     vertices, triangles = _vertex_positions(file), file.triangles
     if colour is None and (face_colour := colours_of_columns(file.face)) is not None:
@@ -512,7 +512,7 @@ def _load_mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeo
     mesh, offset = join_parts(
         place, [MeshPart(vertices, triangles, colour, picture, uv, label=label)]
     )
-    return LoadedGeometry(mesh, "PLY", offset, notes=(told,) if told else ())
+    return LoadedGeometry(mesh, "PLY", offset, notes=(note,) if note else ())
 
 
 def _majority_label(corners: np.ndarray) -> np.ndarray:
@@ -537,14 +537,14 @@ def _picture(place: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndar
 
 
 def _load_cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
-    colour, labels, told = _vertex_attributes(place, file, twin)
+    colour, labels, note = _vertex_attributes(place, file, twin)
     thinner = VoxelDownsampler()
     count = len(file.vertex["x"])
-    solid = np.ones(count, bool)
+    opaque = np.ones(count, bool)
     if "opacity" in file.vertex and "f_dc_0" in file.vertex:  # Gaussian splats: the firm ones.
-        solid = np.asarray(file.vertex["opacity"]) > 0
+        opaque = np.asarray(file.vertex["opacity"]) > 0
     for start in range(0, count, CHUNK):
-        rows = np.flatnonzero(solid[start : start + CHUNK]) + start
+        rows = np.flatnonzero(opaque[start : start + CHUNK]) + start
         points = np.stack([file.vertex[axis][rows] for axis in "xyz"], axis=1).astype(np.float64)
         thinner.add(
             points,
@@ -556,5 +556,5 @@ def _load_cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGe
             place, "has places that are no numbers (NaN, infinity): export it again"
         )
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
-    notes = (told,) if told else ()
+    notes = (note,) if note else ()
     return LoadedGeometry(thinner.cloud(), "PLY", offset, notes=notes, read=thinner.read)

@@ -25,9 +25,9 @@ class SurfaceSamples:
         return low, high
 
 
-def sample_surface(solid: Geometry) -> SurfaceSamples:
+def sample_surface(geometry: Geometry) -> SurfaceSamples:
     """Return at most ``MAX_SAMPLES`` samples of a solid, the same for the same solid."""
-    return _sample_mesh(solid) if isinstance(solid, Mesh) else _sample_cloud(solid)
+    return _sample_mesh(geometry) if isinstance(geometry, Mesh) else _sample_cloud(geometry)
 
 
 def _sample_mesh(mesh: Mesh) -> SurfaceSamples:

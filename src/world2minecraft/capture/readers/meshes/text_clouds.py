@@ -57,10 +57,10 @@ def load_text(place: AnyPath) -> LoadedGeometry:
         DamagedFileError: it holds no rows of numbers. LimitError: it is too large.
     """
     thinner = VoxelDownsampler()
-    told = add_text(place, thinner)
+    note = add_text(place, thinner)
     if thinner.offset is None:
         raise DamagedFileError(place, "holds no points: a line must begin with x, y and z")
-    notes = (told,) if told else ()
+    notes = (note,) if note else ()
     return LoadedGeometry(thinner.cloud(), "text", thinner.offset, notes=notes, read=thinner.read)
 
 
@@ -71,7 +71,7 @@ def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None
     """
     names: list[str] | None = None
     colour_at: int | None = None
-    width, told = 0, ""
+    width, note = 0, ""
     for lines in _blocks(place):
         names, block = (names, lines) if width else _column_names(place, lines)
         rows = _parse_rows(place, block, width or _width(place, block))
@@ -87,14 +87,14 @@ def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None
             colour = colours_of_columns(columns)
             column = next((name for name in LABEL_NAMES if name in columns), None)
             if column and label is None:
-                labels, told = classes_of_label_ids(place, column, columns[column])
+                labels, note = classes_of_label_ids(place, column, columns[column])
         else:
             points = rows[:, :3]
             colour = None if colour_at is None else _to_colours(rows[:, colour_at : colour_at + 3])
         thinner.add(points, colour, labels)
         if thinner.read > MAX_POINTS:
             raise LimitError(place, f"has over {MAX_POINTS:,} points; thin it")
-    return told
+    return note
 
 
 def class_of_file(name: str) -> int:

@@ -60,8 +60,8 @@ def load_scene(place: AnyPath) -> LoadedGeometry:
     except InputError:
         raise
     except Exception as error:  # What a hostile file makes trimesh raise has no common root.
-        said = reason_of(error)
-        reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({said}); export it again"
+        reason_text = reason_of(error)
+        reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({reason_text}); export it again"
         raise DamagedFileError(place, reason) from error
     mesh, offset = join_parts(place, parts)
     notes = () if mesh.coloured else ("it has no colours: export it with its textures beside it",)
@@ -146,7 +146,7 @@ def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
         )
     try:
         tree = json.loads(text)
-        asked = tree.get("extensionsRequired", []) + tree.get("extensionsUsed", [])
+        extensions = tree.get("extensionsRequired", []) + tree.get("extensionsUsed", [])
         counts = [int(row["count"]) for row in tree.get("accessors", [])]
         nodes = len(tree.get("nodes", []))
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
@@ -154,7 +154,7 @@ def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
             place, "is no glTF: its tree cannot be read; export it again"
         ) from error
     for name in UNSUPPORTED_EXTENSIONS:
-        if name in asked:
+        if name in extensions:
             raise DamagedFileError(
                 place, f"is packed with {name}, which is not read; export it uncompressed"
             )

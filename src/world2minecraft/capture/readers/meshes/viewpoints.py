@@ -33,7 +33,7 @@ def choose_views(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
     poses[:, :3, :3] = np.tile(turns, (len(places), 1, 1))
     poses[:, :3, 3] = np.repeat(places, len(turns), axis=0)
     sides = _visible_sides(grid, poses)
-    return poses[_select_greedily(sides, grid.held.size * 6)]
+    return poses[_select_greedily(sides, grid.occupied.size * 6)]
 
 
 def _candidate_positions(grid: SurfaceGrid, interior: Interior) -> np.ndarray:
@@ -77,14 +77,14 @@ def _visible_sides(grid: SurfaceGrid, poses: np.ndarray) -> np.ndarray:
     found = np.empty((len(poses), len(rays)), np.int32)
     starts = (poses[:, :3, 3] - grid.origin_m) / grid.cell_m
     turns = np.ascontiguousarray(poses[:, :3, :3])
-    _cast_rays(grid.held, starts, turns, rays, REACH_M / grid.cell_m, found)
+    _cast_rays(grid.occupied, starts, turns, rays, REACH_M / grid.cell_m, found)
     found.sort(axis=1)
     found[:, 1:][found[:, 1:] == found[:, :-1]] = -1  # Each side counts once a view.
     return found
 
 
 @njit
-def _cast_rays(held, starts, turns, rays, reach, found):
+def _cast_rays(occupied, starts, turns, rays, reach, found):
     """Walk each ray cell by cell to the first held one; all lengths are in cells."""
     cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
     due, every = np.empty(3), np.empty(3)
@@ -109,11 +109,11 @@ def _cast_rays(held, starts, turns, rays, reach, found):
                 if due[a] > reach:
                     break
                 cell[a] += step[a]
-                if cell[a] < 0 or cell[a] >= held.shape[a]:
+                if cell[a] < 0 or cell[a] >= occupied.shape[a]:
                     break
                 due[a] += every[a]
-                if held[cell[0], cell[1], cell[2]]:
-                    index = (cell[0] * held.shape[1] + cell[1]) * held.shape[2] + cell[2]
+                if occupied[cell[0], cell[1], cell[2]]:
+                    index = (cell[0] * occupied.shape[1] + cell[1]) * occupied.shape[2] + cell[2]
                     found[n, r] = index * 6 + 2 * a + (1 if step[a] > 0 else 0)
                     break
 
@@ -137,12 +137,12 @@ def _select_greedily(sides: np.ndarray, count: int) -> np.ndarray:
 
 @njit
 def _best_view(sides, seen, worth):
-    best, most = 0, -1.0
+    best, best_gain = 0, -1.0
     for n in range(len(sides)):
         gain = 0.0
         for side in sides[n]:
             if side >= 0:
                 gain += worth[seen[side]]
-        if gain > most:
-            best, most = n, gain
-    return best, most
+        if gain > best_gain:
+            best, best_gain = n, gain
+    return best, best_gain

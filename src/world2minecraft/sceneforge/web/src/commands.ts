@@ -1,5 +1,5 @@
-// Made from the commands of edit/scene and the queries of forge by
-// `python -m world2minecraft.forge.typescript`; do not edit.
+// Made from the commands of editing.scene and the queries of sceneforge by
+// `python -m world2minecraft.sceneforge.typescript`; do not edit.
 
 /** Give cells one class; 0 erases them. */
 export interface SetCells {
