@@ -93,7 +93,7 @@ def scene_tables(frames: Iterable[PredictedFrame]) -> dict[str, np.ndarray]:
     """Return the monoscene counts of each scene, int64 [12, 12] by name."""
     counts: dict[str, ProtocolCounts] = {}
     for one in frames:
-        scored = count_frame(PROTOCOLS["monoscene"], one.said, one.known)
+        scored = count_frame(PROTOCOLS["monoscene"], one.predicted, one.known)
         counts[one.scene_id] = counts.get(one.scene_id, ProtocolCounts()) + scored
     return {name: one.classes.table for name, one in counts.items()}
 

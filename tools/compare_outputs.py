@@ -79,7 +79,9 @@ def main() -> int:
         tell(f"skipped  {name}: {why}")
     tell(
         f"\n{len(chosen) - bad} of {len(chosen)} steps equal, {bad} not, {len(skipped)} skipped; "
-        f"base {middle - began:.0f} s, tree {end - middle:.0f} s, with {words.jobs} jobs"
+        f"base {middle - began:.0f} s, tree {end - middle:.0f} s with {words.jobs} jobs, of "
+        f"processors {sum(before[one.name].cpu_s for one in chosen):.0f} s and "
+        f"{sum(after[one.name].cpu_s for one in chosen):.0f} s"
     )
     return int(bad > 0)
 
@@ -100,7 +102,7 @@ def judged(
 ) -> bool:
     """Tell how a step came out; return whether it differs."""
     found = list(_found(step, base, tree, before[step.name], after[step.name]))
-    seconds = f"{before[step.name].seconds:.0f} s, {after[step.name].seconds:.0f} s"
+    seconds = f"{before[step.name].cpu_s:.0f} s, {after[step.name].cpu_s:.0f} s of processors"
     files = sum(len(one) for one in _files(base, step).values())
     tell(f"{'DIFFERS' if found else 'ok':9}{step.name} ({files} files; {seconds})")
     for line in found[:show]:
@@ -157,7 +159,8 @@ def _files(side: Side, step: Step) -> dict[str, dict[str, Path]]:
 
 def _teller(side: str) -> Callable[[Step, Done | None], None]:
     def told(step: Step, done: Done | None) -> None:
-        tell(f"{side}: {step.name} {'kept' if done is None else f'{done.seconds:.1f} s'}")
+        took = f"{done.seconds:.0f} s, {done.cpu_s:.0f} s of processors" if done else "kept"
+        tell(f"{side}: {step.name} {took}")
 
     return told
 

@@ -94,7 +94,9 @@ def posed(tmp_path, room, poses, depth=True, change=lambda frame, index: frame, 
 
 def level_of(summary, about):
     """The level of the doubt about something; None where there is none."""
-    return next((doubt.level for doubt in summary.doubts if doubt.about == about), None)
+    return next(
+        (diagnostic.level for diagnostic in summary.diagnostics if diagnostic.about == about), None
+    )
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +106,7 @@ def whole(box_room, tmp_path_factory):
 
 def test_a_good_scan_has_no_warning(whole):
     assert whole.route.kind == "rgbd"
-    assert [doubt.level for doubt in whole.doubts] == ["ok"] * len(whole.doubts)
+    assert [diagnostic.level for diagnostic in whole.diagnostics] == ["ok"] * len(whole.diagnostics)
     np.testing.assert_allclose(sorted(whole.room_size_m), sorted((4.2, 3.1, 2.6)), atol=0.05)
 
 
@@ -267,7 +269,7 @@ def test_gaps_floor_and_ceiling(tmp_path, box_room):
     one_way = posed(tmp_path / "a", box_room, north, depth=False)
     assert level_of(one_way, "gap") == level_of(one_way, "no floor") == "warn"
     assert level_of(one_way, "no ceiling") == "warn"
-    text = next(doubt.text for doubt in one_way.doubts if doubt.about == "gap")
+    text = next(diagnostic.text for diagnostic in one_way.diagnostics if diagnostic.about == "gap")
     assert "south" in text
     assert "north," not in text
     assert level_of(posed(tmp_path / "b", box_room, box_room.poses(24), depth=False), "gap") == "ok"

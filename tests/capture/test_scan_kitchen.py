@@ -85,7 +85,7 @@ def test_the_summary_of_the_kitchen(shared_data):
     summary = describe_capture(shared_data / "redkitchen_rgbd")
     assert (summary.source, summary.usable, summary.lost_poses) == ("seven_scenes", 40, 0)
     assert summary.depth_size_px == summary.colour_size_px == (640, 480)
-    assert "one stated matrix" in " ".join(doubt.text for doubt in summary.doubts)
+    assert "one stated matrix" in " ".join(diagnostic.text for diagnostic in summary.diagnostics)
 
 
 def test_a_folder_of_another_kind_is_refused(shared_data):

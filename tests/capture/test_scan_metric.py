@@ -46,7 +46,7 @@ def test_a_box_room_is_measured_in_any_unit(box_room, factor):
     assert found.scale * factor == pytest.approx(1, rel=0.08)
     assert 0.02 < found.sigma < 0.15
     assert found.sources[0] == "the cameras' height"
-    assert "scale estimated from the cameras' height (1." in found.told[0]
+    assert "scale estimated from the cameras' height (1." in found.notes[0]
 
 
 @pytest.mark.parametrize(("trial", "factor"), [("noise-501", 0.31), ("coverage-512", 4.7)])
@@ -114,19 +114,19 @@ def test_a_known_length_gives_the_scale(box_surface, name, length_m, within):
     found = estimate_scale(surface, [parse_known_length(name, length_m)])
     assert found.scale * 0.37 == pytest.approx(1, rel=within)
     assert found.sigma <= 0.03
-    assert f"given ({length_m:g} m)" in found.told[0]
+    assert f"given ({length_m:g} m)" in found.notes[0]
 
 
 def test_the_face_that_a_known_length_means_is_told(box_surface):
-    told = estimate_scale(box_surface, [parse_known_length("table height", 0.72)]).told
-    assert "the table height given (0.72 m), a level face of" in told[0]
+    notes = estimate_scale(box_surface, [parse_known_length("table height", 0.72)]).notes
+    assert "the table height given (0.72 m), a level face of" in notes[0]
 
 
 def test_a_known_length_holds_where_habits_do_not(box_surface):
     """A doll's house, or a hall: the user's word counts, and the cameras' height is told."""
     found = estimate_scale(box_surface, [parse_known_length("room height", 5.2)])
     assert found.scale == pytest.approx(2, rel=0.02)
-    assert any("the cameras were held" in text for text in found.told)
+    assert any("the cameras were held" in text for text in found.notes)
 
 
 def test_lengths_that_agree_make_it_surer_and_one_that_does_not_is_told(box_surface):
@@ -138,7 +138,7 @@ def test_lengths_that_agree_make_it_surer_and_one_that_does_not_is_told(box_surf
     assert both.sources == ("ceiling height", "room length")
     odd = estimate_scale(box_surface, [ceiling, side, parse_known_length("room width", 3.6)])
     assert odd.scale == pytest.approx(1, rel=0.02)
-    assert any("room width (3.6 m) contradicts the other lengths by 16 %" in t for t in odd.told)
+    assert any("room width (3.6 m) contradicts the other lengths by 16 %" in t for t in odd.notes)
 
 
 def test_two_clicked_points(box_room):
@@ -162,7 +162,7 @@ def test_points_far_apart_in_one_image_give_the_scale(box_room, box_surface):
     points = KnownDistance("000000", (20, 60), "000000", (140, 60), true)
     found = estimate_scale(small, [points.known(shrunk(views, 0.25))])
     assert found.scale == pytest.approx(4, rel=1e-6)
-    assert "distance given" in found.told[0]
+    assert "distance given" in found.notes[0]
 
 
 def test_points_without_depth_are_refused_in_words(box_room):

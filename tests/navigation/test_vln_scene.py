@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraft.physics.any_angle_paths import lattice_of, straight_m
+from world2minecraft.minecraft.physics.any_angle_paths import build_lattice, straight_m
 from world2minecraft.navigation.landmarks import colour_name
 from world2minecraft.navigation.scene import (
     LEVEL_SIZES,
@@ -70,7 +70,7 @@ def test_goals_are_before_the_thing_and_in_its_room(flat):
 
 def test_the_field_is_dijkstra_over_all_places_that_see_each_other(flat):
     goals = flat.goals_at(flat.landmark("upright piano"))
-    graph, lattice = flat.corner_graph, lattice_of(flat.corner_graph)
+    graph, lattice = flat.corner_graph, build_lattice(flat.corner_graph)
     low = np.flatnonzero(graph.feet[:, 1] == 65)
     links = np.zeros((len(low), len(low)))
     for (a, here), (b, there) in combinations(enumerate(low.tolist()), 2):

@@ -14,6 +14,8 @@ from world2minecraft.rendering.batch import BATCH_OUTPUTS, batch_arrays, render_
 from world2minecraft.rendering.batch import drawing as draw_module
 from world2minecraft.rendering.editable_scene import EditableScene
 from world2minecraft.rendering.picture import OUTPUTS
+from world2minecraft.rendering.ray_caster.plane_tiles import FACE_NUMBERS
+from world2minecraft.rendering.ray_caster.shading import CORNER_LIGHT_NUMBERS
 from world2minecraft.rendering.shading_parameters import DAY, exposure_of
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)

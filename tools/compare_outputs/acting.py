@@ -6,10 +6,12 @@ Each act is said by values alone, so that its text tells whether a kept result o
 import gzip
 import hashlib
 import json
+import os
 import re
 import shutil
 import signal
 import subprocess
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -40,14 +42,21 @@ class Place:
         return ended(process)
 
 
+SPENT = threading.local()  # ``seconds`` of processor time of the processes that a thread ended.
+
+
 def ended(process: subprocess.Popen[bytes]) -> int:
     """Wait for a process, at last without patience, and return its exit code."""
-    try:
-        return process.wait(HANG_S)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-        return 124
+    until = time.monotonic() + HANG_S
+    while True:
+        if time.monotonic() > until:
+            process.kill()
+        pid, status, used = os.wait4(process.pid, os.WNOHANG)
+        if pid:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            SPENT.seconds = getattr(SPENT, "seconds", 0.0) + used.ru_utime + used.ru_stime
+            return process.returncode
+        time.sleep(0.02)
 
 
 class Act(Protocol):
@@ -85,8 +94,11 @@ class Edit:
                         reply = _told(editor.asked(method, path, fields))
                     place.stdout.write(f"{method} {path} {fields}\n{reply}\n".encode())
             finally:
-                process.send_signal(signal.SIGINT)
-                code = ended(process)
+                if process.poll() is None:
+                    process.send_signal(signal.SIGINT)
+                    code = ended(process)
+                else:
+                    code = process.returncode
         log.unlink()
         return code
 
@@ -211,9 +223,10 @@ class Kill:
         while process.poll() is None and time.monotonic() < until:
             if any(place.folder.glob(self.file)):
                 process.kill()
-                process.wait()
+                ended(process)
                 return 0
             time.sleep(0.01)
+        process.kill()
         return process.wait()
 
 

@@ -18,18 +18,20 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 from compare_outputs import declared
-from compare_outputs.acting import Place
+from compare_outputs.acting import SPENT, Given, Place
 from compare_outputs.table import Step
 
 KEPT_KERNELS = 6  # States of the tree whose compiled kernels are kept.
+FAILED = 125  # The exit code of an act that could not be done.
 FORM = "1"  # Of what is kept; another one makes everything anew.
 
 
 class Done(NamedTuple):
-    """What became of a step: its exit codes, and the seconds that it took."""
+    """What became of a step: its exit codes, the seconds that it took, and those of processors."""
 
     codes: tuple[int, ...]
     seconds: float
+    cpu_s: float
 
 
 @dataclass(frozen=True)
@@ -215,7 +217,7 @@ def run_steps(
             return kept
         done = _run(side, step)
         if side.is_base:
-            told = {"sum": sum_of(step, steps), "codes": done.codes, "seconds": done.seconds}
+            told = {"sum": sum_of(step, steps)} | done._asdict()
             (side.logs(step) / "done.json").write_text(json.dumps(told))
         tell(step, done)
         return done
@@ -249,7 +251,7 @@ def _kept(side: Side, step: Step, steps: dict[str, Step]) -> Done | None:
         return None
     if told["sum"] != sum_of(step, steps):
         return None
-    return Done(tuple(told["codes"]), told["seconds"])
+    return Done(tuple(told["codes"]), told["seconds"], told.get("cpu_s", 0.0))
 
 
 def _run(side: Side, step: Step) -> Done:
@@ -258,28 +260,34 @@ def _run(side: Side, step: Step) -> Done:
         shutil.rmtree(one, ignore_errors=True)
         one.mkdir(parents=True)
     for name, given in step.given.items():
-        if not isinstance(given, str):
-            given.put(folder / name, side.shared)
-            continue
-        source = side.given_by / "out" / given
-        if source.is_dir():
-            shutil.copytree(source, folder / name, symlinks=True)
-        else:
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source, folder / name)
-    codes, began = [], time.monotonic()
+        _put(given, folder / name, side)
+    start, start_script = (partial(one, cwd=folder) for one in (side.start, side.start_script))
+    codes, began, SPENT.seconds = [], time.monotonic(), 0.0
     for number, command in enumerate(step.commands):
         with (
             (logs / f"{number:02d}.stdout").open("wb") as stdout,
             (logs / f"{number:02d}.stderr").open("wb") as stderr,
         ):
-            start, start_script = (
-                partial(side.start, cwd=folder),
-                partial(side.start_script, cwd=folder),
-            )
             place = Place(folder, start, start_script, stdout, stderr)
-            if isinstance(command, str):
-                codes.append(place.command(spelled_out(shlex.split(command), folder)))
-            else:
-                codes.append(command.act(place))
-    return Done(tuple(codes), time.monotonic() - began)
+            try:
+                if isinstance(command, str):
+                    codes.append(place.command(spelled_out(shlex.split(command), folder)))
+                else:
+                    codes.append(command.act(place))
+            except Exception as error:  # Such as an editor that does not begin: the step failed.
+                stderr.write(f"{type(error).__name__}: {error}\n".encode())
+                codes.append(FAILED)
+    return Done(tuple(codes), time.monotonic() - began, SPENT.seconds)
+
+
+def _put(given: str | Given, target: Path, side: Side) -> None:
+    """Lay into a step's folder what it starts from."""
+    if not isinstance(given, str):
+        given.put(target, side.shared)
+        return
+    source = side.given_by / "out" / given
+    if source.is_dir():
+        shutil.copytree(source, target, symlinks=True)
+    else:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source, target)

@@ -323,7 +323,6 @@ LEFT = (
         "left-in-world",
         ("build OUT --into world --at 4 70 -9 --new-chunks", "build OUT --into world --at 60 70 0"),
         {"OUT": "roomplan/OUT", "world": "dataset/DATA/worlds/house_0001/world"},
-        codes={1: 3},
         is_given=True,
     ),
     Step(
@@ -446,7 +445,6 @@ CAPTURES = (
             "rooms scan --seed 7 --sensor video --frames 4 --out video",
             "scan video --no-picture",
         ),
-        codes={},
     ),
     Step(
         "trial",
@@ -729,7 +727,6 @@ NAVIGATION = (
             "house": "dataset/DATA/worlds/house_0001",
             "walk": "walk/WALK",
         },
-        codes={},
     ),
     Step("environment", (Script(_ENVIRONMENT),), {"OUT": "demo/OUT"}),
     Step(

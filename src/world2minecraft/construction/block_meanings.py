@@ -1,4 +1,4 @@
-"""What the blocks of a world stand for: ids to classes and designs, by words in their names.
+"""Meanings of mod blocks: block ids to classes and designs, by words in their names.
 
 Mods of furniture name hundreds of blocks by a few words, so a palette lists words. Of all that
 occur in a block's name the longest says what it is, the last of two as long.
@@ -67,7 +67,7 @@ def parse_meanings(raw: Any) -> Meanings:
         raise ValueError(f"namespaces must be a list of names, not {spaces!r}")
     if not isinstance(words, dict) or not words:
         raise ValueError(f"words must be keys with values such as chair/stool, not {words!r}")
-    return Meanings(tuple(spaces), {str(w): _meaning(str(w), said) for w, said in words.items()})
+    return Meanings(tuple(spaces), {str(w): _meaning(str(w), text) for w, text in words.items()})
 
 
 def label_volume(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
@@ -94,11 +94,11 @@ def label_volume(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
     return replace(volume, semantic=semantic, instance=instance)
 
 
-def _meaning(word: str, said: Any) -> Meaning:
-    name, _, design = str(said).partition("/")
+def _meaning(word: str, text: Any) -> Meaning:
+    name, _, design = str(text).partition("/")
     if not 0 < len(word) <= LONGEST_WORD or name not in CLASS_NAMES:
         classes = ", ".join(CLASS_NAMES)
         raise ValueError(
-            f"{word!r} must mean a class, such as chair/stool, not {said!r}: {classes}"
+            f"{word!r} must mean a class, such as chair/stool, not {text!r}: {classes}"
         )
     return Meaning(CLASS_NAMES.index(name), design)

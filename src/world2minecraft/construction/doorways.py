@@ -1,4 +1,4 @@
-"""Doorways kept passable: what one walked through in the room, one walks through in the world.
+"""Passable doorways: what one can walk through in the room, one can walk through in the world.
 
 A gap in a wall that lies across two blocks would be closed by both of them at a block a metre. So
 gaps are found in the cells, and opened in the blocks at least one wide and two high.

@@ -1,4 +1,4 @@
-"""What hangs in the air is joined to what carries it, or dropped where it is a crumb.
+"""Floating blocks of a build: joined to what carries them, or removed where they are crumbs.
 
 A scan loses thin things: the cord of a lamp, the bracket of a shelf, the foot of a screen. In the
 game such things would float.

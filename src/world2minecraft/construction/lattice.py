@@ -1,6 +1,6 @@
 """Where the blocks stand in the room: the block lattice, and cells resampled onto it.
 
-Within build/ every array is in room axes, ``[x, y, z]`` with z up, one entry a block; only the
+Every array of a build is in room axes, ``[x, y, z]`` with z up, one entry a block; only the
 finished volume is carried to block axes, by ``coordinates.grid_to_block_axes``.
 """
 

@@ -1,4 +1,4 @@
-"""What a shape is made of: the blocks that exist in it, and which comes nearest to a colour.
+"""The materials of shapes: the blocks that exist in each, and which is nearest to a colour.
 
 Wood and many stones come as slabs and stairs, dyes do not: a clear red costs 3 (dE76) as a full
 block and 24 as a slab. So an object is fitted with the kinds of shape that exist in its colours.

@@ -1,4 +1,4 @@
-"""A mod's own furniture: its blocks in the place of a template, where they are of its size.
+"""The furniture blocks of a mod in the place of a template, where they are of its size.
 
 Mods make furniture of one block, or of a few, for a world of a block a metre or two. So a piece
 is used only where the object comes to about as many blocks; else the program's own design stands

@@ -1,4 +1,4 @@
-"""Objects as blocks: templates by their parts or idioms, all else from its own cells."""
+"""Objects as blocks: templates by their parts or idioms, the rest from their own cells."""
 
 from collections.abc import Sequence
 from dataclasses import replace

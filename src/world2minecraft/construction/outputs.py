@@ -1,4 +1,4 @@
-"""What a build leaves on disk: the world, the schematic, the data pack and the scene's labels."""
+"""The files of a build: the world, the schematic, the data pack and the scene's labels."""
 
 from pathlib import Path
 

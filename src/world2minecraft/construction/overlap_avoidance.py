@@ -1,4 +1,4 @@
-"""Where on the lattice a thing goes whole: moved by a block where others stand in its place.
+"""Steps of one block by which an object avoids others that were placed before it.
 
 Boxes that touch in metres may share a layer of blocks once each is snapped to the lattice. What
 comes later then loses a side, or all of itself where it is small; a step of one block keeps it

@@ -1,4 +1,4 @@
-"""What a builder may choose, with where each default comes from."""
+"""The parameters of a build, and where each default comes from."""
 
 from dataclasses import dataclass
 

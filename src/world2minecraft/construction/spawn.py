@@ -1,4 +1,4 @@
-"""Where a player comes to stand: free, on the floor, looking at the furnished middle."""
+"""The spawn of a player: free, on the floor, facing the furnished middle of the room."""
 
 from typing import NamedTuple
 

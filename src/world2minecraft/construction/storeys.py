@@ -1,4 +1,4 @@
-"""The storeys of a house: how high their floors lie, and where each of them begins and ends.
+"""The storeys of a house: the heights of their floors, and where each begins and ends.
 
 The floor of the ground storey is layer 63 whatever was seen. An upper storey is a level floor of
 fair size that lies a room's height over the one below; its floor is the layer of blocks that

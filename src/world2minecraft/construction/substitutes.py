@@ -1,4 +1,4 @@
-"""Library pieces for what few blocks a metre would make a heap of.
+"""Library templates for objects that few blocks per metre could not show.
 
 From its own cells a sofa at two blocks a metre is a wall with a dent, and a plant a green box: no
 block is fine enough to show them. A design of about their size says what they are.

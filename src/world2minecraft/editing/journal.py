@@ -18,7 +18,7 @@ from world2minecraft.editing.record_log import RecordFile, pack_record
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
 
 EDIT_LIMITS = NbtLimits(depth=64, values=2_000_000, bytes=256 << 20)
-EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
+EDITS_FILE = "edits.journal"  # In the folder of a build: what the clean-up repaired.
 MARK = b"w2m edits 1\n"
 DO, UNDO, REDO = b"+", b"-", b"*"
 MAX_JOURNAL_BYTES = 256 << 20
@@ -191,7 +191,7 @@ def write_journal(path: str | Path, edits: Sequence[BlockEdit]) -> None:
 
 
 def write_edits(build: Path, edits: Sequence[BlockEdit]) -> None:
-    """Write what was mended in a build beside it, in place of what a build before it left.
+    """Write the repairs of a build to its folder, in place of those of an earlier build.
 
     Raises:
         OutputError: the folder cannot be written.

@@ -60,7 +60,7 @@ def default_spawn(volume: BlockVolume) -> tuple[float, float, float]:
 
 
 def _first_solid_layer(states: np.ndarray) -> np.ndarray:
-    """The first layer of each column that is not air."""
+    """Return the first layer of each column that is not air."""
     return (states > 0).argmax(axis=1)
 
 
@@ -131,10 +131,10 @@ def write_blocks(
     """
     target = Path(path)
     format_ = format_for_path(target)
-    told = Losses() if losses is None else losses
-    format_.write(volume, target, options or WriteOptions(), told)
+    counted = Losses() if losses is None else losses
+    format_.write(volume, target, options or WriteOptions(), counted)
     if not format_.keeps_labels:
-        told.add(LABELS, int((volume.semantic > 0).sum()))
+        counted.add(LABELS, int((volume.semantic > 0).sum()))
 
 
 def format_for_path(path: str | Path) -> BlockFormat:
@@ -253,7 +253,10 @@ class DatapackFormat:
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace that the options' name makes."""
         from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
-        from world2minecraft.minecraft.commands.datapack import to_namespace, write_datapack
+        from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
+            to_namespace,
+            write_datapack,
+        )
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)

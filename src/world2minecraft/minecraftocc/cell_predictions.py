@@ -86,11 +86,11 @@ def resample_to_grid(
     inside = np.asarray(within.all(axis=-1), bool)
     if not inside.any():
         raise InputError("grid", "lies beside all that the capture shows; is it of another world?")
-    held = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
+    index = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
     return PredictedCells(
-        np.where(inside, room.labels[held], np.uint8(UNKNOWN)),
-        np.where(inside, room.confidence[held], 0).astype(np.float32),
-        inside & room.observed[held],
+        np.where(inside, room.labels[index], np.uint8(UNKNOWN)),
+        np.where(inside, room.confidence[index], 0).astype(np.float32),
+        inside & room.observed[index],
         VOXEL_M,
         place.origin_m,
     )

@@ -70,8 +70,8 @@ def read_grid_place(path: Path) -> GridPlace:
         names = array_names(path)
         origin = "origin_m" if "origin_m" in names else "voxel_origin"
         pose = "camera_to_world" if "camera_to_world" in names else "cam_pose"
-        held = read_npz(path, (origin, pose))
-        numbers = np.concatenate([np.ravel(held[origin]), np.ravel(held[pose])])
+        arrays = read_npz(path, (origin, pose))
+        numbers = np.concatenate([np.ravel(arrays[origin]), np.ravel(arrays[pose])])
     else:
         with path.open("rb") as stream:
             head = stream.read(HEADER_BYTES)

@@ -55,9 +55,9 @@ class Recipe:
 
     def facts(self) -> dict[str, Any]:
         """Return all of it as JSON."""
-        told = asdict(self)
-        told["camera"] = {k: v for k, v in told["camera"].items() if k != "distortion"}
-        return told
+        data = asdict(self)
+        data["camera"] = {k: v for k, v in data["camera"].items() if k != "distortion"}
+        return data
 
 
 @dataclass(frozen=True)
@@ -208,10 +208,10 @@ def _check(scenes: Sequence[SceneSpec], images: int | None, preset: str, test_sh
         if len(scenes) < 2:
             raise UsageError(f"--preset {preset} is split by scene: give it two scenes or more")
     elif images is None or not len(scenes) <= images <= MAX_IMAGES:
-        told = "no number" if images is None else f"{images:,}"
+        given = "no number" if images is None else f"{images:,}"
         raise UsageError(
             f"--images is one for each of {len(scenes)} scenes or more, up to {MAX_IMAGES:,}, "
-            f"not {told}"
+            f"not {given}"
         )
     if not 0 <= test_share < 1:
         raise UsageError(f"--test-share is 0 or more and below 1, not {test_share:g}")

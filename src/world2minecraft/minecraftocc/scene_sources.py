@@ -76,9 +76,9 @@ def find_built_box(world: Path) -> tuple[Box, str]:
             "--box x0 y0 z0 x1 y1 z1 chooses others"
         )
     box = _box_of(_main_build(sections, spawn))
-    told = " ".join(str(value) for value in box)
+    corners = " ".join(str(value) for value in box)
     more = f"; only the {MAX_CHUNKS:,} chunks nearest to the spawn were searched" if was_cut else ""
-    return box, f"this world has no scene.json: taking what looks built, --box {told}{more}"
+    return box, f"this world has no scene.json: taking what looks built, --box {corners}{more}"
 
 
 def is_built(state: str) -> bool:
@@ -158,8 +158,11 @@ def _main_build(
 
 
 def _box_of(places: Iterable[tuple[int, int, int]]) -> Box:
-    held = np.array(list(places))
-    low, high = held.min(axis=0) * SECTION - MARGIN, (held.max(axis=0) + 1) * SECTION + MARGIN
+    sections = np.array(list(places))
+    low, high = (
+        sections.min(axis=0) * SECTION - MARGIN,
+        (sections.max(axis=0) + 1) * SECTION + MARGIN,
+    )
     middle = (low + high) // 2
     low = np.maximum(low, middle - MAX_SIDE // 2)
     high = np.minimum(high, middle + MAX_SIDE // 2)
@@ -344,14 +347,18 @@ def classify_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
     A player who builds on in a world of ours leaves such blocks.
     """
     shown = np.array([rules.meaning(state) != "empty" for state in volume.palette])
-    unsaid = (volume.semantic == 0) & (volume.states != 0) & shown[volume.states]
-    if not unsaid.any():
+    unlabelled = (volume.semantic == 0) & (volume.states != 0) & shown[volume.states]
+    if not unlabelled.any():
         return volume
-    told = classify(volume, rules)
-    semantic = np.where(unsaid, told.semantic, volume.semantic)
+    classified = classify(volume, rules)
+    semantic = np.where(unlabelled, classified.semantic, volume.semantic)
     most = int(volume.instance.max(initial=0))
-    new = unsaid & (told.instance > 0) & (told.instance.astype(np.int64) + most <= 0xFFFF)
-    instance = np.where(new, told.instance + np.uint16(most), volume.instance)
+    new = (
+        unlabelled
+        & (classified.instance > 0)
+        & (classified.instance.astype(np.int64) + most <= 0xFFFF)
+    )
+    instance = np.where(new, classified.instance + np.uint16(most), volume.instance)
     return replace(volume, semantic=semantic, instance=instance.astype(np.uint16))
 
 

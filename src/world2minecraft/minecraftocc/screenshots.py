@@ -237,16 +237,18 @@ def _matches_anything(body: Any) -> bool:
     code, value = body[0]
     if str(code) == "LITERAL":
         return False
-    return str(code) != "IN" or not all(_is_numeric(str(kind), told) for kind, told in value)
+    return str(code) != "IN" or not all(
+        _is_numeric(str(kind), argument) for kind, argument in value
+    )
 
 
-def _is_numeric(kind: str, told: Any) -> bool:
+def _is_numeric(kind: str, argument: Any) -> bool:
     """Whether a part of a set is of figures, dots or signs."""
     if kind == "LITERAL":
-        return chr(told) in "+-.0123456789"
+        return chr(argument) in "+-.0123456789"
     if kind == "RANGE":
-        return ord("0") <= told[0] and told[1] <= ord("9")
-    return kind == "CATEGORY" and str(told) == "CATEGORY_DIGIT"
+        return ord("0") <= argument[0] and argument[1] <= ord("9")
+    return kind == "CATEGORY" and str(argument) == "CATEGORY_DIGIT"
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,19 +304,19 @@ def read_screenshots(
     sidecar = _sidecar(source, poses, pattern)
     if sidecar is not None:
         return _by_sidecar(source, sidecar, at, vertical_fov_deg)
-    read, told = _reader(pictures, pattern)
+    read, origin = _reader(pictures, pattern)
     views = []
     for frame, path in enumerate(pictures):
         facts = read_png_facts(path)
         numbers = read(path, facts)
         if numbers is None:
-            raise InputError(path, f"has no pose: {told} does not tell x, y, z, yaw and pitch")
+            raise InputError(path, f"has no pose: {origin} does not tell x, y, z, yaw and pitch")
         camera = camera_of(facts.width_px, facts.height_px, vertical_fov_deg=vertical_fov_deg)
         try:
             pose = GamePose(*(numbers[name] for name in POSE_FIELDS), at=at)
         except UsageError as error:
             raise DamagedFileError(path, f"has no pose of the game: {error}") from error
-        views.append(RecordedView(path, camera, pose, told, frame))
+        views.append(RecordedView(path, camera, pose, origin, frame))
     return views
 
 
@@ -377,9 +379,9 @@ def _camera(path: Path, one: TourPose, sidecar: Path, fov_deg: float) -> Camera:
     if one.camera is None:
         return camera_of(*size, vertical_fov_deg=one.vertical_fov_deg or fov_deg)
     if (one.camera.width_px, one.camera.height_px) != size:
-        told = f"{one.camera.width_px}x{one.camera.height_px}"
+        stated = f"{one.camera.width_px}x{one.camera.height_px}"
         raise DamagedFileError(
-            sidecar, f"says {told} of {one.image}, which has {size[0]}x{size[1]}"
+            sidecar, f"says {stated} of {one.image}, which has {size[0]}x{size[1]}"
         )
     return one.camera
 

@@ -184,26 +184,26 @@ def _draw_view(sheet: Sheet, sample: OccSample, corner: tuple[float, float], sca
 
 def _legend(sheet: Sheet, sample: OccSample, corner: tuple[float, float]) -> None:
     left, top = corner
-    held = np.bincount(sample.occ.labels.reshape(-1), minlength=256)
+    counts = np.bincount(sample.occ.labels.reshape(-1), minlength=256)
     for number, name in enumerate(CLASS_NAMES[1:], 1):
-        fill = CLASS_COLOURS[number] if held[number] else PANEL
+        fill = CLASS_COLOURS[number] if counts[number] else PANEL
         sheet.box((left, top), (14, 14), fill, RULE, 3)
-        sheet.text((left + 22, top), name, 13, INK if held[number] else FAINT)
-        sheet.text((left + 150, top), f"{held[number]:,}", 13, FAINT, anchor="ra")
+        sheet.text((left + 22, top), name, 13, INK if counts[number] else FAINT)
+        sheet.text((left + 150, top), f"{counts[number]:,}", 13, FAINT, anchor="ra")
         top += LINE_PX
-    for line in _lines(sample, held):
+    for line in _lines(sample, counts):
         top += LINE_PX * 0.85
         sheet.text((left, top), line, 13, FAINT)
 
 
-def _lines(sample: OccSample, held: np.ndarray) -> list[str]:
+def _lines(sample: OccSample, counts: np.ndarray) -> list[str]:
     occ = sample.occ
     met = share_of_depth_in_cells(sample)
     return [
         f"split: {sample.split or 'none'}",
         f"region: {occ.region.kind}",
-        f"empty: {held[0] / occ.labels.size:.0%} of cells",
-        f"unknown: {held[UNKNOWN] / occ.labels.size:.0%}",
+        f"empty: {counts[0] / occ.labels.size:.0%} of cells",
+        f"unknown: {counts[UNKNOWN] / occ.labels.size:.0%}",
         f"in view: {occ.in_frustum.mean():.0%}",
         f"seen first: {int(occ.visible.sum()):,}",
         "depth: none" if met is None else f"depth in cells: {met:.1%}",

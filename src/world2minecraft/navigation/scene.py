@@ -24,7 +24,7 @@ from world2minecraft.formats.volume_formats import find_blocks
 from world2minecraft.furniture.library import TEMPLATES
 from world2minecraft.minecraft.physics.any_angle_paths import (
     Lattice,
-    lattice_of,
+    build_lattice,
     straight_distances_m,
 )
 from world2minecraft.minecraft.physics.body import EYE
@@ -163,7 +163,7 @@ class VlnScene:
 
     @cached_property
     def _lattice(self) -> Lattice:
-        return lattice_of(self.corner_graph)
+        return build_lattice(self.corner_graph)
 
     @cached_property
     def _own_places(self) -> np.ndarray:

@@ -64,6 +64,6 @@ class OccOutput:
 
 
 def _to_device(value: Movable, device: torch.device | str) -> Movable:
-    held = {entry.name: getattr(value, entry.name) for entry in fields(value)}
-    tensors = {name: one.to(device) for name, one in held.items() if isinstance(one, Tensor)}
+    values = {entry.name: getattr(value, entry.name) for entry in fields(value)}
+    tensors = {name: one.to(device) for name, one in values.items() if isinstance(one, Tensor)}
     return replace(value, **tensors)

@@ -60,13 +60,13 @@ def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
     counted = (part >= 0) & (labels != UNKNOWN)
     part, labels = part[counted], labels[counted]
     shares = torch.softmax(logits.float(), dim=1).flatten(2).movedim(1, 2)[counted]  # [K, 12]
-    said = _sums(part, shares)
+    predicted = _sums(part, shares)
     truth = _sums(part, torch.nn.functional.one_hot(labels, CLASS_COUNT).float())
     cells = truth.sum(dim=1, keepdim=True)
-    truth, said = truth / cells.clamp(min=1), said / cells.clamp(min=1)
+    truth, predicted = truth / cells.clamp(min=1), predicted / cells.clamp(min=1)
     each = torch.where(
         truth > 0,
-        truth * (truth.clamp(min=MIN_CELLS).log() - said.clamp(min=MIN_CELLS).log()),
+        truth * (truth.clamp(min=MIN_CELLS).log() - predicted.clamp(min=MIN_CELLS).log()),
         torch.zeros_like(truth),
     )
     return each.sum() / (cells > 0).sum().clamp(min=1)
@@ -98,9 +98,11 @@ def relation_loss(logits: Tensor, labels: Tensor) -> Tensor:
     """
     truth, counted = relations_of(coarse_labels(labels))
     truth, weights = truth.float(), counted.float()
-    held = (truth * weights).sum(dim=(0, 2, 3))
-    missed = ((1 - truth) * weights).sum(dim=(0, 2, 3))
-    balance = torch.where(held > 0, missed / held.clamp(min=1), torch.ones_like(held))
+    positives = (truth * weights).sum(dim=(0, 2, 3))
+    negatives = ((1 - truth) * weights).sum(dim=(0, 2, 3))
+    balance = torch.where(
+        positives > 0, negatives / positives.clamp(min=1), torch.ones_like(positives)
+    )
     each = torch.nn.functional.binary_cross_entropy_with_logits(
         logits.float(), truth, pos_weight=balance[:, None, None], reduction="none"
     )
@@ -125,8 +127,10 @@ def relations_of(labels: Tensor) -> tuple[Tensor, Tensor]:
     known = (eight != UNKNOWN) & (cells != UNKNOWN)
     alike, both = eight == cells, (eight != 0) & (cells != 0)
     none = (eight == 0) & (cells == 0)
-    held = (alike & both, ~alike & both, none, ~alike & ~both)
-    return torch.stack([(one & known).any(dim=2) for one in held], dim=1), known.any(dim=2)[:, None]
+    relations = (alike & both, ~alike & both, none, ~alike & ~both)
+    return torch.stack([(one & known).any(dim=2) for one in relations], dim=1), known.any(dim=2)[
+        :, None
+    ]
 
 
 def coarse_labels(labels: Tensor, factor: int = COARSE_FACTOR) -> Tensor:
@@ -171,11 +175,11 @@ def cross_entropy(logits: Tensor, labels: Tensor, class_weights: Tensor | None =
         class_weights: float32 [12]; all 1 where left out.
     """
     known = labels != UNKNOWN
-    told = torch.where(known, labels, torch.zeros_like(labels))
-    each = torch.nn.functional.cross_entropy(logits.float(), told, reduction="none")
+    targets = torch.where(known, labels, torch.zeros_like(labels))
+    each = torch.nn.functional.cross_entropy(logits.float(), targets, reduction="none")
     weights = known.float()
     if class_weights is not None:
-        weights = weights * class_weights.to(logits.device, torch.float32)[told]
+        weights = weights * class_weights.to(logits.device, torch.float32)[targets]
     return (each * weights).sum() / weights.sum().clamp(min=1e-6)
 
 

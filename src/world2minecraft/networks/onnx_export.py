@@ -163,12 +163,12 @@ def export_network(
     network.eval()
     try:
         with torch.no_grad():
-            said = network(example).logits.float().cpu().numpy()
+            logits = network(example).logits.float().cpu().numpy()
             model = _export_traced(network, example, facts)
     finally:
         network.train(trained)
     whole = _run_onnx(model.SerializeToString(), example)
-    difference = float(np.abs(whole - said).max())
+    difference = float(np.abs(whole - logits).max())
     if not difference <= MAX_DIFFERENCE:  # Holds for what is no number too.
         raise OutputError(
             path,

@@ -193,9 +193,9 @@ def _read_frame_array(path: Path) -> np.ndarray:
     return read_npz(path, (wanted,))[wanted]
 
 
-def _find_array(held: dict[str, Any], path: Path) -> np.ndarray:
-    for name in (*NAMES, *held):
-        value = held.get(name)
+def _find_array(arrays: dict[str, Any], path: Path) -> np.ndarray:
+    for name in (*NAMES, *arrays):
+        value = arrays.get(name)
         if isinstance(value, np.ndarray) and math.prod(value.shape) > 1:
             return value
     raise DamagedFileError(path, "holds no array")

@@ -58,12 +58,12 @@ def memory_scores(
     for row in rows:
         by_scene.setdefault(frames.scenes[row], []).append(row)
     counts = []
-    for done, (scene, held) in enumerate(sorted(by_scene.items()), 1):
-        truth, reason = assemble_truth(found, [frames.keys[row] for row in held], config)
+    for done, (scene, scene_rows) in enumerate(sorted(by_scene.items()), 1):
+        truth, reason = assemble_truth(found, [frames.keys[row] for row in scene_rows], config)
         if truth is None:
             return [], reason
-        said = predict_scene(network, frames, held, truth, config)
-        counts.append(FrameScore(scene, count_scene(said, truth.labels, [truth.seen])))
+        predicted = predict_scene(network, frames, scene_rows, truth, config)
+        counts.append(FrameScore(scene, count_scene(predicted, truth.labels, [truth.seen])))
         progress("scenes", done, len(by_scene))
     return counts, ""
 

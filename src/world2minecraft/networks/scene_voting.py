@@ -24,23 +24,25 @@ class SceneFrame(NamedTuple):
     """What a frame says and what is true of it, where it looks."""
 
     scene_id: str
-    said: np.ndarray  # uint8 [X, Y, Z]
+    predicted: np.ndarray  # uint8 [X, Y, Z]
     truth: np.ndarray  # uint8 [X, Y, Z]
     in_view: np.ndarray  # bool, packed eight cells a byte
     grid_to_room: np.ndarray
 
     @classmethod
     def packed(
-        cls, scene_id: str, said: np.ndarray, known: KnownCells, grid_to_room: np.ndarray
+        cls, scene_id: str, predicted: np.ndarray, known: KnownCells, grid_to_room: np.ndarray
     ) -> "SceneFrame":
         """Keep what scenes are made of."""
-        inside = np.ones(said.shape, bool) if known.in_frustum is None else known.in_frustum
-        return cls(scene_id, said, known.labels, np.packbits(inside), grid_to_room)
+        inside = np.ones(predicted.shape, bool) if known.in_frustum is None else known.in_frustum
+        return cls(scene_id, predicted, known.labels, np.packbits(inside), grid_to_room)
 
     @property
     def mask(self) -> np.ndarray:
         """Bool [X, Y, Z]: what it has in view."""
-        return np.unpackbits(self.in_view, count=self.said.size).reshape(self.said.shape) > 0
+        return (
+            np.unpackbits(self.in_view, count=self.predicted.size).reshape(self.predicted.shape) > 0
+        )
 
 
 def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[FrameScore], str]:
@@ -60,7 +62,7 @@ def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[Fra
 class Lattice(NamedTuple):
     """The boxes of a scene's frames, along the room's axes, on the cells that they share."""
 
-    grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]  # said, truth and mask of each box
+    grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]  # predicted, truth and mask of each box
     cells: np.ndarray  # int [N, 3], where each box begins
     shape: tuple[int, ...]
     origin_m: np.ndarray  # float64 [3], minimum corner in the room
@@ -90,17 +92,17 @@ def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice 
 def _align_to_axes(
     frame: SceneFrame, voxel_m: float
 ) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None:
-    """Return said, truth and mask along the room's axes, and their corner in the room."""
+    """Return predictions, truth and mask along the room's axes, and their corner in the room."""
     turn_deg = np.degrees(np.arctan2(frame.grid_to_room[1, 0], frame.grid_to_room[0, 0]))
     quarters = round(turn_deg / 90)
     if abs(turn_deg - 90 * quarters) > TOLERANCE_DEG:
         return None
-    ends = np.array([[0.0, 0, 0], frame.said.shape]) * voxel_m
+    ends = np.array([[0.0, 0, 0], frame.predicted.shape]) * voxel_m
     corner_m = apply(frame.grid_to_room, ends).min(axis=0)
-    said, truth, mask = (
-        turn_grid(values, quarters) for values in (frame.said, frame.truth, frame.mask)
+    predicted, truth, mask = (
+        turn_grid(values, quarters) for values in (frame.predicted, frame.truth, frame.mask)
     )
-    return (said, truth, mask), corner_m
+    return (predicted, truth, mask), corner_m
 
 
 def merge_truth(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
@@ -116,11 +118,11 @@ def merge_truth(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
 
 def _count_votes(lattice: Lattice) -> ProtocolCounts:
     votes = np.zeros((*lattice.shape, CLASS_COUNT), np.uint8)
-    for (said, _, mask), first in zip(lattice.grids, lattice.cells, strict=True):
-        box = tuple(slice(at, at + side) for at, side in zip(first, said.shape, strict=True))
-        at = np.nonzero(mask & (said < CLASS_COUNT))
-        held = votes[box]
-        held[(*at, said[at])] = np.minimum(held[(*at, said[at])], 254) + 1
+    for (predicted, _, mask), first in zip(lattice.grids, lattice.cells, strict=True):
+        box = tuple(slice(at, at + side) for at, side in zip(first, predicted.shape, strict=True))
+        at = np.nonzero(mask & (predicted < CLASS_COUNT))
+        box_votes = votes[box]
+        box_votes[(*at, predicted[at])] = np.minimum(box_votes[(*at, predicted[at])], 254) + 1
     labels = np.where(votes.any(axis=-1), votes.argmax(axis=-1), UNKNOWN).astype(np.uint8)
     truth, seen = merge_truth(lattice)
     return count_scene(labels, truth, [seen])

@@ -63,7 +63,7 @@ class PredictedFrame(NamedTuple):
     """One frame: what is said of its cells, and what is true."""
 
     scene_id: str
-    said: np.ndarray  # uint8 [X, Y, Z]
+    predicted: np.ndarray  # uint8 [X, Y, Z]
     known: KnownCells
     grid_to_room: np.ndarray  # float64 [4, 4]
 
@@ -98,7 +98,7 @@ def protocol_scores(
     for frame in frames:
         for protocol in chosen:
             try:
-                found = count_frame(protocol, frame.said, frame.known)
+                found = count_frame(protocol, frame.predicted, frame.known)
             except UsageError as error:
                 if protocols:
                     raise
@@ -171,10 +171,10 @@ def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None
 
 
 def network_predictions(
-    frames: Frames, rows: Sequence[int], said: Iterator[np.ndarray]
+    frames: Frames, rows: Sequence[int], predicted: Iterator[np.ndarray]
 ) -> Iterator[PredictedFrame]:
     """Pair what a network says of rows with what is true of them."""
-    for row, labels in zip(rows, said, strict=True):
+    for row, labels in zip(rows, predicted, strict=True):
         frame = frames[row]
         yield PredictedFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
 

@@ -128,16 +128,18 @@ def check_folder(config: RunConfig, folder: Path) -> None:
     """Refuse a folder that holds a run of other settings. Raises ConflictError."""
     if not (folder / RUN).is_file():
         return
-    held = read_config(folder / RUN)
-    same = replace(held, **{name: getattr(config, name) for name in FREE_SETTINGS})
+    existing = read_config(folder / RUN)
+    same = replace(existing, **{name: getattr(config, name) for name in FREE_SETTINGS})
     if same == config:
         return
     names = [name for name in vars(config) if getattr(same, name) != getattr(config, name)]
-    told = ", ".join(
-        f"{name} is {_describe_setting(getattr(held, name))}, not {_describe_setting(getattr(config, name))}"
+    differences = ", ".join(
+        f"{name} is {_describe_setting(getattr(existing, name))}, not {_describe_setting(getattr(config, name))}"
         for name in names
     )
-    raise ConflictError(folder, f"holds a run of other settings ({told}); choose another --out")
+    raise ConflictError(
+        folder, f"holds a run of other settings ({differences}); choose another --out"
+    )
 
 
 def _describe_setting(value: Any) -> str:
@@ -237,8 +239,8 @@ def score_run(
     data, folder = trained.data, trained.folder
     network = load_trained_network(folder, config, device, last=last)
     rows = data.split.scored
-    said = predict_labels(network, data.target, rows, config, progress=progress)
-    frames = network_predictions(data.target, rows, said)
+    predicted = predict_labels(network, data.target, rows, config, progress=progress)
+    frames = network_predictions(data.target, rows, predicted)
     scores = protocol_scores(frames, config.cells.voxel_m)
     found = open_occupancy(config.data[0].path)
     add_memory_scores(scores, network, found, data.target, rows, config, progress=progress)

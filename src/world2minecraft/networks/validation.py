@@ -80,7 +80,7 @@ def validate(
 ) -> OccupancyCounts:
     """Return the counts of some frames, by the protocol ``monoscene``."""
     total = OccupancyCounts()
-    said = predict_labels(network, frames, rows, config)
-    for row, labels in zip(rows, said, strict=True):
+    predicted = predict_labels(network, frames, rows, config)
+    for row, labels in zip(rows, predicted, strict=True):
         total = total + count_occupancy(labels, frames[row].labels)
     return total

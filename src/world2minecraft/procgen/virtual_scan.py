@@ -1,4 +1,4 @@
-"""A generated room becomes a capture on disk, as a sensor would hand it over, with its truth.
+"""Virtual scans: a generated room as a capture on disk, as a sensor would write it, with its truth.
 
 The capture is in our plain layout; its world frame is turned, tilted and shifted, so that the
 alignment has work. ``truth.npz`` and ``truth.json`` hold what no sensor knows.

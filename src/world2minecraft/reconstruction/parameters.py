@@ -8,6 +8,7 @@ import math
 from dataclasses import asdict, dataclass, fields, is_dataclass, replace
 from typing import Any
 
+from world2minecraft.capture.sfm import SfmParameters
 from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
@@ -26,15 +27,18 @@ from world2minecraft.reconstruction.semantics import LABELLERS
 class Parameters:
     """What decides a result, beside the capture.
 
-    voxel_m: the cell of all stages. blocks_per_metre: the scale of the world. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion`` where
-    depth was measured and cells are of the size that its network learnt; else ``votes`` where
-    anything voted, or ``geometric``. mend: clean up what is built as a person would; ``w2m clean
-    OUT --list`` tells what that was. formats: further forms of the build, such as
-    ``litematic,nbt,glb``.
+    voxel_m: the cell of all stages.
+    blocks_per_metre: the scale of the world.
+    predictor: ``depth``, or ``mono:FILE.onnx``.
     depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.
     plan: the path of a RoomPlan of the same room, as more evidence.
-    known: a length by its name, such as ``("table height", 0.72)``; known_points: two places in
-    photos, each ``PHOTO:x,y``, and the metres between them; both give a capture its scale.
+    labeller: ``auto`` takes ``completion`` where depth was measured and cells are of the size that
+        its network learnt; else ``votes`` where anything voted, or ``geometric``.
+    mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells what that was.
+    formats: further forms of the build, such as ``litematic,nbt,glb``.
+    known: a length by its name, such as ``("table height", 0.72)``.
+    known_points: two places in photos, each ``PHOTO:x,y``, and the metres between
+        them; both give a capture its scale.
     """
 
     voxel_m: float = parameter(0.08, unit="m", origin="the paper's cell", stage="scan")
@@ -58,7 +62,7 @@ class Parameters:
         None, unit="m", stage="scan", typed="--known-points A:x,y B:x,y METRES"
     )
     capture: dict[str, str] = parameter(dict, stage="scan", typed="--set capture.KEY=VALUE")
-    posing: PosingParameters = parameter(PosingParameters, stage="scan")
+    posing: SfmParameters = parameter(SfmParameters, stage="scan")
     stereo: StereoParameters = parameter(StereoParameters, stage="scan")
     register: RegisterParameters = parameter(RegisterParameters, stage="register")
     occupy: OccupyParameters = parameter(OccupyParameters, stage="fuse")

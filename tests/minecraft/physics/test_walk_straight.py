@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.physics.any_angle_paths import (
-    lattice_of,
+    build_lattice,
     straight_distances_m,
     straight_m,
 )
@@ -84,7 +84,7 @@ def test_ways_are_nearly_the_exact_ones(seed):
     graph = walk_graph(volume_of(states, SCALE), WalkRule(at_corners=True))
     low = np.flatnonzero(graph.feet[:, 1] == 1)
     goal = int(rng.choice(low))
-    away, _ = straight_distances_m(graph, lattice_of(graph), goal)
+    away, _ = straight_distances_m(graph, build_lattice(graph), goal)
     some = rng.choice(low[low != goal], 60)
     flat = graph.feet[:, [0, 2]]
     slow = exact_m(pillars, list(flat[some]), flat[goal], wide) / SCALE
@@ -97,7 +97,7 @@ def test_ways_are_nearly_the_exact_ones(seed):
 def test_with_nothing_in_the_way_ways_are_straight_lines():
     graph = walk_graph(floor_with())
     goal = graph.nearest((2.0, 1.0, 3.0))
-    away, bend = straight_distances_m(graph, lattice_of(graph), goal)
+    away, bend = straight_distances_m(graph, build_lattice(graph), goal)
     np.testing.assert_allclose(away, np.linalg.norm(graph.feet - graph.feet[goal], axis=1))
     assert (bend[bend] == goal).all()  # Some lie on a line with a place between.
 
@@ -110,7 +110,7 @@ pairs = st.tuples(st.integers(0, SIDE - 1), st.integers(0, SIDE - 1))
 def test_no_pair_of_places_is_joined_shorter(pillars, slabs, goal):
     graph = walk_graph(floor_with(pillars, slabs))
     goal %= len(graph)
-    lattice = lattice_of(graph)
+    lattice = build_lattice(graph)
     away, bend = straight_distances_m(graph, lattice, goal)
     eight = distances_m(graph, goal, backward=True)
     np.testing.assert_array_equal(np.isfinite(away), np.isfinite(eight))
@@ -131,7 +131,7 @@ def test_no_pair_of_places_is_joined_shorter(pillars, slabs, goal):
 
 def test_ways_there_and_back_are_as_long_where_nothing_drops():
     graph = walk_graph(floor_with([(3, 2), (3, 3), (3, 4), (5, 1)]))
-    lattice = lattice_of(graph)
+    lattice = build_lattice(graph)
     rng = np.random.default_rng(2)
     for a, b in rng.integers(0, len(graph), (200, 2)):
         assert straight_m(lattice, a, b) == pytest.approx(straight_m(lattice, b, a))
@@ -139,7 +139,7 @@ def test_ways_there_and_back_are_as_long_where_nothing_drops():
 
 def test_a_way_over_a_slab_counts_its_height():
     graph = walk_graph(floor_with(slabs=[(3, z) for z in range(SIDE)]))
-    away, _ = straight_distances_m(graph, lattice_of(graph), graph.nearest((0.5, 1.0, 0.5)))
+    away, _ = straight_distances_m(graph, build_lattice(graph), graph.nearest((0.5, 1.0, 0.5)))
     over = graph.nearest((6.5, 1.0, 0.5))
     assert away[over] == pytest.approx(6.0 - 2 * 0.25 + 2 * np.hypot(0.25, 0.5))
 
@@ -149,7 +149,7 @@ def test_one_drops_but_does_not_come_back():
     states[:3, 1:3] = 1
     graph = walk_graph(volume_of(states))
     high, low = graph.nearest((0.5, 3.0, 3.5)), graph.nearest((6.5, 1.0, 3.5))
-    lattice = lattice_of(graph)
+    lattice = build_lattice(graph)
     assert np.isinf(straight_m(lattice, high, low))
     down, _ = straight_distances_m(graph, lattice, low)
     up, _ = straight_distances_m(graph, lattice, high)

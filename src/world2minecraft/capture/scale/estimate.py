@@ -118,12 +118,12 @@ def _mode_ranges(weight: np.ndarray) -> list[tuple[int, int]]:
 class ScaleEstimate:
     """``scale`` multiplies the scan's lengths to give metres; ``sigma`` is relative.
 
-    ``told`` are sentences for the report, ``sources`` the names of what it was taken from.
+    ``notes`` are sentences for the report, ``sources`` the names of what it was taken from.
     """
 
     scale: float
     sigma: float
-    told: tuple[str, ...]
+    notes: tuple[str, ...]
     sources: tuple[str, ...]
 
     def __post_init__(self):
@@ -159,17 +159,17 @@ def _from_priors(measures: RoomMeasurements) -> ScaleEstimate:
     if measures.ceiling is not None:
         sources.append(("the ceiling", measures.ceiling * found.scale))
     sources += _named_levels(measures, found.scale)
-    told = [
+    notes = [
         f"scale estimated from {_listed(sources)}: {found.scale:.3g} +- {100 * found.sigma:.0f} %"
     ]
     if found.rival is not None:
-        told.append(
+        notes.append(
             f"the scale may as well be {found.rival[0]:.3g} ({100 * found.rival[1]:.0f} %): "
             "one known length, such as a table's height, would tell"
         )
     if not measures.floor_seen:
-        told.append("no floor was seen, so heights count from the lowest points")
-    return ScaleEstimate(found.scale, found.sigma, tuple(told), tuple(name for name, _ in sources))
+        notes.append("no floor was seen, so heights count from the lowest points")
+    return ScaleEstimate(found.scale, found.sigma, tuple(notes), tuple(name for name, _ in sources))
 
 
 def _named_levels(measures: RoomMeasurements, scale: float) -> list[tuple[str, float]]:
@@ -205,7 +205,7 @@ def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength
     logs = np.log([nearest[n] for n in agreeing])
     scale = float(np.exp((trust * logs).sum() / trust.sum()))
     sigma = max(float(trust.sum() ** -0.5), float(np.std(logs)))
-    told = [
+    notes = [
         f"scale taken from {_describe_match(known, known.length_m / near, measures, scale)}: "
         f"{scale:.3g} +- {100 * sigma:.1f} %"
         if n in agreeing
@@ -213,8 +213,8 @@ def _from_known_lengths(measures: RoomMeasurements, knowns: Sequence[KnownLength
         f"{100 * abs(near / scale - 1):.0f} % and was left out"
         for n, (known, near) in enumerate(zip(knowns, nearest, strict=True))
     ]
-    told += _contradictions(measures, knowns, tried, fit, best)
-    return ScaleEstimate(scale, sigma, tuple(told), tuple(knowns[n].name for n in agreeing))
+    notes += _contradictions(measures, knowns, tried, fit, best)
+    return ScaleEstimate(scale, sigma, tuple(notes), tuple(knowns[n].name for n in agreeing))
 
 
 def _fit(known: KnownLength, choices: list[tuple[float, float]], tried: np.ndarray) -> np.ndarray:

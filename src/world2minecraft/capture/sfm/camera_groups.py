@@ -38,7 +38,7 @@ class CameraGroup:
 
 def camera_by_photo(lenses: list[CameraGroup]) -> dict[int, Camera]:
     """Return the camera of each photo's lens."""
-    return {i: lens.camera for lens in lenses for i in lens.photos}
+    return {i: group.camera for group in lenses for i in group.photos}
 
 
 def default_camera(width_px: int, height_px: int, focal: float = DEFAULT_FOCAL) -> Camera:

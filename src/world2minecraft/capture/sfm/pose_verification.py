@@ -132,7 +132,7 @@ class StatedPoses:
     """What is known before anything is moved."""
 
     photos: list[Features]
-    lenses: list[CameraGroup]
+    groups: list[CameraGroup]
     links: MatchGraph
     poses: dict[int, np.ndarray]
     wrong: set[int]
@@ -162,15 +162,15 @@ def check_poses(
     )
     features = extract_features(photos, chosen, steps)
     reasons.check_enough(features, 2)
-    lenses = group_cameras(features)
-    links = match_photos(features, lenses, chosen, steps)
+    groups = group_cameras(features)
+    links = match_photos(features, groups, chosen, steps)
     poses = {i: p for i, one in enumerate(features) if (p := one.camera_to_scan) is not None}
-    shared = camera_by_photo(lenses)
+    shared = camera_by_photo(groups)
     cameras = {i: one.camera or shared[i] for i, one in enumerate(features)}
     unit = pixel_unit(features)
     off_px = epipolar_errors_px(features, links, poses, cameras)
     wrong = find_outliers(off_px, unit, chosen)
-    stated = StatedPoses(features, lenses, links, poses, wrong, chosen)
+    stated = StatedPoses(features, groups, links, poses, wrong, chosen)
     measured = _triangulate_stated(stated, cameras)
     if len(measured.points) < MIN_POINTS and len(links.matches) < 2:
         raise CaptureError(
@@ -179,14 +179,14 @@ def check_poses(
             "take pictures that overlap, with the lights on",
         )
     before = _error_px(measured, off_px, wrong)
-    good = before <= unit * chosen.good_px and all(lens.known == "stated" for lens in lenses)
-    made = (
+    good = before <= unit * chosen.good_px and all(group.known == "stated" for group in groups)
+    scene = (
         _keep_stated(stated, measured, before, cameras)
         if good
         else _refine_stated(stated, measured, before, steps)
     )
     steps.end()
-    return made
+    return scene
 
 
 def _triangulate_stated(stated: StatedPoses, cameras: dict[int, Camera]) -> SparseModel:
@@ -241,8 +241,8 @@ def _keep_stated(
 ) -> SparseScene:
     """Return the scene with all good poses as they were stated."""
     fresh = _register_missing(stated, measured, cameras)
-    kept = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
-    poses = {**{i: pose for i, (_, pose) in kept.items()}, **fresh}
+    retained = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
+    poses = {**{i: pose for i, (_, pose) in retained.items()}, **fresh}
     gate = stated.parameters.gates_px[-1]
     found = triangulate_and_adjust(
         stated.photos, stated.links, poses, _exact_groups(cameras, poses), gate,
@@ -257,7 +257,7 @@ def _keep_stated(
         "scale_correction": 1.0,
         **_focal_facts(stated, found),
     }
-    return _to_scene(stated, found, None, kept, fresh, facts)
+    return _to_scene(stated, found, None, retained, fresh, facts)
 
 
 def _refine_stated(
@@ -269,7 +269,7 @@ def _refine_stated(
     if found is None:
         notes.append("the stated poses are too far off to start from: places were found anew")
         found, more, _ = map_from_scratch(
-            stated.photos, stated.lenses, stated.links, stated.parameters, steps
+            stated.photos, stated.groups, stated.links, stated.parameters, steps
         )
         notes += more
     change, shared = _align_to_stated(stated, found)
@@ -319,14 +319,14 @@ def _refine_from_stated(stated: StatedPoses, poor: bool) -> SparseModel | None:
     if len(poses) < 2:
         return None
     trusted = dict(poses) if poor else None
-    lenses = [replace(one, known="assumed") if poor else one for one in stated.lenses]
+    groups = [replace(one, known="assumed") if poor else one for one in stated.groups]
     first, later = chosen.gates_px[:1], chosen.gates_px[1:]
-    found = refine_poses(stated.photos, links, poses, lenses, first, chosen, trusted)
-    lenses = replace_cameras(lenses, found.cameras)
-    fresh = _register_missing(stated, found, camera_by_photo(lenses))
+    found = refine_poses(stated.photos, links, poses, groups, first, chosen, trusted)
+    groups = replace_cameras(groups, found.cameras)
+    fresh = _register_missing(stated, found, camera_by_photo(groups))
     poses = {**found.poses, **fresh}
     if later:
-        found = refine_poses(stated.photos, links, poses, lenses, later, chosen, trusted)
+        found = refine_poses(stated.photos, links, poses, groups, later, chosen, trusted)
     settled = found.median_px <= MAX_REFINED_ERROR_PX * pixel_unit(stated.photos)
     if not settled or len(found.poses) < 0.5 * len(linked):
         return None
@@ -353,13 +353,13 @@ def _align_to_stated(stated: StatedPoses, found: SparseModel) -> tuple[Similarit
 
 
 def _focal_facts(stated: StatedPoses, found: SparseModel) -> dict:
-    facts = focal_facts(stated.photos, found, stated.lenses)
+    facts = focal_facts(stated.photos, found, stated.groups)
     return {**facts, "focal_stated_px": facts["focal_given_px"]}
 
 
-def _to_scene(stated, found, change, kept, fresh, facts) -> SparseScene:
+def _to_scene(stated, found, change, retained, fresh, facts) -> SparseScene:
     photos, notes = stated.photos, stated.notes
-    placed = {*found.poses, *kept}
+    placed = {*found.poses, *retained}
     wrong = sorted(stated.wrong)
     for i in wrong:
         how = "found anew" if i in fresh else "left out"
@@ -370,6 +370,6 @@ def _to_scene(stated, found, change, kept, fresh, facts) -> SparseScene:
             out[photos[i].name] = "its stated pose contradicts the pictures; take it again"
     facts = {"stated_wrong": len(wrong), **facts}
     return to_sparse_scene(
-        photos, found, change, kept,
+        photos, found, change, retained,
         left_out=tuple(out.items()), notes=tuple(notes), facts=facts,
     )  # fmt: skip

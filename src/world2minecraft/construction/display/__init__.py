@@ -1,7 +1,7 @@
 """Style ``display``: fine furniture in block_display entities over invisible colliders.
 
-``builder`` sets the objects of a room. ``frame`` says where an object stands, ``shifting`` moves
-it out of walls and onto what carries it, ``pieces`` makes few boxes of many parts, ``tints`` says
-which block each is of, ``heaps`` does both for an object's own cells, and ``colliders`` sets what
+``builder`` places the objects of a room. ``boxes`` makes few boxes of many parts in the frame of an
+object, ``block_alignment`` moves it out of walls and onto what carries it, ``part_materials``
+chooses the block of each part, and ``colliders`` places what
 a player meets.
 """

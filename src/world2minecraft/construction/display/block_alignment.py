@@ -1,4 +1,4 @@
-"""Moving an object of fine geometry by less than a block, so that it fits the blocks of its room.
+"""Alignment of an object of fine geometry, by less than a block, to the blocks of its room.
 
 Walls and floors stand on the lattice, up to half a block off their true planes. What stood before
 a wall must neither sink into it nor leave a gap, and what lay on a table goes where the table goes.

@@ -52,7 +52,7 @@ MAX_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
 MAX_PIECES_ELSE, MAX_PIECES_ROUND = 8, 24
 ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
 LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
-FREE_SHARE = 0.5  # Cells: how finely a template is asked whether it stands in free space.
+FREE_SHARE = 0.5  # Cells: how finely a template is checked for free space.
 FULL_LIGHT = 15
 APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
 

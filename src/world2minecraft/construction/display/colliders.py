@@ -1,4 +1,4 @@
-"""What a player meets where display furniture stands: barriers where it fills a block, else light.
+"""Colliders of display furniture: barriers where it fills a block, light where it does not.
 
 Display entities have no collision. A ``barrier`` is a whole block, so it stands only where the
 object covers a fair share of one; where it does not, an unlit ``light`` block marks the place,

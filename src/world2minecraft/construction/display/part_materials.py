@@ -1,4 +1,4 @@
-"""Which block each part of a piece of furniture is of: its role's material in the real colour."""
+"""The block of each part of a piece of furniture: its role's material in the real colour."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial

@@ -26,7 +26,7 @@ WIDE_M = 0.3  # Narrower things are no front.
 UNIT_M = 0.5  # The depth of a wall unit, at most.
 UNSEEN_SHARE = 0.6  # Of the space between a front and its wall: it was hardly looked into.
 WALL_SHARE = 0.1  # Of the wall behind a unit, that was seen under or over it.
-AROUND_CELLS = 4  # How far under and over the unit its wall is looked for.
+AROUND_CELLS = 4  # How far under and over the unit its wall is searched.
 
 
 def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:

@@ -67,9 +67,9 @@ def join_shapes(
         energy = scores[mine, : shapes.free].copy()
         for way, step in enumerate(WAYS):
             other = padded[tuple((problem.cells[mine] + 1 + step).T)]
-            asked = problem.flows[way, mine] & (other > 0)
+            required = problem.flows[way, mine] & (other > 0)
             cost = np.where(posts[other], LEG_BROKEN, BROKEN).astype(np.float32)
-            energy -= cost[:, None] * (~contact[way][:, other].T & asked[:, None])
+            energy -= cost[:, None] * (~contact[way][:, other].T & required[:, None])
             if step[2]:
                 energy -= np.float32(STACKED) * (stairs[other][:, None] & stairs[: shapes.free])
         best = energy.argmax(1)

@@ -35,8 +35,8 @@ CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds t
 JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
 STEP_M = 0.5  # and moved aside by no more.
 CORD_M = 1.25  # A cord is no longer than this.
-ROUNDS = 8  # What stood on something that is moved floats then, and is mended next;
-GENTLE_ROUNDS = 4  # what is not mended by now never will be.
+ROUNDS = 8  # What stood on something that is moved floats then, and is repaired next;
+GENTLE_ROUNDS = 4  # what is not repaired by now never will be.
 CORD = "minecraft:chain[axis=y,waterlogged=false]"
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 DOWN, UP = np.array([0, -1, 0]), np.array([0, 1, 0])
@@ -150,7 +150,7 @@ def _parts(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
 def _again(
     draft: Draft, parts: np.ndarray, carried: np.ndarray, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The parts after the one of ``number`` was mended: where it went, carried things stand."""
+    """The parts after the one of ``number`` was repaired: where it went, carried things stand."""
     parts[parts == number] = 0
     for cell in (draft.edits[-1].cells - draft.corner).tolist():
         at = tuple(cell)

@@ -10,10 +10,10 @@ from world2minecraft.editing.scene.scene_objects import instances_of, objects_of
 __all__ = [
     "COMMANDS",
     "Command",
-    "Timeline",
     "MemoryLog",
     "SceneDraft",
     "SceneHistory",
+    "Timeline",
     "Tools",
     "cells_of_runs",
     "instances_of",

@@ -3,7 +3,7 @@
 Objects: those that no piece of furniture fits, that another fits almost as well, whose cells are
 not sure, that nothing carries. Cells: what floats, crumbs of no object, regions that
 are rather wrong than right by their calibrated confidence, regions completed and never
-seen. What a person painted is sure and observed, so that a place mended no longer appears.
+seen. What a person painted is sure and observed, so that a repaired place no longer appears.
 """
 
 from collections.abc import Callable, Iterable, Iterator

@@ -98,7 +98,7 @@ class SetTemplate(Command):
 
 
 class Rematch(Command):
-    """Match the furniture of objects anew, as the reconstruction does, from their cells."""
+    """Match the furniture of objects again, as the reconstruction does, from their cells."""
 
     op: Literal["rematch"] = "rematch"
     ids: Ids

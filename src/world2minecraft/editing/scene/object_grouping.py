@@ -66,7 +66,7 @@ class SplitObject(Command):
     """Split an object into a number of parts by where its cells lie, or in two by a plane.
 
     The largest part keeps the id; the others are new objects of the same class. Each is measured
-    and matched anew.
+    and matched again.
     """
 
     op: Literal["split_object"] = "split_object"
@@ -165,7 +165,7 @@ class MergeObjects(Command):
 
 
 class Recluster(Command):
-    """Find the objects of a class, or all, anew by other figures of the paper's clustering.
+    """Find the objects of a class, or all, again by other parameters of the paper's clustering.
 
     An object that shares most of its cells with an old one keeps that one's id.
     """

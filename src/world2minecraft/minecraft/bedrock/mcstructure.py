@@ -47,10 +47,10 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
         UsageError: the volume is empty or larger than is read back.
         OutputError: it cannot be written.
     """
-    told = Losses() if losses is None else losses
+    counted = Losses() if losses is None else losses
     if not volume.states.size or volume.states.size * 8 > MAX_BYTES - (1 << 20):
         raise UsageError(f"a .mcstructure holds 1 to 12 million blocks, not {volume.states.size:,}")
-    _count_losses(volume, told)
+    _count_losses(volume, counted)
     palette, numbers, is_wet = _bedrock_palette(volume.palette)
     cells = np.ascontiguousarray(volume.states).ravel()  # x, y, z with z fastest, as ours are.
     water = palette.index(palette_entry(*_bedrock(WATER)))
@@ -84,10 +84,10 @@ def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVol
         InputError: there is no file. DamagedFileError: it is no structure.
         LimitError: it is larger than the program reads.
     """
-    told, source = Losses() if losses is None else losses, Path(path)
+    counted, source = Losses() if losses is None else losses, Path(path)
     tree = read_little(read_bytes(source, MAX_BYTES), source, LIMITS)
     try:
-        return _volume_of(tree, source, told)
+        return _volume_of(tree, source, counted)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no Bedrock structure{missing}") from error

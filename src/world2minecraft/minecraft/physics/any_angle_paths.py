@@ -1,4 +1,4 @@
-"""Ways on foot that bend only where they must, as people walk: no zigzag of eight directions.
+"""Any-angle shortest paths (lazy Theta*): ways bend only where they must, as people walk.
 
 From a place one walks straight to any other that it sees: a body at each point of the line
 between stands within the bodies of the four places around it, and all of those hang together by
@@ -14,8 +14,8 @@ from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.physics.shortest_paths import pop, push
 from world2minecraft.minecraft.physics.walk_graph import WalkGraph
 
-LEAST_GAIN_M = 1e-9
-SAME = 1e-9  # Shares of a way that differ by less are one: there it passes a place.
+MIN_GAIN_M = 1e-9
+TOLERANCE = 1e-9  # Shares of a way that differ by less are one: there it passes a place.
 SWEEPS = 1  # Over all places, in which bends of neighbours are tried; a second gains nothing.
 
 
@@ -29,7 +29,7 @@ class Lattice(NamedTuple):
     link: np.ndarray  # int32 [N, 9], by 3 * (dx + 1) + dz + 1; -1 for none
 
 
-def lattice_of(graph: WalkGraph) -> Lattice:
+def build_lattice(graph: WalkGraph) -> Lattice:
     """Return the lattice of a graph with one place or more."""
     feet_m = graph.feet / graph.blocks_per_metre
     (xs_m, x), (zs_m, z) = (np.unique(feet_m[:, axis], return_inverse=True) for axis in (0, 2))
@@ -59,10 +59,9 @@ def straight_distances_m(
         straight to that one, which is itself at an end and -1 where no way leads.
     """
     sources = np.atleast_1d(np.asarray(places, np.int64))
-    steps = (graph.edge_start, graph.edge_to, graph.edge_m)
-    away, bend, order = _searched(lattice, steps, graph.backward, sources)
+    away, bend, order = _lazy_theta_star(lattice, graph.edges, graph.backward, sources)
     for _ in range(SWEEPS):
-        _swept(lattice, steps, order, away, bend)
+        _relax_bends(lattice, graph.edges, order, away, bend)
     return away, bend
 
 
@@ -84,8 +83,8 @@ def straight_m(lattice, here, there):
         over_z = (lattice.zs_m[k + down] - begin_z) / deep if k != to_k else 2.0
         if right != 0 and down != 0 and lattice.link[here, 3 * right + down + 4] < 0:
             return np.inf
-        move_x = right if over_x <= over_z + SAME else 0
-        move_z = down if over_z <= over_x + SAME else 0
+        move_x = right if over_x <= over_z + TOLERANCE else 0
+        move_z = down if over_z <= over_x + TOLERANCE else 0
         to = lattice.link[here, 3 * move_x + move_z + 4]
         if to < 0:
             return np.inf
@@ -97,14 +96,14 @@ def straight_m(lattice, here, there):
 
 
 @njit
-def _searched(lattice, steps, back, sources):
+def _lazy_theta_star(lattice, edges, back, sources):
     """Return distances, bends and places in the order of their distance: a lazy Theta* search.
 
-    ``steps`` and ``back`` are starts, ends and lengths of the steps from places and to them. A
+    ``edges`` and ``back`` are the steps from places and those to them, as ``Edges``. A
     place takes over the bend of the one before it, unseen; when its turn comes one looks, and
     where the bend is hidden, or steps are shorter, the best step to a place that is done is taken.
     """
-    start, to, _ = back
+    start, to = back.start, back.to
     count = len(start) - 1
     away, bend = np.full(count, np.inf), np.full(count, -1, np.int32)
     keys = np.empty(len(to) + len(sources) + 1)
@@ -120,13 +119,13 @@ def _searched(lattice, steps, back, sources):
         if done[here]:
             continue
         if bend[here] != here:
-            _settle(lattice, steps, done, away, bend, here)
+            _confirm_bend(lattice, edges, done, away, bend, here)
         done[here], order[found] = True, here
         found += 1
         for edge in range(start[here], start[here + 1]):
             there = to[edge]
             if not done[there]:
-                length = _chord(lattice, there, bend[here]) + away[bend[here]]
+                length = _level_distance(lattice, there, bend[here]) + away[bend[here]]
                 if length < away[there]:
                     away[there], bend[there] = length, bend[here]
                     size = push(keys, values, size, length, there)
@@ -134,29 +133,29 @@ def _searched(lattice, steps, back, sources):
 
 
 @njit
-def _settle(lattice, steps, done, away, bend, here):
+def _confirm_bend(lattice, edges, done, away, bend, here):
     """Make sure of the way of a place: straight to its bend, else a step to another place."""
-    start, to, cost = steps
+    start, to, cost = edges.start, edges.to, edges.length_m
     away[here] = straight_m(lattice, here, bend[here]) + away[bend[here]]
     for edge in range(start[here], start[here + 1]):
         length = away[to[edge]] + cost[edge]
-        if done[to[edge]] and length < away[here] - LEAST_GAIN_M:
+        if done[to[edge]] and length < away[here] - MIN_GAIN_M:
             away[here], bend[here] = length, to[edge]
 
 
 @njit
-def _swept(lattice, steps, order, away, bend):
+def _relax_bends(lattice, edges, order, away, bend):
     """Shorten ways, nearest places first, by the bends of their neighbours and those after them."""
-    start, to, cost = steps
+    start, to, cost = edges.start, edges.to, edges.length_m
     for here in order:
         for edge in range(start[here], start[here + 1]):
-            if away[to[edge]] + cost[edge] < away[here] - LEAST_GAIN_M:
+            if away[to[edge]] + cost[edge] < away[here] - MIN_GAIN_M:
                 away[here], bend[here] = away[to[edge]] + cost[edge], to[edge]
             turn = bend[to[edge]]
             for _ in range(2):
                 if turn < 0 or turn == here or turn == bend[here]:
                     break
-                if _chord(lattice, here, turn) + away[turn] < away[here] - LEAST_GAIN_M:
+                if _level_distance(lattice, here, turn) + away[turn] < away[here] - MIN_GAIN_M:
                     length = straight_m(lattice, here, turn) + away[turn]
                     if length < away[here]:
                         away[here], bend[here] = length, turn
@@ -164,7 +163,7 @@ def _swept(lattice, steps, order, away, bend):
 
 
 @njit
-def _chord(lattice, here, there):
+def _level_distance(lattice, here, there):
     """Return how far apart two places are, level."""
     x = lattice.xs_m[lattice.at[here, 0]] - lattice.xs_m[lattice.at[there, 0]]
     z = lattice.zs_m[lattice.at[here, 1]] - lattice.zs_m[lattice.at[there, 1]]

@@ -18,7 +18,7 @@ _RINGS = 40  # Of places tried around one that is taken, a quarter of a body apa
 
 
 def find_overlaps(boxes: np.ndarray, box: np.ndarray, touch: float = TOUCH) -> np.ndarray:
-    """Return which of some boxes a box lies over, bool [N]; touching is not lying over."""
+    """Return which of some boxes overlap a box, bool [N]; touching is no overlap."""
     inside = (boxes[:, :3] < box[3:] - touch) & (boxes[:, 3:] > box[:3] + touch)
     return np.asarray(inside.all(axis=1))
 
@@ -30,16 +30,16 @@ def free_distance(
     if not way or not len(boxes):
         return way
     one, two = _OTHERS[axis]
-    beside = (
+    in_reach = (
         (boxes[:, one] < box[3 + one] - touch)
         & (boxes[:, 3 + one] > box[one] + touch)
         & (boxes[:, two] < box[3 + two] - touch)
         & (boxes[:, 3 + two] > box[two] + touch)
     )
     if way > 0:
-        gaps = boxes[beside, axis] - box[3 + axis]
+        gaps = boxes[in_reach, axis] - box[3 + axis]
         return float(min(way, gaps[gaps >= -touch].min(initial=way)))
-    gaps = boxes[beside, 3 + axis] - box[axis]
+    gaps = boxes[in_reach, 3 + axis] - box[axis]
     return float(max(way, gaps[gaps <= touch].max(initial=way)))
 
 
@@ -87,7 +87,7 @@ def _length(x: float, z: float) -> float:
 
 
 class World(Protocol):
-    """Anything that knows its boxes."""
+    """Anything that has collision boxes."""
 
     def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return the boxes, float64 [N, 6] in blocks, that reach into a box; more do no harm."""

@@ -94,10 +94,10 @@ class StandingPlaces(NamedTuple):
 def find_standing_places(
     solid: CollisionGrid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
 ) -> StandingPlaces:
-    """Return where a body stands in each column of a volume.
+    """Return the gaps in which a body stands, in each column of a volume.
 
     Args:
-        solid: what stops a body.
+        solid: the collision boxes.
         columns: where they are along x and along z, float64, in cells from the volume's corner.
         half: half the body's width, in blocks.
         height: how high it is, in blocks.
@@ -208,6 +208,14 @@ def _ground(solid, box, floor):
     return found
 
 
+class Edges(NamedTuple):
+    """Steps from N places, in rows: those of place n are ``start[n]`` to ``start[n + 1]``."""
+
+    start: np.ndarray  # int64 [N + 1]
+    to: np.ndarray  # int32 [E]
+    length_m: np.ndarray  # float64 [E]
+
+
 @dataclass(frozen=True)
 class WalkRule:
     """How one walks; lengths are those of a player of the game's size.
@@ -256,8 +264,8 @@ class WalkGraph:
         """Return the graph of some places alone, in their order, with the steps between them."""
         number = np.full(len(self), -1, np.int32)
         number[places] = np.arange(len(places))
-        kept = (number[self.edge_from] >= 0) & (number[self.edge_to] >= 0)
-        begins, ends = number[self.edge_from[kept]], number[self.edge_to[kept]]
+        inside = (number[self.edge_from] >= 0) & (number[self.edge_to] >= 0)
+        begins, ends = number[self.edge_from[inside]], number[self.edge_to[inside]]
         order = np.argsort(begins, kind="stable")
         counts = np.bincount(begins, minlength=len(places))
         return replace(
@@ -267,7 +275,7 @@ class WalkGraph:
             ground=self.ground[places],
             edge_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
             edge_to=ends[order],
-            edge_m=self.edge_m[kept][order],
+            edge_m=self.edge_m[inside][order],
         )
 
     @cached_property
@@ -276,12 +284,17 @@ class WalkGraph:
         return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.edge_start))
 
     @cached_property
-    def backward(self) -> "tuple[np.ndarray, np.ndarray, np.ndarray]":
-        """The steps turned round: ``edge_start``, ``edge_to`` and ``edge_m``."""
+    def edges(self) -> "Edges":
+        """The steps, as kernels read them."""
+        return Edges(self.edge_start, self.edge_to, self.edge_m)
+
+    @cached_property
+    def backward(self) -> "Edges":
+        """The steps turned round."""
         order = np.argsort(self.edge_to, kind="stable")
         counts = np.bincount(self.edge_to, minlength=len(self))
         start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        return start, self.edge_from[order], self.edge_m[order]
+        return Edges(start, self.edge_from[order], self.edge_m[order])
 
 
 def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
@@ -367,10 +380,10 @@ def _drop_furniture(stands: StandingPlaces) -> StandingPlaces:
     """Return the stands whose ground is none of chair, bed, sofa, table, screen and furniture."""
     low, high = _FURNITURE
     there = np.arange(stands.floor.shape[1]) < stands.counts[:, None]
-    kept = there & ~((stands.ground >= low) & (stands.ground <= high))
-    order = np.argsort(~kept, axis=1, kind="stable")
+    stays = there & ~((stands.ground >= low) & (stands.ground <= high))
+    order = np.argsort(~stays, axis=1, kind="stable")
     moved = [np.take_along_axis(part, order, axis=1) for part in stands[1:]]
-    return StandingPlaces(kept.sum(axis=1).astype(np.int32), *moved)
+    return StandingPlaces(stays.sum(axis=1).astype(np.int32), *moved)
 
 
 @njit

@@ -62,7 +62,7 @@ _FLAT = (NORTH, EAST, SOUTH, WEST)
 
 
 class Traits(NamedTuple):
-    """Numbers that say all that a neighbour needs to know of a state."""
+    """What a neighbour needs to know of a state, as numbers."""
 
     kind: int = OTHER
     block: int = 0  # the same for states of one block
@@ -120,7 +120,7 @@ def _variant(name: str, kind: int, values: dict[str, str]) -> int:
 
 
 class StateGrid:
-    """A volume with a rim of air around it, whose states are changed by kind.
+    """A volume of block states with a rim of air, while rules change it by looking at neighbours.
 
     Cells are numbers into ``flat``, the volume with its rim in C order.
     """
@@ -149,7 +149,7 @@ class StateGrid:
     def column(self, name: str) -> np.ndarray:
         """Return one trait of every state of the palette, int32 [P]."""
         known = self._columns.get(name, _NONE)
-        if len(known) < len(self.palette):  # States that have joined since it was last asked for.
+        if len(known) < len(self.palette):  # States that have joined since the last call.
             more = [self._trait(text, name) for text in self.palette[len(known) :]]
             self._columns[name] = known = np.concatenate([known, np.array(more, np.int32)])
         return known
@@ -188,10 +188,10 @@ class StateGrid:
         for value in values.T:
             keys = keys * width + value
         _, first, index = np.unique(keys, return_index=True, return_inverse=True)
-        made = [self._having(int(own[i]), write(values[i].tolist())) for i in first]
-        self.flat[cells] = np.array(made, np.uint16)[index.ravel()]
+        numbers = [self._with_properties(int(own[i]), write(values[i].tolist())) for i in first]
+        self.flat[cells] = np.array(numbers, np.uint16)[index.ravel()]
 
-    def _having(self, number: int, changed: dict[str, str]) -> int:
+    def _with_properties(self, number: int, changed: dict[str, str]) -> int:
         state = complete(parse_state(self.palette[number]))
         if all(state.get(key) == value for key, value in changed.items()):
             return number
@@ -240,7 +240,7 @@ def update_connections(
         >>> palette[states[0, 0, 0]]
         'minecraft:oak_fence[east=true,north=false,south=false,waterlogged=false,west=false]'
     """
-    board = StateGrid(states, palette)
+    grid = StateGrid(states, palette)
     for rule in (
         _doors,
         _chests,
@@ -252,152 +252,150 @@ def update_connections(
         _snowy,
         _campfires,
     ):
-        rule(board)
-    return board.result()
+        rule(grid)
+    return grid.result()
 
 
-def _doors(board: StateGrid) -> None:
+def _doors(grid: StateGrid) -> None:
     """The upper half of a door follows its lower half."""
-    cells = board.cells_of(DOOR)
+    cells = grid.cells_of(DOOR)
     if not len(cells):
         return
-    below = board.at(cells, DOWN)
-    top, block = board.column("top"), board.column("block")
-    own = board.at(cells)
-    pairs = (top[own] == 1) & (board.column("kind")[below] == DOOR)
+    below = grid.at(cells, DOWN)
+    top, block = grid.column("top"), grid.column("block")
+    own = grid.at(cells)
+    pairs = (top[own] == 1) & (grid.column("kind")[below] == DOOR)
     pairs &= (top[below] == 0) & (block[own] == block[below])
-    lower = board.palette
+    lower = grid.palette
 
     def write(row: list[int]) -> dict[str, str]:
         state = complete(parse_state(lower[row[0]]))
         return {key: state.get(key) for key in _DOOR_KEYS if state.get(key)}
 
-    board.change(cells[pairs], below[pairs][:, None], write)
+    grid.change(cells[pairs], below[pairs][:, None], write)
 
 
-def _chests(board: StateGrid) -> None:
-    """A half of a double chest without its other half is single; a chest joins one that asks."""
-    for rule in (_orphan_chests, _asked_chests):
-        cells = board.cells_of(CHEST)
+def _chests(grid: StateGrid) -> None:
+    """A half of a double chest without its other half is single; a chest joins a half facing it."""
+    for rule in (_orphan_chests, _requested_chests):
+        cells = grid.cells_of(CHEST)
         if len(cells):
-            rule(board, cells)
+            rule(grid, cells)
 
 
-def _orphan_chests(board: StateGrid, cells: np.ndarray) -> None:
-    own = board.at(cells)
-    halves = board.column("variant")[own] > 0
+def _orphan_chests(grid: StateGrid, cells: np.ndarray) -> None:
+    own = grid.at(cells)
+    halves = grid.column("variant")[own] > 0
     cells, own = cells[halves], own[halves]
-    other = board.towards(cells, _partner(board)[own])
-    block = board.column("block")
+    other = grid.towards(cells, _partner(grid)[own])
+    block = grid.column("block")
     alone = block[own] != block[other]
-    board.change(cells[alone], np.zeros((alone.sum(), 1), int), lambda _: {"type": "single"})
+    grid.change(cells[alone], np.zeros((alone.sum(), 1), int), lambda _: {"type": "single"})
 
 
-def _asked_chests(board: StateGrid, cells: np.ndarray) -> None:
-    own = board.at(cells)
-    variant, facing, block = (board.column(name) for name in ("variant", "facing", "block"))
-    partner = _partner(board)
+def _requested_chests(grid: StateGrid, cells: np.ndarray) -> None:
+    own = grid.at(cells)
+    variant, facing, block = (grid.column(name) for name in ("variant", "facing", "block"))
+    partner = _partner(grid)
     chosen = np.zeros(len(cells), int)
     for side in _FLAT:
-        other = board.at(cells, side)
+        other = grid.at(cells, side)
         asks = (block[other] == block[own]) & (facing[other] == facing[own])
         asks &= (variant[own] == 0) & (variant[other] > 0) & (partner[other] == OPPOSITE[side])
         chosen[asks & (chosen == 0)] = 3 - variant[other][asks & (chosen == 0)]
     asked = chosen > 0
-    board.change(cells[asked], chosen[asked][:, None], lambda row: {"type": TYPES[row[0]]})
+    grid.change(cells[asked], chosen[asked][:, None], lambda row: {"type": TYPES[row[0]]})
 
 
-def _partner(board: StateGrid) -> np.ndarray:
+def _partner(grid: StateGrid) -> np.ndarray:
     """Return the direction, int [P], of the other half: a left half's is clockwise."""
-    return (board.column("facing") + np.where(board.column("variant") == 1, 1, 3)) % 4
+    return (grid.column("facing") + np.where(grid.column("variant") == 1, 1, 3)) % 4
 
 
-def _stairs(board: StateGrid) -> None:
+def _stairs(grid: StateGrid) -> None:
     """A stair bends around the stair before it, else into the one behind it."""
-    cells = board.cells_of(STAIRS)
+    cells = grid.cells_of(STAIRS)
     if not len(cells):
         return
-    kind, facing, top = (board.column(name) for name in ("kind", "facing", "top"))
-    own = board.at(cells)
+    kind, facing, top = (grid.column(name) for name in ("kind", "facing", "top"))
+    own = grid.at(cells)
     side, half = facing[own], top[own]
     shape = np.zeros(len(cells), int)
     for way, first in ((side, 3), ((side + 2) % 4, 1)):
-        other = board.towards(cells, way)
+        other = grid.towards(cells, way)
         turned = facing[other]
         bends = (kind[other] == STAIRS) & (top[other] == half) & ((turned - side) % 2 == 1)
         # A stair of the same turn beside it, where the corner would open, keeps it straight.
-        beside = board.towards(cells, np.where(first == 3, turned + 2, turned) % 4)
+        beside = grid.towards(cells, np.where(first == 3, turned + 2, turned) % 4)
         alike = (kind[beside] == STAIRS) & (facing[beside] == side) & (top[beside] == half)
         bends &= ~alike & (shape == 0)
         shape[bends] = first + (turned[bends] != (side[bends] + 3) % 4)
-    board.change(cells, shape[:, None], lambda row: {"shape": SHAPES[row[0]]})
+    grid.change(cells, shape[:, None], lambda row: {"shape": SHAPES[row[0]]})
 
 
-def _gates(board: StateGrid) -> None:
+def _gates(grid: StateGrid) -> None:
     """A gate beside a wall hangs lower."""
-    cells = board.cells_of(GATE)
+    cells = grid.cells_of(GATE)
     if not len(cells):
         return
-    walls = np.isin(board.column("kind"), (WALL, OLD_WALL))
-    facing = board.column("facing")[board.at(cells)]
-    beside = [walls[board.towards(cells, (facing + turn) % 4)] for turn in (1, 3)]
+    walls = np.isin(grid.column("kind"), (WALL, OLD_WALL))
+    facing = grid.column("facing")[grid.at(cells)]
+    beside = [walls[grid.towards(cells, (facing + turn) % 4)] for turn in (1, 3)]
     sunk = (beside[0] | beside[1]).astype(int)
-    board.change(cells, sunk[:, None], lambda row: {"in_wall": _text(row[0])})
+    grid.change(cells, sunk[:, None], lambda row: {"in_wall": _text(row[0])})
 
 
-def _panes_and_fences(board: StateGrid) -> None:
+def _panes_and_fences(grid: StateGrid) -> None:
     """Panes, bars and fences join what they know, and full faces."""
     for kind in (PANE, FENCE, BRICK_FENCE):
-        cells = board.cells_of(kind)
+        cells = grid.cells_of(kind)
         if len(cells):
-            joined = np.stack(
-                [_joins_neighbour(board, cells, side, kind) for side in _FLAT], axis=1
-            )
-            board.change(
+            joined = np.stack([_joins_neighbour(grid, cells, side, kind) for side in _FLAT], axis=1)
+            grid.change(
                 cells,
                 joined.astype(int),
                 lambda row: {side: _text(held) for side, held in zip(SIDES, row, strict=True)},
             )
 
 
-def _joins_neighbour(board: StateGrid, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
+def _joins_neighbour(grid: StateGrid, cells: np.ndarray, side: int, kind: int) -> np.ndarray:
     """Return whether cells of a kind join their neighbours at a side, bool [N]."""
-    other = board.at(cells, side)
-    kinds = board.column("kind")[other]
-    joined = (board.column("sturdy")[other] >> OPPOSITE[side] & 1).astype(bool)
+    other = grid.at(cells, side)
+    kinds = grid.column("kind")[other]
+    joined = (grid.column("sturdy")[other] >> OPPOSITE[side] & 1).astype(bool)
     if kind in (PANE, WALL):
         joined |= np.isin(kinds, (PANE, WALL, OLD_WALL))
     else:
         joined |= kinds == kind
     if kind != PANE:  # A gate is joined at its two ends.
-        joined |= (kinds == GATE) & ((board.column("facing")[other] - side) % 2 == 1)
+        joined |= (kinds == GATE) & ((grid.column("facing")[other] - side) % 2 == 1)
     return joined
 
 
-def _walls(board: StateGrid) -> None:
+def _walls(grid: StateGrid) -> None:
     """Walls from the top down: a wall's sides and post depend on what stands on it."""
-    cells = board.cells_of(WALL)
+    cells = grid.cells_of(WALL)
     if not len(cells):
         return
-    joined = np.stack([_joins_neighbour(board, cells, side, WALL) for side in _FLAT], axis=1)
-    heights = board.heights(cells)
+    joined = np.stack([_joins_neighbour(grid, cells, side, WALL) for side in _FLAT], axis=1)
+    heights = grid.heights(cells)
     for level in np.unique(heights)[::-1]:
         here = heights == level
-        _wall_layer(board, cells[here], joined[here])
+        _wall_layer(grid, cells[here], joined[here])
 
 
-def _wall_layer(board: StateGrid, cells: np.ndarray, joined: np.ndarray) -> None:
-    above = board.at(cells, UP)
-    arms = board.column("arms")[above][:, None]
+def _wall_layer(grid: StateGrid, cells: np.ndarray, joined: np.ndarray) -> None:
+    above = grid.at(cells, UP)
+    arms = grid.column("arms")[above][:, None]
     covered = (arms >> np.arange(4) & 1).astype(bool)
     sides = np.where(joined, np.where(covered, 2, 1), 0)
     none = sides == 0
     ends = none.all(axis=1) | (none[:, NORTH] != none[:, SOUTH]) | (none[:, EAST] != none[:, WEST])
     tall = sides == 2
     through = tall[:, NORTH] & tall[:, SOUTH] | tall[:, EAST] & tall[:, WEST]
-    pressed = (board.column("post")[above] == 1) | (arms[:, 0] >> 4 & 1 == 1)
-    post = (board.column("up")[above] == 1) | ends | (~through & pressed)
-    board.change(
+    pressed = (grid.column("post")[above] == 1) | (arms[:, 0] >> 4 & 1 == 1)
+    post = (grid.column("up")[above] == 1) | ends | (~through & pressed)
+    grid.change(
         cells,
         np.column_stack([sides, post]),
         lambda row: {
@@ -407,36 +405,36 @@ def _wall_layer(board: StateGrid, cells: np.ndarray, joined: np.ndarray) -> None
     )
 
 
-def _leaves(board: StateGrid) -> None:
+def _leaves(grid: StateGrid) -> None:
     """Leaves count the way to the nearest log through leaves, up to seven."""
-    cells = board.cells_of(LEAVES)
+    cells = grid.cells_of(LEAVES)
     if not len(cells):
         return
-    kinds = board.column("kind").astype(np.uint8)[board.flat]
+    kinds = grid.column("kind").astype(np.uint8)[grid.flat]
     distance = np.where(kinds == LOG, 0, MAX_LEAF_DISTANCE).astype(np.uint8)
     for _ in range(MAX_LEAF_DISTANCE - 1):
-        around = [distance[cells + step] for step in board.steps]
+        around = [distance[cells + step] for step in grid.steps]
         distance[cells] = np.minimum(np.min(around, axis=0) + 1, MAX_LEAF_DISTANCE)
     found = distance[cells].astype(int)
-    board.change(cells, found[:, None], lambda row: {"distance": str(row[0])})
+    grid.change(cells, found[:, None], lambda row: {"distance": str(row[0])})
 
 
-def _snowy(board: StateGrid) -> None:
+def _snowy(grid: StateGrid) -> None:
     """Grass and its kin are white under snow."""
-    cells = board.cells_of(SNOWY)
+    cells = grid.cells_of(SNOWY)
     if len(cells):
-        snow = board.column("variant")[board.at(cells, UP)] == 1
-        snow &= board.column("kind")[board.at(cells, UP)] == OTHER
-        board.change(cells, snow.astype(int)[:, None], lambda row: {"snowy": _text(row[0])})
+        snow = grid.column("variant")[grid.at(cells, UP)] == 1
+        snow &= grid.column("kind")[grid.at(cells, UP)] == OTHER
+        grid.change(cells, snow.astype(int)[:, None], lambda row: {"snowy": _text(row[0])})
 
 
-def _campfires(board: StateGrid) -> None:
+def _campfires(grid: StateGrid) -> None:
     """A campfire on hay smokes high."""
-    cells = board.cells_of(CAMPFIRE)
+    cells = grid.cells_of(CAMPFIRE)
     if len(cells):
-        hay = board.column("variant")[board.at(cells, DOWN)] == 2
-        hay &= board.column("kind")[board.at(cells, DOWN)] == OTHER
-        board.change(cells, hay.astype(int)[:, None], lambda row: {"signal_fire": _text(row[0])})
+        hay = grid.column("variant")[grid.at(cells, DOWN)] == 2
+        hay &= grid.column("kind")[grid.at(cells, DOWN)] == OTHER
+        grid.change(cells, hay.astype(int)[:, None], lambda row: {"signal_fire": _text(row[0])})
 
 
 def _text(held: int) -> str:

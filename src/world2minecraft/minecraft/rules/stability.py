@@ -38,9 +38,9 @@ _MELTING = ("minecraft:ice", "minecraft:snow")
 
 
 class SupportOption(NamedTuple):
-    """One way to be held: what is asked of the blocks in some directions, one of which must do.
+    """One way to be supported: what one of the blocks in some directions must offer.
 
-    ``none`` turns it round: none of them may.
+    ``none`` inverts it: none of them may.
     """
 
     directions: tuple[int, ...]
@@ -49,9 +49,9 @@ class SupportOption(NamedTuple):
 
 
 class Demand(NamedTuple):
-    """What a state needs: one of its wishes, else the reason holds."""
+    """What a state needs: one of its options for support, else the reason holds."""
 
-    wishes: tuple[SupportOption, ...]
+    options: tuple[SupportOption, ...]
     reason: str
 
 
@@ -66,7 +66,7 @@ class _Rule(NamedTuple):
 
 @lru_cache(maxsize=1 << 16)
 def support_demands(text: str) -> tuple[Demand, ...]:
-    """Return all that a block state demands.
+    """Return all demands of a block state.
 
     Raises:
         UsageError: the text is no block state.
@@ -220,7 +220,7 @@ def find_unstable(volume: BlockVolume) -> list[UnstableBlock]:
     """Return the blocks of a volume that would not stay, in the order of x, y, z.
 
     What lies outside the volume counts as air. Redstone and growth by hand are left out; what
-    grows, melts, weathers or decays by itself is told.
+    grows, melts, weathers or decays by itself is reported.
 
     Args:
         volume: the blocks; positions come in its world coordinates.
@@ -252,9 +252,9 @@ def find_unmet_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     """Return the same but for those that an update would only connect or shape otherwise."""
-    board = StateGrid(states, palette)
-    found = [*_unmet(board), *_flowing(board)]
-    return sorted((_place(board, cell), palette[int(board.flat[cell])], why) for cell, why in found)
+    grid = StateGrid(states, palette)
+    found = [*_unmet(grid), *_flowing(grid)]
+    return sorted((_place(grid, cell), palette[int(grid.flat[cell])], why) for cell, why in found)
 
 
 def _all_cells(
@@ -263,42 +263,42 @@ def _all_cells(
     return find_unmet_cells(states, palette) + _changing(states, palette)
 
 
-def _place(board: StateGrid, cell: int) -> tuple[int, int, int]:
-    x, y, z = (int(i) - 1 for i in np.unravel_index(cell, board.shape))
+def _place(grid: StateGrid, cell: int) -> tuple[int, int, int]:
+    x, y, z = (int(i) - 1 for i in np.unravel_index(cell, grid.shape))
     return x, y, z
 
 
-def _unmet(board: StateGrid) -> Iterable[tuple[int, str]]:
+def _unmet(grid: StateGrid) -> Iterable[tuple[int, str]]:
     """Yield the cells whose needs no neighbour meets, with the reason."""
-    demands = [support_demands(text) for text in board.palette]
+    demands = [support_demands(text) for text in grid.palette]
     asking = np.array([bool(held) for held in demands])
     if not asking.any():
         return
-    cells = np.flatnonzero(asking[board.flat])
-    own = board.flat[cells]
+    cells = np.flatnonzero(asking[grid.flat])
+    own = grid.flat[cells]
     for number in np.unique(own).tolist():
         mine = cells[own == number]
         for demand in demands[number]:
-            for cell in mine[~_is_met(board, mine, demand)].tolist():
+            for cell in mine[~_is_met(grid, mine, demand)].tolist():
                 yield cell, demand.reason
 
 
-def _is_met(board: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
+def _is_met(grid: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
     """Return which cells, bool [N], have one of the neighbours that a demand wants."""
     met = np.zeros(len(cells), bool)
-    for wish in demand.wishes:
+    for option in demand.options:
         answers = [
-            _answers(board, board.at(cells, way), wish.asked, way) for way in wish.directions
+            _offers_each(grid, grid.at(cells, way), option.asked, way) for way in option.directions
         ]
         if answers:
-            met |= ~np.any(answers, axis=0) if wish.none else np.any(answers, axis=0)
+            met |= ~np.any(answers, axis=0) if option.none else np.any(answers, axis=0)
     return met
 
 
-def _answers(board: StateGrid, neighbours: np.ndarray, asked: str, way: int) -> np.ndarray:
+def _offers_each(grid: StateGrid, neighbours: np.ndarray, asked: str, way: int) -> np.ndarray:
     """Return which neighbours, uint16 [N], give what is asked of them, bool [N]."""
     met, index = np.unique(neighbours, return_inverse=True)
-    return np.array([offers_support(board.palette[one], asked, way) for one in met], bool)[
+    return np.array([offers_support(grid.palette[one], asked, way) for one in met], bool)[
         index.ravel()
     ]
 
@@ -319,18 +319,18 @@ def _changing(
     ]
 
 
-def _flowing(board: StateGrid) -> Iterable[tuple[int, str]]:
+def _flowing(grid: StateGrid) -> Iterable[tuple[int, str]]:
     """Yield the cells whose water would run into a neighbour at its side or under it."""
-    wet = np.array([holds_water(text) for text in board.palette])
+    wet = np.array([holds_water(text) for text in grid.palette])
     if not wet.any():
         return
-    floodable = np.array([is_floodable(text) for text in board.palette])
-    shut = np.array([faces_of(text).full for text in board.palette])
-    cells = np.flatnonzero(wet[board.flat])
-    own = board.flat[cells]
+    floodable = np.array([is_floodable(text) for text in grid.palette])
+    shut = np.array([faces_of(text).full for text in grid.palette])
+    cells = np.flatnonzero(wet[grid.flat])
+    own = grid.flat[cells]
     runs = np.zeros(len(cells), bool)
     for way in (*range(UP), DOWN):
-        runs |= floodable[board.at(cells, way)] & ~shut[own, way]
+        runs |= floodable[grid.at(cells, way)] & ~shut[own, way]
     for cell in cells[runs].tolist():
         yield cell, "flows: nothing holds its water"
 

@@ -186,7 +186,7 @@ def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
 
     Args:
         path: the file.
-        losses: told what a volume cannot hold.
+        losses: counts what a volume cannot hold.
 
     Raises:
         InputError: there is no file, or one of 1.12. DamagedFileError: it is no Litematica file.

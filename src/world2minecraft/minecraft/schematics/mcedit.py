@@ -47,7 +47,7 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
 
     Args:
         path: the file.
-        losses: told of blocks without a name of today, and of what else a volume cannot hold.
+        losses: counts blocks without a name of today, and of what else a volume cannot hold.
 
     Raises:
         InputError: there is no file, or one of another game. DamagedFileError: it is no
@@ -79,9 +79,9 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
     else:
         losses.add("connections of blocks, for the schematic is too large to compute them")
     losses.add("biomes", int("Biomes" in root))
-    kept = [entity for entity in held if entity.id]
+    entities_held = [entity for entity in held if entity.id]
     entities = [upgrade_entity(nbt, corner) for nbt in root.get("Entities", [])]
-    return unlabelled_volume(states, palette, corner, kept, entities)
+    return unlabelled_volume(states, palette, corner, entities_held, entities)
 
 
 def _blocks(
@@ -149,7 +149,7 @@ def _trim_palette(
     if palette == before == (AIR, *sorted(before[1:])):
         return states, palette
     used = np.flatnonzero(np.bincount(states.ravel(), minlength=len(palette)))
-    kept = (AIR, *sorted({palette[number] for number in used.tolist()} - {AIR}))
-    number_of = {text: number for number, text in enumerate(kept)}
+    used_texts = (AIR, *sorted({palette[number] for number in used.tolist()} - {AIR}))
+    number_of = {text: number for number, text in enumerate(used_texts)}
     lookup = np.array([number_of.get(text, 0) for text in palette], np.uint16)
-    return lookup[states], kept
+    return lookup[states], used_texts

@@ -160,7 +160,7 @@ Pair = tuple[BlockState, BlockState]
 
 
 def join_halves(states: np.ndarray, palette: Palette) -> tuple[np.ndarray, Palette]:
-    """Return the volume with both parts of doors, tall plants and chests told of each other.
+    """Return the volume with both parts of doors, tall plants and chests joined.
 
     Args:
         states: uint16 [X, Y, Z] in block axes, changed in place.
@@ -189,8 +189,8 @@ def _are(parsed: list[BlockState], kind: Callable[[BlockState], bool], half: str
 
 
 def _door(lower: BlockState, upper: BlockState) -> Pair:
-    said = {"hinge": upper.get("hinge"), "powered": upper.get("powered")}
-    lower = lower.having(**said)
+    own = {"hinge": upper.get("hinge"), "powered": upper.get("powered")}
+    lower = lower.having(**own)
     return lower, lower.having(half="upper")
 
 

@@ -93,7 +93,7 @@ def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
 
     Args:
         path: the file.
-        losses: told of biomes, which a volume has no place for.
+        losses: counts biomes, which a volume has no place for.
 
     Returns:
         The volume, without labels and with one block a metre: a schematic does not say its scale.
@@ -215,8 +215,8 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
 
 def _corner(tree: Mapping[str, Any]) -> Corner:
     """Offset; where a file of version 2 has none, some tools keep it in WorldEdit's own keys."""
-    kept = tree.get("Metadata", {})
-    x, y, z = tree.get("Offset", [kept.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
+    metadata = tree.get("Metadata", {})
+    x, y, z = tree.get("Offset", [metadata.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
     return int(x), int(y), int(z)
 
 

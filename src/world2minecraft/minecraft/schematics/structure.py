@@ -346,7 +346,7 @@ def read_structure(
 
     Args:
         path: the file.
-        losses: told what a volume cannot hold: places that the structure leaves as they are come
+        losses: counts what a volume cannot hold: places that the structure leaves as they are come
             back as air, and of a structure with several palettes one is read.
         variant: which palette, where the structure has several.
 

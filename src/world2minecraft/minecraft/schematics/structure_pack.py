@@ -170,12 +170,12 @@ def _piece(volume: BlockVolume, number: tuple[int, int, int]) -> BlockVolume:
 
     states = volume.states[box]
     used, numbers = np.unique(states, return_inverse=True)
-    kept = np.union1d(used, 0)  # A palette begins with air.
-    numbers = np.searchsorted(kept, used)[numbers].reshape(states.shape)
+    own = np.union1d(used, 0)  # A palette begins with air.
+    numbers = np.searchsorted(own, used)[numbers].reshape(states.shape)
     return replace(
         volume,
         states=np.ascontiguousarray(numbers.astype(np.uint16)),
-        palette=tuple(volume.palette[n] for n in kept.tolist()),
+        palette=tuple(volume.palette[n] for n in own.tolist()),
         semantic=np.ascontiguousarray(volume.semantic[box]),
         instance=np.ascontiguousarray(volume.instance[box]),
         corner=(x, y, z),

@@ -32,7 +32,7 @@ from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.versions import GameVersion
 
 PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
-# What games work out anew from whatever stands beside a block, in the volume or outside it.
+# What games compute again from the neighbours of a block, in the volume or outside it.
 _FROM_NEIGHBOURS = frozenset(
     [
         *("north", "east", "south", "west", "up", "down", "shape", "in_wall", "waterlogged"),
@@ -45,7 +45,7 @@ NOTE_EVERY_S = 0.5
 LOAD_TRIES, LOAD_WAIT_S = 60, 0.5  # Half a minute for the chunks to come.
 RETRIES, FIRST_WAIT_S, MAX_WAIT_S = 6, 0.5, 8.0  # Half a minute for a server to come back.
 SHOWN = 3  # So many wrong blocks are named.
-# How the game says that a command was wrong; what it says of one that changed nothing is fine.
+# Replies to a command that was wrong; replies to one that changed nothing are fine.
 _SYNTAX_ERROR = "<--[HERE]"
 _WRONG = (
     _SYNTAX_ERROR,
@@ -107,7 +107,7 @@ def plan_build(
         built: bool [X, Y, Z], the cells that are set, air among them; all where it is left out.
         samples: how many of its blocks to ask for in the end; half of them not air. The places
             depend on the volume alone.
-        losses: told of data and entities that are too long for a command.
+        losses: counts data and entities that are too long for a command.
 
     Raises:
         UsageError: a state or an entity's id is none, or the box leaves the world's layers.
@@ -143,9 +143,9 @@ def _check_layers(volume: BlockVolume, version: GameVersion) -> None:
 
 
 def _drop_long_commands(what: str, commands: Sequence[str], losses: Losses) -> list[str]:
-    kept = [command for command in commands if len(command.encode()) <= MAX_COMMAND_BYTES]
-    losses.add(what, len(commands) - len(kept))
-    return kept
+    short = [command for command in commands if len(command.encode()) <= MAX_COMMAND_BYTES]
+    losses.add(what, len(commands) - len(short))
+    return short
 
 
 def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
@@ -166,8 +166,8 @@ def lasting_state(state: str) -> str:
     """
     parsed = parse_state(state)
     dropped = _FROM_NEIGHBOURS | ({"type"} if parsed.name in _CHESTS else set())
-    kept = {key: value for key, value in parsed.properties if key not in dropped}
-    return str(BlockState(parsed.name, kept))
+    lasting = {key: value for key, value in parsed.properties if key not in dropped}
+    return str(BlockState(parsed.name, lasting))
 
 
 def _probes(
@@ -193,7 +193,7 @@ def _probes(
 
 @dataclass(frozen=True)
 class LiveResult:
-    """What came of it: commands sent, cuts survived, places asked for, blocks set again."""
+    """Result of a build: commands sent, reconnections, places checked, blocks set again."""
 
     commands: int
     reconnects: int
@@ -202,13 +202,13 @@ class LiveResult:
 
 
 class LiveBuilder:
-    """Carries a plan out on one server.
+    """Runs a plan on one server.
 
     Args:
         client: where to; it is connected when it is used.
-        plan: what to say.
+        plan: the commands.
         note: the file that remembers how far it is; None remembers nothing.
-        progress: told of the commands done.
+        progress: called with the commands done.
         sleep: how to wait; tests do not.
     """
 
@@ -228,25 +228,25 @@ class LiveBuilder:
         self._to_release: tuple[str, ...] = plan.release
 
     def run(self) -> LiveResult:
-        """Build, check, and mend what is wrong.
+        """Build, check, and repair what is wrong.
 
         Raises:
             ServerError: the server cannot be reached, refuses, does not load the chunks, or does
                 not hold the blocks in the end. What was done is noted; a second run goes on.
         """
         try:
-            self._done = self._noted()
+            self._done = self._read_note()
             self._load()
             for index in range(self._done, len(self._plan.work)):
                 self._progress("build", index, len(self._plan.work))
-                self._do(self._plan.work[index])
-                self._remember(index + 1)
+                self._run(self._plan.work[index])
+                self._set_done(index + 1)
             self._progress("build", len(self._plan.work), len(self._plan.work))
             repaired = self._check()
             for command in self._to_release:
-                self._say(command)
+                self._send(command)
         except BaseException:
-            self._keep_note()
+            self._write_note()
             raise
         finally:
             self._client.close()
@@ -256,9 +256,9 @@ class LiveBuilder:
 
     def _load(self) -> None:
         """Have the chunks loaded, and wait until they are; those that were stay so in the end."""
-        said = [self._say(command) for command in self._plan.load]
+        replies = [self._send(command) for command in self._plan.load]
         if not self._done:
-            rows = zip(said, self._plan.release, strict=True)
+            rows = zip(replies, self._plan.release, strict=True)
             self._to_release = tuple(row for reply, row in rows if _WERE_LOADED not in reply)
         for done, (x, y, z) in enumerate(self._plan.loaded):
             self._progress("load", done, len(self._plan.loaded))
@@ -273,18 +273,18 @@ class LiveBuilder:
         raise ServerError(f"the server has not loaded the chunk at {x} {z}; try again later")
 
     def _is_loaded(self, x: int, y: int, z: int) -> bool:
-        said = self._say(f"execute if loaded {x} {y} {z}")
-        if _SYNTAX_ERROR not in said:
-            return _PASSED in said
+        reply = self._send(f"execute if loaded {x} {y} {z}")
+        if _SYNTAX_ERROR not in reply:
+            return _PASSED in reply
         # Games before 1.19.4 do not know the question. Of a block they tell, whichever it is,
         # where its chunk is loaded.
-        said = self._say(f"execute if block {x} {y} {z} minecraft:air")
-        return _PASSED in said or _FAILED in said
+        reply = self._send(f"execute if block {x} {y} {z} minecraft:air")
+        return _PASSED in reply or _FAILED in reply
 
-    def _do(self, command: str) -> None:
-        """Say a command that must work, again while its chunk is not loaded."""
+    def _run(self, command: str) -> None:
+        """Send a command that must work, again while its chunk is not loaded."""
         for _ in range(LOAD_TRIES):
-            reply = self._say(command)
+            reply = self._send(command)
             if _NOT_LOADED not in reply:
                 if any(sign in reply for sign in _WRONG):
                     short = command if len(command) < 120 else command[:117] + "..."
@@ -295,8 +295,8 @@ class LiveBuilder:
             self._sleep(LOAD_WAIT_S)
         raise ServerError(f"the server has not loaded the place of {command[:80]!r}")
 
-    def _say(self, command: str) -> str:
-        """Say a command and return the reply; connect anew where the connection is cut."""
+    def _send(self, command: str) -> str:
+        """Send a command and return the reply; reconnect where the connection is lost."""
         wait = FIRST_WAIT_S
         for tries in range(RETRIES + 1):
             try:
@@ -308,8 +308,8 @@ class LiveBuilder:
                 self._reconnects += self._connected
                 self._connected = False
                 if tries == RETRIES or not self._was_there:
-                    raise self._gone(error) from error
-                self._keep_note()
+                    raise self._connection_error(error) from error
+                self._write_note()
                 self._sleep(wait)
                 wait = min(2 * wait, MAX_WAIT_S)
             else:
@@ -317,12 +317,12 @@ class LiveBuilder:
                 return reply
         raise AssertionError("the last try returns or raises")
 
-    def _gone(self, error: OSError) -> ServerError:
+    def _connection_error(self, error: OSError) -> ServerError:
         where = f"{self._client.host}:{self._client.port}"
-        said = f"{where} does not answer ({error.strerror or error})"
+        reason = f"{where} does not answer ({error.strerror or error})"
         if self._was_there:
-            return ServerError(f"{said} any more; run the same command again to go on")
-        return ServerError(f"{said}; it needs enable-rcon=true in server.properties")
+            return ServerError(f"{reason} any more; run the same command again to go on")
+        return ServerError(f"{reason}; it needs enable-rcon=true in server.properties")
 
     def _check(self) -> int:
         """Ask for the probes; where one is wrong, build once more and ask for it again."""
@@ -330,7 +330,7 @@ class LiveBuilder:
         if not wrong:
             return 0
         for command in self._plan.work[: self._plan.entities_from]:
-            self._do(command)
+            self._run(command)
         left = self._wrong(wrong)
         if left:
             named = "; ".join(f"{x} {y} {z} is not {state}" for x, y, z, state in left[:SHOWN])
@@ -345,12 +345,12 @@ class LiveBuilder:
         found = []
         for done, (x, y, z, state) in enumerate(probes):
             self._progress("check", done, len(probes))
-            if _PASSED not in self._say(f"execute if block {x} {y} {z} {state}"):
+            if _PASSED not in self._send(f"execute if block {x} {y} {z} {state}"):
                 found.append((x, y, z, state))
         self._progress("check", len(probes), len(probes))
         return found
 
-    def _noted(self) -> int:
+    def _read_note(self) -> int:
         """Return how many commands a former run of this plan on this server has done."""
         if self._note is None or not self._note.is_file():
             return 0
@@ -365,12 +365,12 @@ class LiveBuilder:
         # Entities would stand there twice: they are set from their first one on.
         return min(done, self._plan.entities_from)
 
-    def _remember(self, done: int) -> None:
+    def _set_done(self, done: int) -> None:
         self._done = done
         if time.monotonic() - self._noted_at > NOTE_EVERY_S:
-            self._keep_note()
+            self._write_note()
 
-    def _keep_note(self) -> None:
+    def _write_note(self) -> None:
         self._noted_at = time.monotonic()
         if self._note is not None and self._done:
             write_json(self._note, {**self._key(), "done": self._done})

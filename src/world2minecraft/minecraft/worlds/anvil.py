@@ -209,7 +209,7 @@ def read_region(
 
     Args:
         path: the file, ``r.X.Z.mca``.
-        is_wanted: told a chunk's position, says whether it is read; all are where it is left out.
+        is_wanted: whether the chunk at a position is read; all are where it is left out.
 
     Raises:
         InputError: the file cannot be read. DamagedFileError: it is no region file.
@@ -308,7 +308,7 @@ def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, in
 
 
 def _compression_name(packed: bytes, kind: int) -> str:
-    """How a chunk is packed: a way of one's own comes with a name, as the game's texts do."""
+    """Return how a chunk is packed: a custom compression comes with a name, as texts do."""
     if kind == CUSTOM and len(packed) > 2:
         name = packed[2 : 2 + int.from_bytes(packed[:2], "big")][:80]
         return f"the server's own way {name.decode('ascii', 'replace')!r}"

@@ -156,8 +156,8 @@ def upgrade_old_chunk(
         raise DamagedFileError(path, f"chunk {place} has no Level, as its data version says")
     names = {"TileEntities": "block_entities", "Entities": "Entities", "Sections": "sections"}
     held = {new: level.get(old, []) for old, new in names.items()}
-    kept = {key: level[key] for key in ("xPos", "zPos", "Status") if key in level}
-    return {"DataVersion": root["DataVersion"], **kept, **held}
+    same = {key: level[key] for key in ("xPos", "zPos", "Status") if key in level}
+    return {"DataVersion": root["DataVersion"], **same, **held}
 
 
 def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:

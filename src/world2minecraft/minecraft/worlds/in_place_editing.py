@@ -152,7 +152,7 @@ def _pack_region(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> 
 
 @dataclass
 class StateNumbers:
-    """The states of many chunks, numbered together, with the NBT that each was first met as."""
+    """The states of many chunks, numbered together, with the NBT that each was first read from."""
 
     texts: list[str] = field(default_factory=lambda: [AIR])
     entries: dict[int, dict[str, Any]] = field(default_factory=dict)
@@ -323,7 +323,7 @@ def set_block_entities(root: dict[str, Any], entities: Sequence[BlockEntity]) ->
 
 
 def clear_light(root: dict[str, Any]) -> None:
-    """Let the game make light and heights of a changed chunk anew, when it loads it.
+    """Remove light and heights of a changed chunk, so that the game computes them on loading.
 
     Servers that keep their light in tags of their own (Paper) look at those alone.
     """

@@ -1,4 +1,4 @@
-"""World folders of Minecraft Java, read back as volumes."""
+"""Read world folders of Minecraft Java as volumes."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -103,7 +103,7 @@ def region_files(root: Path) -> list[Path]:
     return []
 
 
-def _gather(regions: list[Path], box: Box | None) -> "_Found":
+def _gather(regions: list[Path], box: Box | None) -> "_ChunkContents":
     found = _ChunkContents()
     known: dict[bytes, str] = {}
     unpacked = 0
@@ -124,7 +124,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_Found":
 
 
 class _ChunkContents:
-    """What is kept of the chunks that were read, and how much memory it takes."""
+    """Contents of the chunks that were read, and the memory that they take."""
 
     def __init__(self) -> None:
         self.numbers: dict[str, int] = {}  # Of each state, in the order in which they were met.

@@ -1,4 +1,4 @@
-"""World folders of Minecraft Java. Reading one back is in ``world_reading``."""
+"""Write world folders of Minecraft Java; ``world_reader`` reads them back."""
 
 import os
 import shutil

@@ -41,10 +41,10 @@ def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:
                 return CLASS_NAMES.index(name)
         return None
     meaning = rules.meaning(fine.block)
-    told = rules.rules_of(meaning)
-    if meaning in rules.unless_known or not told[0].always:
+    candidates = rules.rules_of(meaning)
+    if meaning in rules.unless_known or not candidates[0].always:
         return None
-    return CLASS_NAMES.index(told[0].class_name)
+    return CLASS_NAMES.index(candidates[0].class_name)
 
 
 def remap_labels(
@@ -65,10 +65,10 @@ def remap_labels(
         raise UsageError(f"labels {labels.shape} and fine {fine.shape} must be of one shape")
     if fine.size and int(fine.max()) >= len(classes):
         raise UsageError(f"fine goes to {fine.max()}, there are {len(classes)} classes")
-    told = [None if n == 0 else class_of_fine(one, rules) for n, one in enumerate(classes)]
-    is_told = np.array([one is not None for one in told])
-    values = np.array([one or 0 for one in told], np.uint8)
-    changed = is_told[fine] & (labels != 0) & (labels != UNKNOWN)
+    mapped = [None if n == 0 else class_of_fine(one, rules) for n, one in enumerate(classes)]
+    is_mapped = np.array([one is not None for one in mapped])
+    values = np.array([one or 0 for one in mapped], np.uint8)
+    changed = is_mapped[fine] & (labels != 0) & (labels != UNKNOWN)
     return np.where(changed, values[fine], labels).astype(np.uint8)
 
 
@@ -132,8 +132,8 @@ def classify_blocks(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     kinds = table[volume.states]
     classes = np.array([CLASS_NAMES.index(n) if n in CLASS_NAMES else 0 for n in names], np.uint8)
     semantic = classes[kinds]
-    asked = [name for name in names if name not in CLASS_NAMES]
-    if not asked:
+    undecided = [name for name in names if name not in CLASS_NAMES]
+    if not undecided:
         return semantic
     turned = np.array(["half=top" in state or "type=top" in state for state in volume.palette])
     scale = volume.blocks_per_metre
@@ -141,7 +141,7 @@ def classify_blocks(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     blocks = np.unique(ids, return_inverse=True)[1][volume.states]
     context = Context(kinds, names, rules, blocks, turned[volume.states], scale)
     flat = semantic.reshape(-1)
-    for name in asked:
+    for name in undecided:
         left = np.flatnonzero(kinds == number_of[name])
         for rule in rules.rules[name]:
             holds = context.holds(rule, left) if not rule.always else np.ones(len(left), bool)

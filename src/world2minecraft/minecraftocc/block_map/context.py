@@ -112,14 +112,14 @@ def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: flo
 def kind_shares(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
     """Return the share of each thing's blocks that each kind has, float64 [things + 1, count]."""
     things = int(parts.max(initial=0)) + 1
-    held = parts > 0
-    pairs = parts[held].astype(np.int64) * count + kinds[held]
+    inside = parts > 0
+    pairs = parts[inside].astype(np.int64) * count + kinds[inside]
     counts = np.bincount(pairs, minlength=things * count).reshape(things, count)
     return counts / np.maximum(counts.sum(1, keepdims=True), 1)
 
 
 def segment_pieces(
-    held: np.ndarray,
+    inside: np.ndarray,
     blocks: np.ndarray,
     sheets: np.ndarray,
     plates: np.ndarray,
@@ -129,7 +129,7 @@ def segment_pieces(
     """Number the pieces of a volume: int32 [X, Y, Z], 0 for none, and how many there are.
 
     Args:
-        held: bool [X, Y, Z], the blocks inside that are part of some piece.
+        inside: bool [X, Y, Z], the blocks inside that are part of some piece.
         blocks: int [X, Y, Z], which block each is, whatever its properties.
         sheets: bool [X, Y, Z], those that curtains are of.
         plates: bool [X, Y, Z], those that pictures are of.
@@ -140,7 +140,7 @@ def segment_pieces(
     least = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
     hangs = sheets & (height >= least - 1e-6)
     hangs |= plates & (first - ground - 1 >= PLATE_M * scale - 1e-6)
-    parts, count = connected_parts(held, 2 * blocks.astype(np.int64) + hangs, hangs)
+    parts, count = connected_parts(inside, 2 * blocks.astype(np.int64) + hangs, hangs)
     return _merge_tall_neighbours(parts, count, max(2, round(TALL_M * scale)))
 
 
@@ -170,34 +170,34 @@ def _merge_tall_neighbours(parts: np.ndarray, count: int, tall: int) -> tuple[np
 
 
 def connected_parts(
-    held: np.ndarray, blocks: np.ndarray, alone: np.ndarray
+    inside: np.ndarray, blocks: np.ndarray, separate: np.ndarray
 ) -> tuple[np.ndarray, int]:
     """Number blocks that belong together: on one another, or beside each other and the same.
 
     Args:
-        held: bool [X, Y, Z], the blocks.
+        inside: bool [X, Y, Z], the blocks.
         blocks: int [X, Y, Z], which each is.
-        alone: bool [X, Y, Z], those that belong to nothing else that is under or over them.
+        separate: bool [X, Y, Z], those that belong to nothing else that is under or over them.
 
     Returns:
-        int32 of the shape of ``held``, 0 outside and 1 to n inside, and n.
+        int32 of the shape of ``inside``, 0 outside and 1 to n inside, and n.
     """
-    number = np.full(held.shape, -1, np.int64)
-    number[held] = np.arange(int(held.sum()))
+    number = np.full(inside.shape, -1, np.int64)
+    number[inside] = np.arange(int(inside.sum()))
     pairs = []
     for axis in range(3):
         first = tuple(slice(0, -1) if a == axis else slice(None) for a in range(3))
         second = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
-        joined = held[first] & held[second]
+        joined = inside[first] & inside[second]
         same = blocks[first] == blocks[second]
-        joined &= same | ~(alone[first] | alone[second]) if axis == 1 else same
+        joined &= same | ~(separate[first] | separate[second]) if axis == 1 else same
         pairs.append(np.stack([number[first][joined], number[second][joined]]))
     edges = np.concatenate(pairs, axis=1)
-    count = int(held.sum())
+    count = int(inside.sum())
     graph = sparse.coo_matrix((np.ones(edges.shape[1], bool), tuple(edges)), (count, count))
     found, own = csgraph.connected_components(graph, directed=False)
-    parts = np.zeros(held.shape, np.int32)
-    parts[held] = own + 1
+    parts = np.zeros(inside.shape, np.int32)
+    parts[inside] = own + 1
     return parts, int(found) if count else 0
 
 
@@ -252,8 +252,8 @@ def _under_ceiling(context: "Context") -> np.ndarray:
     above = context.condition("ceiling") & context.building
     hangs, layers = np.zeros_like(above), above.shape[1]
     for layer in range(layers - 2, -1, -1):
-        held = above[:, layer + 1] | hangs[:, layer + 1]
-        hangs[:, layer] = held & context.filled[:, layer] & ~above[:, layer]
+        supported = above[:, layer + 1] | hangs[:, layer + 1]
+        hangs[:, layer] = supported & context.filled[:, layer] & ~above[:, layer]
     return hangs
 
 
@@ -351,9 +351,9 @@ class Context:
         self.building = self._are(rules.structure)[kinds]
         self.zones = detect_zones(self.building, scale)
         ground = self.zones.ground
-        held = self.filled & (self.zones.zone == INSIDE) & ~self._are(rules.apart)[kinds]
+        inside = self.filled & (self.zones.zone == INSIDE) & ~self._are(rules.apart)[kinds]
         sheets, plates = self._are(rules.sheets)[kinds], self._are(rules.plates)[kinds]
-        pieces = segment_pieces(held, blocks, sheets, plates, ground, scale)
+        pieces = segment_pieces(inside, blocks, sheets, plates, ground, scale)
         self.things = measure_pieces(*pieces, ground, scale)
         self.shares = kind_shares(self.things.parts, kinds, len(names))
         self._found: dict[str, np.ndarray] = {

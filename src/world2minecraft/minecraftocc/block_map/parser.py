@@ -172,13 +172,13 @@ def _check_kinds(kinds: Iterable[str], rules: Iterable[str]) -> None:
 def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule, ...]:
     """Return the rules of a kind; a kind's name alone stands for its rules."""
     rules: list[Rule] = []
-    asked, left = {kind}, [*_list(f"rules of {kind}", table[kind])]
+    visited, left = {kind}, [*_list(f"rules of {kind}", table[kind])]
     while left:
         one = left.pop(0)
         if isinstance(one, str) and one in table:
-            if one in asked:
+            if one in visited:
                 raise ValueError(f"rules of {kind} come round to {one} again")
-            asked.add(one)
+            visited.add(one)
             left = [*_list(f"rules of {one}", table[one]), *left]
         else:
             rules.append(_rule(kind, one, kinds))

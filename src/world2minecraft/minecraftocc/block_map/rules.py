@@ -104,9 +104,9 @@ class BlockMap:
             return self.blocks[full]
         namespace, _, name = full.partition(":")
         for words in self.words:
-            said = words.of(namespace, name)
-            if said is not None:
-                return said
+            meaning = words.of(namespace, name)
+            if meaning is not None:
+                return meaning
         stated = frozenset(rest[:-1].split(","))
         for kind, patterns in self.kinds.items():
             if any(matches(pattern, full, name, stated) for pattern in patterns):
@@ -138,8 +138,8 @@ def parse_pattern(text: str) -> Pattern:
 
 def matches(pattern: Pattern, full: str, name: str, stated: frozenset[str]) -> bool:
     """Whether a block's full id, or its name alone, and its properties fit a pattern."""
-    asked = full if ":" in pattern.text.partition("[")[0] else name
-    return bool(pattern.name.match(asked)) and stated.issuperset(pattern.properties)
+    candidate = full if ":" in pattern.text.partition("[")[0] else name
+    return bool(pattern.name.match(candidate)) and stated.issuperset(pattern.properties)
 
 
 def _is_whole(state: str) -> bool:

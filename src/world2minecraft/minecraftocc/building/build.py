@@ -70,31 +70,31 @@ def allocate_views(scenes: Iterable[SceneSpec], look: CountViews) -> list[SceneS
     Returns:
         Of each split as many images as were asked for in all, or fewer where there are no more.
     """
-    asked = {scene.scene_id: scene for scene in scenes}
-    wanted = {scene.split: 0 for scene in asked.values()}
-    for scene in asked.values():
+    requested = {scene.scene_id: scene for scene in scenes}
+    wanted = {scene.split: 0 for scene in requested.values()}
+    for scene in requested.values():
         wanted[scene.split] += scene.images
     found: dict[str, int] = {}
-    todo = list(asked.values())
+    todo = list(requested.values())
     for _ in range(MAX_ROUNDS):
         views = look(todo)
         found |= {scene.scene_id: got for scene, got in zip(todo, views, strict=True)}
         todo = [
             one
             for split, count in wanted.items()
-            for one in _further_requests(asked, found, split, count)
+            for one in _further_requests(requested, found, split, count)
         ]
-        asked |= {scene.scene_id: scene for scene in todo}
+        requested |= {scene.scene_id: scene for scene in todo}
         if not todo:
             break
-    return [replace(scene, images=found[scene.scene_id]) for scene in asked.values()]
+    return [replace(scene, images=found[scene.scene_id]) for scene in requested.values()]
 
 
 def _further_requests(
-    asked: dict[str, SceneSpec], found: dict[str, int], split: str, wanted: int
+    requested: dict[str, SceneSpec], found: dict[str, int], split: str, wanted: int
 ) -> list[SceneSpec]:
     """Return the scenes of a split that may have more, with what to ask them for next."""
-    mine = [scene for scene in asked.values() if scene.split == split]
+    mine = [scene for scene in requested.values() if scene.split == split]
     short = wanted - sum(found[scene.scene_id] for scene in mine)
     rich = [scene for scene in mine if found[scene.scene_id] >= scene.images]
     if short <= 0 or not rich:
@@ -174,16 +174,18 @@ def begin_dataset(folder: Path, plan: DatasetPlan) -> None:
     Raises:
         ConflictError: it is another.
     """
-    told = plan.facts()
+    facts = plan.facts()
     if not (folder / META).exists():
         if (folder / SHARDS).exists():
             raise ConflictError(folder, "holds shards and no dataset.json; choose another folder")
-        write_json(folder / META, {"kind": KIND, "format": FORMAT, "complete": False, "plan": told})
+        write_json(
+            folder / META, {"kind": KIND, "format": FORMAT, "complete": False, "plan": facts}
+        )
         return
     before = read_meta(folder, finished=False).get("plan")
     if not isinstance(before, dict):
         raise ConflictError(folder, "holds a data set that was not built; choose another folder")
-    wrong = _differences(before, told)
+    wrong = _differences(before, facts)
     if wrong:
         raise ConflictError(
             folder, f"holds a data set of another {', '.join(wrong)}; choose another folder"
@@ -282,13 +284,13 @@ class _Build:
         for split, wanted in self.plan.images.items():
             found = sum(scene.images for scene in scenes if scene.split == split)
             if found < wanted:
-                told = (
+                shortage = (
                     f"the {split} scenes give {found:,} views worth a picture, not {wanted:,}; "
                     "take more scenes"
                 )
                 if self.plan.preset:
-                    raise UsageError(told)
-                self.notes.append(f"{told[0].upper()}{told[1:]}.")
+                    raise UsageError(shortage)
+                self.notes.append(f"{shortage[0].upper()}{shortage[1:]}.")
         if not any(scene.images for scene in scenes):
             raise UsageError("the scenes give no view worth a picture; take other scenes")
         return tuple(scene for scene in scenes if scene.images)

@@ -36,5 +36,5 @@ def milliseconds_per_image(seconds: Mapping[str, float], images: int) -> dict[st
     """Return the CPU milliseconds of each stage for one image, and of all."""
     if not images:
         return {}
-    told = {stage: 1000 * seconds.get(stage, 0.0) / images for stage in STAGES}
-    return {**told, "all": sum(told.values())}
+    per_image = {stage: 1000 * seconds.get(stage, 0.0) / images for stage in STAGES}
+    return {**per_image, "all": sum(per_image.values())}

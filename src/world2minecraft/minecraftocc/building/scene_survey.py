@@ -58,9 +58,9 @@ class SceneFacts:
         """How many views the last plan found."""
         return self.plans[-1][1]
 
-    def found(self, asked: int) -> int | None:
+    def found(self, requested: int) -> int | None:
         """Return how many views a plan for so many found, None where none was made."""
-        return dict(self.plans).get(asked)
+        return dict(self.plans).get(requested)
 
 
 @registered_task
@@ -95,17 +95,17 @@ def poses_path(folder: Path, scene_id: str) -> Path:
 def read_facts(folder: Path, scene_id: str) -> SceneFacts:
     """Read what ``survey_scene`` wrote. Raises InputError or DamagedFileError."""
     path = facts_path(folder, scene_id)
-    told = read_json(path)
+    raw = read_json(path)
     try:
         return SceneFacts(
-            scene_id=str(told["scene_id"]),
-            digest=str(told["digest"]),
-            fine=tuple(FineClass(str(block), str(design)) for block, design in told["fine"]),
-            plans=tuple((int(asked), int(got)) for asked, got in told["plans"]),
-            hour=float(told["hour"]),
-            blocks=tuple(told["blocks"]),
-            metres_per_block=float(told["metres_per_block"]),
-            notes=tuple(told["notes"]),
+            scene_id=str(raw["scene_id"]),
+            digest=str(raw["digest"]),
+            fine=tuple(FineClass(str(block), str(design)) for block, design in raw["fine"]),
+            plans=tuple((int(requested), int(got)) for requested, got in raw["plans"]),
+            hour=float(raw["hour"]),
+            blocks=tuple(raw["blocks"]),
+            metres_per_block=float(raw["metres_per_block"]),
+            notes=tuple(raw["notes"]),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(path, f"tells of no scene ({error!r})") from error
@@ -128,8 +128,8 @@ def volume_digest(volume: BlockVolume) -> str:
     total = hashlib.sha256()
     for part in (volume.states, volume.semantic, volume.instance, volume.block_to_room):
         total.update(repr(part.shape).encode() + np.ascontiguousarray(part).tobytes())
-    told = (volume.palette, volume.corner, volume.block_entities, volume.entities)
-    total.update(repr(told).encode())
+    rest = (volume.palette, volume.corner, volume.block_entities, volume.entities)
+    total.update(repr(rest).encode())
     return total.hexdigest()
 
 
@@ -190,8 +190,8 @@ def _scene_hour(path: Path) -> float:
     """Return the hour that a scene says it is lit at; noon where it says none."""
     for place in (path, path / "build", path.parent):
         if (place / "scene.json").is_file():
-            told = read_json(place / "scene.json")
-            light = told.get("light") if isinstance(told, dict) else None
+            scene = read_json(place / "scene.json")
+            light = scene.get("light") if isinstance(scene, dict) else None
             hour = light.get("hour") if isinstance(light, dict) else None
             return float(hour) % 24 if isinstance(hour, (int, float)) else DEFAULT_HOUR
     return DEFAULT_HOUR

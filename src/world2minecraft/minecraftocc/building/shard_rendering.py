@@ -224,10 +224,10 @@ def index_shard(unit: ShardTask, tick: Callable[[int], None]) -> tuple[list[dict
 
 def in_order(results: Iterator[tuple[int, Any]]) -> Iterator[Any]:
     """Give results by their numbers, though they come as they are done."""
-    held: dict[int, Any] = {}
+    waiting: dict[int, Any] = {}
     following = 0
     for number, result in results:
-        held[number] = result
-        while following in held:
-            yield held.pop(following)
+        waiting[number] = result
+        while following in waiting:
+            yield waiting.pop(following)
             following += 1

@@ -85,12 +85,12 @@ class RayEngine:
         except errors.RayTaskError as error:
             raise (error.cause if isinstance(error.cause, Exception) else error) from None
         except errors.RayError as error:
-            told = str(error).splitlines()[0]
-            raise WorkerError(f"Ray gave up on a part: {told}") from error
+            reason = str(error).splitlines()[0]
+            raise WorkerError(f"Ray gave up on a part: {reason}") from error
 
 
 def _call_task(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:
     """Call a task; return its result, and how many images it told of."""
     limit_threads()
-    told: list[int] = []
-    return task(item, told.append), sum(told)
+    ticks: list[int] = []
+    return task(item, ticks.append), sum(ticks)

@@ -71,14 +71,14 @@ class EmbodiedExporter:
 
     def notes(self) -> list[str]:
         """Say what the format did not take as it was."""
-        told = self.frames.notes()
+        lines = self.frames.notes()
         if self._large:
             size = "x".join(str(side) for side in OFFICIAL_CELLS)
-            told.append(
+            lines.append(
                 f"{len(self._large)} scenes are larger than {size} cells, which EmbodiedOcc's "
                 f"own operation holds: {', '.join(self._large[:3])}"
             )
-        return told
+        return lines
 
     def _write_scene(self, scene: str, rows: list[NamedSample]) -> None:
         """Write the masks of a scene's frames, then its package: that says it is finished."""

@@ -150,8 +150,10 @@ def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
     known = before if isinstance(before, dict) else {}
     names = [name for name in choices if name not in known or known[name] != choices[name]]
     if names:
-        told = ", ".join(f"{name} {known.get(name)!r}" for name in names)
-        raise ConflictError(root, f"holds an export with {told}; choose the same, or another --out")
+        differences = ", ".join(f"{name} {known.get(name)!r}" for name in names)
+        raise ConflictError(
+            root, f"holds an export with {differences}; choose the same, or another --out"
+        )
     if sha256 and known.get(SOURCE, sha256) != sha256:
         raise ConflictError(
             root, "holds an export of another data set, or of this one before it was made anew; "

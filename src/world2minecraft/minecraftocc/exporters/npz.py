@@ -44,7 +44,7 @@ class NpzExporter:
     def _arrays(self, sample: OccSample) -> dict[str, np.ndarray]:
         occ, camera, region = sample.occ, sample.camera, sample.occ.region
         lens = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, *camera.distortion)
-        told = {
+        meta = {
             "key": sample.key, "scene_id": sample.scene_id, "tour_id": sample.tour_id,
             "frame": sample.frame, "split": sample.split, "region_kind": region.kind,
             "facts": sample.facts,
@@ -67,7 +67,7 @@ class NpzExporter:
             "camera_to_room": sample.camera_to_room,
             "camera_size_px": np.array([camera.width_px, camera.height_px], np.int64),
             "camera_lens": np.array(lens, np.float64),
-            "meta": np.array(json.dumps(told, sort_keys=True), np.str_),
+            "meta": np.array(json.dumps(meta, sort_keys=True), np.str_),
         }
         if sample.colour is not None:
             arrays["colour"] = sample.colour

@@ -77,13 +77,13 @@ class NyuExporter:
 
     def notes(self) -> list[str]:
         """Say what the format did not take as it was."""
-        told = {
+        texts = {
             "resampled": "pictures were resampled to 640x480, f = 518.8579",
             "no depth": "samples have no depth: MonoScene and NDC-Scene read them, "
             "ISO and Symphonies do not",
             "no split": "samples have no split and lie in NYUtrain",
         }
-        return [f"{count} {told[name]}" for name, count in self._counts.items() if count]
+        return [f"{count} {texts[name]}" for name, count in self._counts.items() if count]
 
     def _count(self, sample: OccSample, resampler: Resampler) -> None:
         self._counts["resampled"] += not resampler.same

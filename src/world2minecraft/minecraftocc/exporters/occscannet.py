@@ -102,12 +102,12 @@ class OccScanNetExporter:
 
     def notes(self) -> list[str]:
         """Say what the format did not take as it was."""
-        told = {
+        texts = {
             "pictures were cropped and resampled to 640x480": self._resampled,
             "samples have no depth, which every loader of this format opens": self._no_depth,
             "regions are turned with the view: each has a world of its own": self._turned,
         }
-        return [f"{count} {words}" for words, count in told.items() if count]
+        return [f"{count} {words}" for words, count in texts.items() if count]
 
     def _box(self, sample: OccSample) -> LabelledBox:
         """Return the box along the room's axes, so that all frames of a scene share one world."""

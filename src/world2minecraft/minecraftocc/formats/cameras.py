@@ -152,9 +152,9 @@ def _span(
     return source_centre - centre * scale, side_px * scale
 
 
-def _nearest(start: float, length: float, count: int, held: int) -> np.ndarray:
+def _nearest(start: float, length: float, count: int, size: int) -> np.ndarray:
     middles = start + (np.arange(count) + 0.5) * length / count
-    return np.clip(np.floor(middles).astype(np.int64), 0, held - 1)
+    return np.clip(np.floor(middles).astype(np.int64), 0, size - 1)
 
 
 def _too_narrow(source: Camera, target: Camera) -> str:

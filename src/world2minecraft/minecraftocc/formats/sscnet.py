@@ -65,9 +65,9 @@ def read_bin(path: str | Path) -> SscnetFrame:
 
 def _expand_runs(pairs: np.ndarray) -> np.ndarray:
     """Return the codes, uint8 [8294400], of runs whose sum is checked first."""
-    voxels, held = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
-    if held != voxels:
-        raise ValueError(f"holds {held:,} voxels of {voxels:,}")
+    voxels, total = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
+    if total != voxels:
+        raise ValueError(f"holds {total:,} voxels of {voxels:,}")
     values = pairs[:, 0]
     if np.any((values >= len(CLASS_OF_CODE)) & (values != UNKNOWN)):
         raise ValueError(f"holds the class {int(values[values != UNKNOWN].max())}")

@@ -42,8 +42,8 @@ def open_npz(path: Path) -> ImportedSet:
 
 
 def _read(path: Path) -> OccSample:
-    held = set(array_names(path))
-    pictures = tuple(name for name in ("colour", "depth_m") if name in held)
+    names = set(array_names(path))
+    pictures = tuple(name for name in ("colour", "depth_m") if name in names)
     arrays = read_npz(path, (*NEEDED, *pictures))
     try:
         return _sample(arrays)
@@ -52,7 +52,7 @@ def _read(path: Path) -> OccSample:
 
 
 def _sample(arrays: dict[str, np.ndarray]) -> OccSample:
-    told: dict[str, Any] = json.loads(str(arrays["meta"]))
+    meta: dict[str, Any] = json.loads(str(arrays["meta"]))
     width, height = (int(side) for side in arrays["camera_size_px"])
     lens = arrays["camera_lens"].tolist()
     shape = arrays["labels"].shape
@@ -60,20 +60,20 @@ def _sample(arrays: dict[str, np.ndarray]) -> OccSample:
         (shape[0], shape[1], shape[2]),
         float(arrays["voxel_m"]),
         arrays["region_to_room"],
-        str(told["region_kind"]),
+        str(meta["region_kind"]),
     )
     kinds = zip(arrays["fine_blocks"].tolist(), arrays["fine_designs"].tolist(), strict=True)
     return OccSample(
-        key=str(told["key"]),
-        scene_id=str(told["scene_id"]),
-        tour_id=str(told["tour_id"]),
-        frame=int(told["frame"]),
+        key=str(meta["key"]),
+        scene_id=str(meta["scene_id"]),
+        tour_id=str(meta["tour_id"]),
+        frame=int(meta["frame"]),
         camera=Camera(width, height, lens[0], lens[1], lens[2], lens[3], tuple(lens[4:])),
         camera_to_room=arrays["camera_to_room"],
         occ=OccLabels(region, **{name: arrays[name] for name in MASKS}),
         fine_classes=tuple(FineClass(*kind) for kind in kinds),
         colour=arrays.get("colour"),
         depth_m=arrays.get("depth_m"),
-        split=str(told["split"]),
-        facts=dict(told["facts"]),
+        split=str(meta["split"]),
+        facts=dict(meta["facts"]),
     )

@@ -98,14 +98,14 @@ def read_frame(root: Path, name: str, labels: Any = None) -> ImportedFrame:
     if missing := [word for word in wanted if word not in stored]:
         raise DamagedFileError(path, f"has no {', '.join(missing)}")
     shape = (DEFAULT_SHAPE[1], DEFAULT_SHAPE[0], DEFAULT_SHAPE[2])
-    held = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
+    checked = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
     picture = root / "posed_images" / name
     colour = read_colour_if_present(picture.with_suffix(".jpg"))
     camera = _camera(stored["intrinsic"], colour, path)
     depth_m = read_depth_if_present(picture.with_suffix(".png"), "mm")
     return ImportedFrame(
         name=path,
-        labels=np.ascontiguousarray(held.transpose(AXES)),
+        labels=np.ascontiguousarray(checked.transpose(AXES)),
         origin_m=stored["voxel_origin"],
         camera_to_world=stored["cam_pose"],
         camera=camera,

@@ -56,8 +56,8 @@ class ImportedSet:
     def described(self) -> str:
         """Return format and counts in words, such as ``nyu, 3 samples (1 test, 2 train)``."""
         counts = Counter(self.splits.values())
-        told = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))
-        return f"{self.format}, {len(self):,} samples ({told})"
+        parts = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))
+        return f"{self.format}, {len(self):,} samples ({parts})"
 
     def samples(self, split: str | None = None) -> Iterator[OccSample]:
         """Read the samples of one split, or all, one at a time."""

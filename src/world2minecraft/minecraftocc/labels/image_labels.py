@@ -54,7 +54,7 @@ def label_image(
         depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
     """
     view = _ImageView(voxels, region, camera, camera_to_room, depth_m)
-    labels, fine, instance = view.held
+    labels, fine, instance = view.contents
     in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
     depth_m = view.image.depth
     height, width = depth_m.shape
@@ -157,7 +157,7 @@ class _ImageView:
         self.image = DepthImage(
             camera_to_cells, intrinsics, np.ascontiguousarray(depth_m, np.float32)
         )
-        self.held = gather_region(voxels, region)
+        self.contents = gather_region(voxels, region)
         cells_to_camera = invert(np.vstack([camera_to_cells, [0, 0, 0, 1]]))[:3]
         self.cells_to_camera = np.ascontiguousarray(cells_to_camera)
 
@@ -173,7 +173,7 @@ class _ImageView:
         count_hits(solid, image, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells)
         if box is self.region:
             return hits, cells
-        return _resample_hits(self.region, self.held[1], box, hits, cells)
+        return _resample_hits(self.region, self.contents[1], box, hits, cells)
 
 
 def gather_region(
@@ -187,10 +187,12 @@ def gather_region(
         more: so many cells more on each side.
     """
     shape = tuple(side + 2 * more for side in region.shape)
-    found = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
+    gathered = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
     to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
-    gather_labels(voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *found)
-    return found
+    gather_labels(
+        voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *gathered
+    )
+    return gathered
 
 
 def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
@@ -252,7 +254,7 @@ def _nearest_occupied(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
         fine: uint16 [X, Y, Z], not 0 where a cell holds something.
         places: float64 [N, 3], in cells; the cell of each and those around it are looked at.
     """
-    best, found = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
+    best, gathered = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
     for step in np.ndindex(3, 3, 3):
         cell = np.floor(places).astype(np.int64) + step - 1
         inside = np.flatnonzero(((cell >= 0) & (cell < fine.shape)).all(axis=1))
@@ -261,5 +263,5 @@ def _nearest_occupied(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
         nearer = away < best[here]
         here, away = here[nearer], away[nearer]
         best[here] = away
-        found[here] = np.ravel_multi_index(tuple(cell[here].T), fine.shape)
-    return found
+        gathered[here] = np.ravel_multi_index(tuple(cell[here].T), fine.shape)
+    return gathered

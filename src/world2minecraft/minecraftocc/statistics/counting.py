@@ -97,8 +97,8 @@ class WorldCells:
         self._join(key, np.packbits(flags))
 
     def _join(self, key: tuple[int, int, int], bits: np.ndarray) -> None:
-        held = self._blocks.get(key)
-        self._blocks[key] = bits.copy() if held is None else held | bits
+        existing = self._blocks.get(key)
+        self._blocks[key] = bits.copy() if existing is None else existing | bits
 
 
 def _check_size(voxel_m: float, own_m: float) -> None:
@@ -242,10 +242,10 @@ class StatisticsCounter:
         for name, cells in other._cells.items():
             self._cells[name].merge(cells)
         for name, fine in other._fine.items():
-            held = self._fine[name]
-            held.pixels += fine.pixels
-            held.pictures += fine.pictures
-            held.clear += fine.clear
+            ours_fine = self._fine[name]
+            ours_fine.pixels += fine.pixels
+            ours_fine.pictures += fine.pictures
+            ours_fine.clear += fine.clear
         self._without_fine += other._without_fine
         self._sizes += other._sizes
         self._splits += other._splits
@@ -267,9 +267,9 @@ class StatisticsCounter:
         )
 
     def _scene(self, key: str) -> SceneCount:
-        held = self._scenes[key]
+        sums = self._scenes[key]
         cells = self._cells[key].count() if key in self._cells else None
-        return SceneCount(key, held.pictures, held.voxels, cells, held.count_rooms())
+        return SceneCount(key, sums.pictures, sums.voxels, cells, sums.count_rooms())
 
     def _fine_counts(self) -> tuple[FineCount, ...]:
         counts = (

@@ -74,8 +74,8 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     axes.grid(axis="x", color=RULE)
     beside = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
     for row, n in enumerate(order):
-        told = {1.08: f"{ours[n]:.1%}", 1.18: format_count(statistics.class_voxels[n + 1])}
-        for place, text in told.items():
+        columns_at = {1.08: f"{ours[n]:.1%}", 1.18: format_count(statistics.class_voxels[n + 1])}
+        for place, text in columns_at.items():
             axes.text(place, row, text, transform=beside, ha="right", va="center")
     return figure
 

@@ -81,9 +81,9 @@ def write_classes(folder: Path, table: FineTable) -> None:
 def read_classes(folder: Path) -> FineTable:
     """Return the fine classes of a data set. Raises InputError or DamagedFileError."""
     path = folder / CLASSES
-    told = read_json(path, MAX_META_BYTES)
+    raw = read_json(path, MAX_META_BYTES)
     try:
-        rows = told["fine"]
+        rows = raw["fine"]
         if len(rows) > MAX_FINE:
             raise ValueError(f"it has more than {MAX_FINE:,} fine classes")
         return FineTable(tuple(FineClass(str(row["block"]), str(row["design"])) for row in rows))
@@ -97,11 +97,11 @@ def write_card(folder: Path, meta: dict[str, Any]) -> None:
     files = "".join(
         f"      - split: {split}\n        path: {SHARDS}/{split}/*.tar\n" for split in counts
     )
-    told = ", ".join(f"{count:,} {split}" for split, count in counts.items())
+    split_counts = ", ".join(f"{count:,} {split}" for split, count in counts.items())
     write_text(
         folder / CARD,
         f"---\nconfigs:\n  - config_name: default\n    data_files:\n{files}---\n"
-        f"# MinecraftOcc data set\n\n{told} images of {len(meta['scenes'])} scenes, made by "
+        f"# MinecraftOcc data set\n\n{split_counts} images of {len(meta['scenes'])} scenes, made by "
         f"world2minecraft {meta['versions']['world2minecraft']}.\n\n"
         "Each sample: picture, depth (16-bit millimetres), occ.npz (labels and masks of its\n"
         "cells) and json (camera, poses, region). `w2m dataset verify` checks it.\n",

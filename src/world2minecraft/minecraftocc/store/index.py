@@ -109,9 +109,9 @@ def read_index(path: Path) -> Any:
     try:
         file = parquet.ParquetFile(path)
         meta = file.metadata
-        held = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
-        if meta.num_rows > MAX_ROWS or held > MAX_INDEX_BYTES:
-            raise LimitError(path, f"has {meta.num_rows:,} rows of {held:,} bytes; too large")
+        size = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
+        if meta.num_rows > MAX_ROWS or size > MAX_INDEX_BYTES:
+            raise LimitError(path, f"has {meta.num_rows:,} rows of {size:,} bytes; too large")
         kinds = {field.name: str(field.type) for field in file.schema_arrow}
         wrong = [name for name, kind in columns().items() if kinds.get(name) != kind]
         if wrong:
@@ -143,14 +143,14 @@ def _batches(rows: Iterable[list[dict[str, Any]]]) -> Iterator[list[dict[str, An
 
 
 def _row(sample: StoredSample, shard: str) -> dict[str, Any]:
-    told, sizes = sample.facts, {member.kind: member.size for member in sample.members}
-    pose = told.get("facts", {}).get("game_pose") or {}
+    facts, sizes = sample.facts, {member.kind: member.size for member in sample.members}
+    pose = facts.get("facts", {}).get("game_pose") or {}
     return {
-        **{name: str(told[name]) for name in ("key", "scene_id", "tour_id", "split")},
+        **{name: str(facts[name]) for name in ("key", "scene_id", "tour_id", "split")},
         "shard": shard,
-        "region": str(told["region"]["kind"]),
+        "region": str(facts["region"]["kind"]),
         "sha256": sample.facts_sha256,
-        "frame": int(told["frame"]),
+        "frame": int(facts["frame"]),
         "offset": sample.offset,
         "size": sample.size,
         "image_bytes": sum(sizes.get(kind, 0) for kind in IMAGE_FORMATS),
@@ -158,9 +158,9 @@ def _row(sample: StoredSample, shard: str) -> dict[str, Any]:
         "label_bytes": sizes[LABELS],
         "json_bytes": sizes[FACTS],
         **{name: float(pose[name]) if name in pose else None for name in PLACE},
-        **{f"cells_{name}": int(told["cells"][name]) for name in COUNTS},
-        **_classes("class", told["cells_by_class"]),
-        **_classes("visible", told["visible_by_class"]),
+        **{f"cells_{name}": int(facts["cells"][name]) for name in COUNTS},
+        **_classes("class", facts["cells_by_class"]),
+        **_classes("visible", facts["visible_by_class"]),
     }
 
 

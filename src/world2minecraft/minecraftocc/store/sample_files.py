@@ -87,8 +87,8 @@ def _open_image(
     try:
         image = Image.open(io.BytesIO(data), formats=formats)
         if image.size != size:
-            told = "x".join(map(str, image.size))
-            raise DamagedFileError(source, f"a picture is {told}, not {size[0]}x{size[1]}")
+            actual = "x".join(map(str, image.size))
+            raise DamagedFileError(source, f"a picture is {actual}, not {size[0]}x{size[1]}")
         image.load()
     except (OSError, ValueError, SyntaxError, struct.error, Image.DecompressionBombError) as error:
         raise DamagedFileError(source, f"a picture cannot be read ({error})") from error
@@ -205,24 +205,24 @@ def unpack_sample(
     Raises:
         DamagedFileError: a member is not what it should be.
     """
-    told = read_facts(members[FACTS], source) if facts is None else facts
+    meta = read_facts(members[FACTS], source) if facts is None else facts
     try:
-        camera = Camera(**{name: told["camera"][name] for name in CAMERA_KEYS})
-        occ = _unpack_labels(members[LABELS], told["region"], len(table.classes), source)
+        camera = Camera(**{name: meta["camera"][name] for name in CAMERA_KEYS})
+        occ = _unpack_labels(members[LABELS], meta["region"], len(table.classes), source)
         images = [members[kind] for kind in IMAGE_FORMATS if kind in members]
         return OccSample(
-            key=str(told["key"]),
-            scene_id=str(told["scene_id"]),
-            tour_id=str(told["tour_id"]),
-            frame=int(told["frame"]),
+            key=str(meta["key"]),
+            scene_id=str(meta["scene_id"]),
+            tour_id=str(meta["tour_id"]),
+            frame=int(meta["frame"]),
             camera=camera,
-            camera_to_room=np.array(told["camera_to_room"], np.float64),
+            camera_to_room=np.array(meta["camera_to_room"], np.float64),
             occ=occ,
             fine_classes=table.classes,
             colour=decode_colour(images[0], camera, source) if images else None,
             depth_m=decode_depth(members[DEPTH], camera, source) if DEPTH in members else None,
-            split=str(told["split"]),
-            facts=dict(told.get("facts", {})),
+            split=str(meta["split"]),
+            facts=dict(meta.get("facts", {})),
         )
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise DamagedFileError(source, f"is no sample ({error!r})") from error
@@ -239,13 +239,13 @@ def read_facts(data: bytes, source: str | Path) -> dict[str, Any]:
     return facts
 
 
-def _unpack_labels(data: bytes, told: Any, fine_count: int, source: str | Path) -> OccLabels:
-    shape = tuple(int(side) for side in told["shape"])
+def _unpack_labels(data: bytes, meta: Any, fine_count: int, source: str | Path) -> OccLabels:
+    shape = tuple(int(side) for side in meta["shape"])
     cells = int(np.prod(np.array(shape, np.float64)))
     if not 0 < cells <= MAX_CELLS:
         raise ValueError(f"a region has 1 to {MAX_CELLS:,} cells, not {shape}")
-    to_room = np.array(told["region_to_room"], np.float64)
-    region = LabelRegion((shape[0], shape[1], shape[2]), told["voxel_m"], to_room, told["kind"])
+    to_room = np.array(meta["region_to_room"], np.float64)
+    region = LabelRegion((shape[0], shape[1], shape[2]), meta["voxel_m"], to_room, meta["kind"])
     limit = 4 * cells + 1024
     arrays = npz_arrays(data, (*WHOLE_ARRAYS, *BIT_ARRAYS), source, limit)
     for name in BIT_ARRAYS:

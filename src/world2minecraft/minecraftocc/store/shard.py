@@ -126,11 +126,11 @@ def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iter
 
 def has_valid_checksums(stream: BinaryIO, sample: StoredSample) -> bool:
     """Whether the members of a sample have the sums that its JSON tells."""
-    told = sample.facts.get("sha256")
+    checksums = sample.facts.get("sha256")
     others = [member for member in sample.members if member.kind != FACTS]
-    if not isinstance(told, dict) or set(told) != {member.kind for member in others}:
+    if not isinstance(checksums, dict) or set(checksums) != {member.kind for member in others}:
         return False
-    return all(told[member.kind] == _member_digest(stream, member) for member in others)
+    return all(checksums[member.kind] == _member_digest(stream, member) for member in others)
 
 
 def _sample_at(stream: BinaryIO, offset: int, length: int) -> StoredSample | None:

@@ -82,12 +82,12 @@ def _view(
 def _keeps_intrinsics(line: dict[str, Any], camera: Camera) -> bool:
     """Whether a line's size and vertical field of view alone are this very camera."""
     try:
-        told = camera_of(
+        expected = camera_of(
             *(line["width"], line["height"]), vertical_fov_deg=line["vertical_fov_deg"]
         )
     except UsageError:
         return False
-    return told == camera
+    return expected == camera
 
 
 def write_recorded_views(

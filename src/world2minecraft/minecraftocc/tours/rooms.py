@@ -219,13 +219,13 @@ def _label_parts(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
 
 def _assign_remaining(graph: WalkGraph, number: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return the rooms with places of none given to the room of the nearest place that has one."""
-    known, asked = np.flatnonzero(number >= 0), np.flatnonzero(kept & (number < 0))
+    known, remaining = np.flatnonzero(number >= 0), np.flatnonzero(kept & (number < 0))
     if not len(known):
         return np.where(kept, 0, -1)
-    if len(asked):
+    if len(remaining):
         scaled = graph.feet * [1, _APART, 1]
-        _, nearest = KDTree(scaled[known]).query(scaled[asked])
-        number[asked] = number[known[nearest]]
+        _, nearest = KDTree(scaled[known]).query(scaled[remaining])
+        number[remaining] = number[known[nearest]]
     return number
 
 

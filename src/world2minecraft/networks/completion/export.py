@@ -85,7 +85,7 @@ def parity(network: nn.Module, data: bytes) -> float:
     worst = 0.0
     for shape in (TRIAL_SHAPE, (32, 24, 16)):
         cells = rng.random((1, CHANNELS, *shape), np.float32)
-        (said,) = session.run(None, {"cells": cells})
+        (logits,) = session.run(None, {"cells": cells})
         wanted = network(torch.from_numpy(cells)).numpy()
-        worst = max(worst, float(np.abs(said - wanted).max()))
+        worst = max(worst, float(np.abs(logits - wanted).max()))
     return worst

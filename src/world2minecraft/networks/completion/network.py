@@ -106,8 +106,8 @@ class CompletionNet(nn.Module):
         eighth = self.eighth(self.to_eighth(quarter))
         quarter = self.quarter_out(quarter + self.from_eighth(eighth))
         half = self.half_out(half + self.from_quarter(quarter))
-        said = self.last(torch.cat([self.from_half(half), self.beside(cells)], dim=1))
-        return said + self.told(cells)
+        correction = self.last(torch.cat([self.from_half(half), self.beside(cells)], dim=1))
+        return correction + self.told(cells)
 
 
 def _trusting() -> nn.Conv3d:

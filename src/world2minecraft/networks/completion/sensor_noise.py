@@ -85,5 +85,5 @@ def corrupt_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -
         for values in (wrong, shift)
     )
     other = (labels.astype(np.int64) - 1 + shift) % (CLASS_COUNT - 1) + 1
-    told = (labels > 0) & (labels < CLASS_COUNT)
-    return np.where(wrong & told, other, labels).astype(np.uint8)
+    labelled = (labels > 0) & (labels < CLASS_COUNT)
+    return np.where(wrong & labelled, other, labels).astype(np.uint8)

@@ -162,9 +162,9 @@ class Trainer:
             return False
         self.network.load_state_dict(load_file(str(folder / "network.safetensors")))
         self.mean.load_state_dict(load_file(str(folder / "mean.safetensors")))
-        held = load_file(str(folder / "optimiser.safetensors"))
+        state = load_file(str(folder / "optimiser.safetensors"))
         for name, parameter in self.network.named_parameters():
-            keys = [key for key in held if key.rpartition("/")[0] == name]
-            self.optimiser.state[parameter] = {key.rpartition("/")[2]: held[key] for key in keys}
+            keys = [key for key in state if key.rpartition("/")[0] == name]
+            self.optimiser.state[parameter] = {key.rpartition("/")[2]: state[key] for key in keys}
         self.step = int((folder / "step.txt").read_text())
         return True

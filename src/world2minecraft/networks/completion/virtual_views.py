@@ -107,9 +107,9 @@ def _view(
     labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
     depth_m[draw_lost_pixels(noise, labels, depth_m, rng)] = 0
     depth_m *= np.float32(scale_factor(noise.frame_scale, rng) * noise.scan_scale)
-    said = None
+    labels_seen = None
     if noise.label_error is not None:
-        said = corrupt_labels(labels, noise.label_error, rng)
+        labels_seen = corrupt_labels(labels, noise.label_error, rng)
     # A single look has no tracker: where it stands is part of the scan's misfit.
     stated = pose if kind == "single" else jitter_pose(noise.sensor, pose, rng)
     return View(
@@ -119,5 +119,5 @@ def _view(
         colour_camera=camera,
         depth_m=depth_m,
         depth_camera=camera,
-        labels=said,
+        labels=labels_seen,
     )

@@ -87,18 +87,18 @@ class CachedFrames:
         return len(self.keys)
 
     def __getitem__(self, row: int) -> Frame:
-        held = {name: values[row] for name, values in self._arrays.items()}
+        arrays = {name: values[row] for name, values in self._arrays.items()}
         return Frame(
             key=self.keys[row],
             scene_id=self.scenes[row],
-            image=np.array(held["image"]),
-            depth_m=held["depth"].astype(np.float32) * np.float32(DEPTH_UNIT_M),
-            intrinsics=np.array(held["intrinsics"]),
-            camera_to_grid=np.array(held["camera_to_grid"]),
-            grid_to_room=np.array(held["grid_to_room"]),
-            labels=np.array(held["labels"]),
+            image=np.array(arrays["image"]),
+            depth_m=arrays["depth"].astype(np.float32) * np.float32(DEPTH_UNIT_M),
+            intrinsics=np.array(arrays["intrinsics"]),
+            camera_to_grid=np.array(arrays["camera_to_grid"]),
+            grid_to_room=np.array(arrays["grid_to_room"]),
+            labels=np.array(arrays["labels"]),
             has_depth=self._has_depth[row],
-            **{name: (held["masks"] & bit) > 0 for name, bit in MASKS.items()},
+            **{name: (arrays["masks"] & bit) > 0 for name, bit in MASKS.items()},
         )
 
     def labels(self, rows: Sequence[int]) -> Iterator[np.ndarray]:

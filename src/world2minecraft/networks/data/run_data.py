@@ -62,7 +62,7 @@ def open_run_data(
         be split as the run says.
     """
     rule, place = frame_rule(config), cache or CacheLocation()
-    parts, splits, told = [], [], []
+    parts, splits, descriptions = [], [], []
     total = np.zeros(12)
     for source in config.data:
         found = open_occupancy(source.path)
@@ -73,14 +73,14 @@ def open_run_data(
         parts.append(TrainingSet(frames, split.train))
         counts = class_counts(frames.labels(take_evenly(split.train, MAX_COUNTED_FRAMES)))
         total += counts * (source.weight / max(counts.sum(), 1))
-        told.append(f"{source.path}: {found.format}, {describe_counts(split._asdict())}")
+        descriptions.append(f"{source.path}: {found.format}, {describe_counts(split._asdict())}")
     return RunData(
         parts=tuple(parts),
         weights=tuple(source.weight for source in config.data),
         target=parts[0].frames,
         split=splits[0],
         counts=np.round(total * 1e9).astype(np.int64),
-        described=tuple(told),
+        described=tuple(descriptions),
     )
 
 

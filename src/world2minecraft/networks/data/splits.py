@@ -50,14 +50,14 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
             raise UsageError(f"{name} has no test split; hold scenes out with --val-share 0.1")
         return Split(pool, test, test)
     names = sorted({scenes[row] for row in pool}, key=_digest)
-    held = set(names[: max(1, round(val_share * len(names)))])
-    if len(held) == len(names):
+    held_out = set(names[: max(1, round(val_share * len(names)))])
+    if len(held_out) == len(names):
         raise UsageError(
             f"{name} has {len(names)} scene to train on, of which none can be held out; add "
             "scenes, or validate on its test split with --val-share 0"
         )
-    train = [row for row in pool if scenes[row] not in held]
-    return Split(train, [row for row in pool if scenes[row] in held], test)
+    train = [row for row in pool if scenes[row] not in held_out]
+    return Split(train, [row for row in pool if scenes[row] in held_out], test)
 
 
 def take_evenly(rows: list[int], most: int) -> list[int]:

@@ -158,14 +158,14 @@ class Embodied(nn.Module):
         # Of each cell: how likely its pixel's surface is there, nearer, and farther.
         ways = weight_by_depth(torch.stack([shares, before, 1 - before], dim=1), sight, DEPTH_SCALE)
         lifted = lift_features(features, sight, inputs.grid_shape)
-        said = self.look(torch.cat([lifted, ways.unflatten(2, inputs.grid_shape)], dim=1))
+        predicted = self.look(torch.cat([lifted, ways.unflatten(2, inputs.grid_shape)], dim=1))
         in_view = sight.inside.unflatten(1, inputs.grid_shape)[:, None]
-        gate = torch.sigmoid(said[:, :1]) * in_view
-        odds = MAX_LOG_ODDS * torch.tanh(said[:, 1:2])
-        votes = torch.softmax(said[:, 2 : 2 + CLASS_COUNT], dim=1)
-        kept = torch.tanh(said[:, 2 + CLASS_COUNT :])
-        told = torch.cat([torch.ones_like(gate), odds, votes, kept], dim=1) * gate
-        return SceneEvidence(told), depth_logits
+        gate = torch.sigmoid(predicted[:, :1]) * in_view
+        odds = MAX_LOG_ODDS * torch.tanh(predicted[:, 1:2])
+        votes = torch.softmax(predicted[:, 2 : 2 + CLASS_COUNT], dim=1)
+        cell_features = torch.tanh(predicted[:, 2 + CLASS_COUNT :])
+        evidence = torch.cat([torch.ones_like(gate), odds, votes, cell_features], dim=1) * gate
+        return SceneEvidence(evidence), depth_logits
 
     def read(self, evidence: SceneEvidence) -> Tensor:
         """Return logits [B, 12, X, Y, Z] of a box of cells; see ``stream`` for whole scenes."""
@@ -266,8 +266,8 @@ class SceneStream:
             self.voxel_m,
             None if depth_m is None else depth_m[None],
         ).to(self._values.device)
-        told, _ = self.network.observe(inputs)
-        self._put(torch.rot90(told.values, window.quarters, (2, 3)), window.low)
+        evidence, _ = self.network.observe(inputs)
+        self._put(torch.rot90(evidence.values, window.quarters, (2, 3)), window.low)
 
     @torch.no_grad()
     def logits(self) -> Tensor:
@@ -279,7 +279,7 @@ class SceneStream:
         sides = [max(w, b) for w, b in zip(self._values.shape[2:], self.box_shape, strict=True)]
         missing = [side - have for side, have in zip(sides, self._values.shape[2:], strict=True)]
         values = nn.functional.pad(self._values, (0, missing[2], 0, missing[1], 0, missing[0]))
-        said = values.new_zeros(CLASS_COUNT, *sides)
+        sums = values.new_zeros(CLASS_COUNT, *sides)
         weights = values.new_zeros(sides)
         near = _nearness(self.box_shape).to(values)
         starts = (
@@ -288,18 +288,18 @@ class SceneStream:
         for low in product(*starts):
             box = tuple(slice(a, a + n) for a, n in zip(low, self.box_shape, strict=True))
             here = SceneEvidence(values[(slice(None), slice(None), *box)])
-            said[(slice(None), *box)] += self.network.read(here)[0] * near
+            sums[(slice(None), *box)] += self.network.read(here)[0] * near
             weights[box] += near
         x, y, z = self._values.shape[2:]
-        return (said / weights)[:, :x, :y, :z]
+        return (sums / weights)[:, :x, :y, :z]
 
-    def _put(self, told: Tensor, low: tuple[int, int, int]) -> None:
+    def _put(self, values: Tensor, low: tuple[int, int, int]) -> None:
         scene, box = [], []
-        for start, side, whole in zip(low, told.shape[2:], self._values.shape[2:], strict=True):
+        for start, side, whole in zip(low, values.shape[2:], self._values.shape[2:], strict=True):
             first, last = max(start, 0), max(min(start + side, whole), start, 0)
             scene.append(slice(first, last))
             box.append(slice(first - start, last - start))
-        self._values[(slice(None), slice(None), *scene)] += told[(slice(None), slice(None), *box)]
+        self._values[(slice(None), slice(None), *scene)] += values[(slice(None), slice(None), *box)]
 
 
 def _window_starts(whole: int, side: int) -> list[int]:

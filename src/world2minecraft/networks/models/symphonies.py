@@ -84,10 +84,10 @@ class SymphonyLayer(nn.Module):
         queries = self.after[0](queries, self.look(marked, stage.query_pixel, stage.maps))
         marked = queries + stage.query_mark
         found = self.ask(cells + stage.cell_mark, marked, queries)
-        told = self.after[1](cells, found)
-        grid = to_grid(torch.where(stage.in_view[..., None], told, cells), stage.shape)
-        found = self.spread(told + stage.cell_mark, stage.cell_place, [grid])
-        cells = torch.where(stage.in_view[..., None], self.after[2](told, found), cells)
+        updated = self.after[1](cells, found)
+        grid = to_grid(torch.where(stage.in_view[..., None], updated, cells), stage.shape)
+        found = self.spread(updated + stage.cell_mark, stage.cell_place, [grid])
+        cells = torch.where(stage.in_view[..., None], self.after[2](updated, found), cells)
         if not self.again:
             return cells, queries
         found = self.read(marked, stage.query_cell, [to_grid(cells, stage.shape)])

@@ -282,7 +282,7 @@ def _windows(plan: HousePlan, number: int, rng: np.random.Generator) -> list[Gap
 
 
 def _is_outer(plan: HousePlan, number: int, wall: Wall) -> bool:
-    """Tell whether nothing of the same storey lies behind a wall."""
+    """Return whether nothing of the same storey lies behind a wall."""
     x0, y0, x1, y1 = wall.rect(wall.first_m, wall.last_m, -0.4, -0.04)
     storey = plan.cells[number].storey
     others = (c for n, c in enumerate(plan.cells) if n != number and c.storey == storey)
@@ -294,8 +294,8 @@ def _is_outer(plan: HousePlan, number: int, wall: Wall) -> bool:
 def _doorway(plan: HousePlan, number: int) -> list[Gap]:
     """Return a wide doorway between two neighbours of which one eats where the other cooks."""
     a, b = plan.cells[number], plan.cells[number + 1]
-    beside = a.storey == b.storey and a.y_m == b.y_m and abs(a.rect[2] + WALL_M - b.x_m) < 0.01
-    if not beside or a.kind not in SOCIAL or b.kind not in SOCIAL:
+    adjacent = a.storey == b.storey and a.y_m == b.y_m and abs(a.rect[2] + WALL_M - b.x_m) < 0.01
+    if not adjacent or a.kind not in SOCIAL or b.kind not in SOCIAL:
         return []
     wall = next(w for w in walls_of(a) if w.turn == 2)
     first = round_to_step((wall.first_m + wall.last_m - OPEN_M) / 2)

@@ -86,12 +86,12 @@ def _run(
 
 
 def _stands(plan: Plan, item: Item) -> bool:
-    """Tell whether a piece fits; a sink may stand under a window, a fridge not before one."""
+    """Return whether a piece fits; a sink may stand under a window, a fridge not before one."""
     box = item.box_m
     tall = item.model.name == "fridge"
-    kept = [other for other in plan.reserved if tall or other[2] < LOW_M]
+    reserved = [other for other in plan.reserved if tall or other[2] < LOW_M]
     return plan.fits(item, may_block=True) and not any(
-        boxes_intersect(box, other) for other in kept
+        boxes_intersect(box, other) for other in reserved
     )
 
 

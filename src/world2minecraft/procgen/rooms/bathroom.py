@@ -1,4 +1,4 @@
-"""What stands in a bathroom, in the sizes that fittings are sold in."""
+"""Models of bathroom fittings, in the sizes in which they are sold."""
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms.furniture_model import (

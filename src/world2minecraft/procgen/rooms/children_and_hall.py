@@ -1,4 +1,4 @@
-"""What stands in a children's room and in a hall."""
+"""Models of the furniture of children's rooms and halls."""
 
 import numpy as np
 

@@ -30,20 +30,20 @@ WOOD: Colour = (176, 128, 82)
 METAL: Colour = (92, 96, 102)
 
 
-def _pick(rng: np.random.Generator, colours: tuple[Colour, ...]) -> Colour:
+def _pick_colour(rng: np.random.Generator, colours: tuple[Colour, ...]) -> Colour:
     return colours[int(rng.integers(len(colours)))]
 
 
 def cup(rng: np.random.Generator) -> Model:
     """A mug with its handle."""
-    colour = _pick(rng, BRIGHT_COLOURS)
+    colour = _pick_colour(rng, BRIGHT_COLOURS)
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, 0.10), colour, form="drum")
     return make_model("cup", OBJS, (body, Bar((0, 0.05, 0.03), (0, 0.05, 0.07), 0.012, colour)))
 
 
 def bottle(rng: np.random.Generator) -> Model:
     """A bottle of glass or plastic."""
-    colour = _pick(rng, ((52, 96, 62), (96, 60, 40), (120, 170, 200), (200, 70, 60)))
+    colour = _pick_colour(rng, ((52, 96, 62), (96, 60, 40), (120, 170, 200), (200, 70, 60)))
     high = round_to_step(rng.uniform(0.24, 0.32))
     body = Part((-0.04, -0.04, 0, 0.04, 0.04, high - 0.1), colour, form="drum")
     neck = Part((-0.02, -0.02, high - 0.1, 0.02, 0.02, high), shade(colour, 1.1), form="drum")
@@ -52,7 +52,7 @@ def bottle(rng: np.random.Generator) -> Model:
 
 def plate(rng: np.random.Generator) -> Model:
     """A plate with something on it."""
-    food = _pick(rng, ((206, 120, 60), (120, 150, 70), (180, 60, 50)))
+    food = _pick_colour(rng, ((206, 120, 60), (120, 150, 70), (180, 60, 50)))
     rim = Part((-0.12, -0.12, 0, 0.12, 0.12, 0.02), (240, 240, 236), form="drum")
     return make_model(
         "plate", OBJS, (rim, Part((-0.06, -0.05, 0.0, 0.05, 0.06, 0.06), food, form="ball"))
@@ -71,7 +71,7 @@ def laptop(rng: np.random.Generator) -> Model:
 
 def shoes(rng: np.random.Generator) -> Model:
     """A pair of shoes, one a little ahead."""
-    colour, parts = _pick(rng, CLOTHES), []
+    colour, parts = _pick_colour(rng, CLOTHES), []
     for y, x in ((-0.08, 0.0), (0.06, float(rng.uniform(-0.06, 0.06)))):
         parts.append(Part((x - 0.14, y - 0.05, 0, x + 0.14, y + 0.05, 0.03), shade(colour, 0.6)))
         parts.append(Part((x - 0.14, y - 0.05, 0, x + 0.0, y + 0.05, 0.11), colour, form="ball"))
@@ -81,7 +81,7 @@ def shoes(rng: np.random.Generator) -> Model:
 
 def bag(rng: np.random.Generator) -> Model:
     """A school bag or a rucksack that stands on the floor."""
-    colour = _pick(rng, BRIGHT_COLOURS + CLOTHES)
+    colour = _pick_colour(rng, BRIGHT_COLOURS + CLOTHES)
     parts = (
         Part((-0.12, -0.17, 0, 0.10, 0.17, 0.44), colour, "fabric", form="ball"),
         Part((-0.10, -0.15, 0, 0.08, 0.15, 0.24), colour, "fabric"),
@@ -107,31 +107,33 @@ def laundry(rng: np.random.Generator) -> Model:
         x, y = rng.uniform(-0.14, 0.14, 2)
         a, b, h = rng.uniform(0.12, 0.2), rng.uniform(0.12, 0.22), rng.uniform(0.10, 0.22)
         box = (x - a, y - b, -0.3 * h, x + a, y + b, h)
-        parts.append(Part(box, _pick(rng, CLOTHES), "fabric", form="ball"))
-    return _grounded("laundry", parts)
+        parts.append(Part(box, _pick_colour(rng, CLOTHES), "fabric", form="ball"))
+    return _clip_at_floor("laundry", parts)
 
 
 def ball(rng: np.random.Generator) -> Model:
     """A ball to play with."""
     r = float(rng.uniform(0.08, 0.12))
-    part = Part((-r, -r, 0, r, r, 2 * r), _pick(rng, BRIGHT_COLOURS), form="ball")
+    part = Part((-r, -r, 0, r, r, 2 * r), _pick_colour(rng, BRIGHT_COLOURS), form="ball")
     return make_model("ball", OBJS, (part,))
 
 
 def bricks(rng: np.random.Generator) -> Model:
     """Building bricks: a small tower and two that fell."""
     parts = [
-        Part((-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), _pick(rng, BRIGHT_COLOURS))
+        Part(
+            (-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), _pick_colour(rng, BRIGHT_COLOURS)
+        )
         for n in range(int(rng.integers(2, 5)))
     ]
     for x, y in ((0.12, 0.06), (-0.06, 0.14)):
-        parts.append(Part((x, y, 0, x + 0.1, y + 0.06, 0.06), _pick(rng, BRIGHT_COLOURS)))
+        parts.append(Part((x, y, 0, x + 0.1, y + 0.06, 0.06), _pick_colour(rng, BRIGHT_COLOURS)))
     return make_model("bricks", OBJS, parts)
 
 
 def teddy(rng: np.random.Generator) -> Model:
     """A teddy bear that sits and looks along its front."""
-    fur: Colour = _pick(rng, ((156, 106, 64), (196, 160, 116), (120, 92, 72)))
+    fur: Colour = _pick_colour(rng, ((156, 106, 64), (196, 160, 116), (120, 92, 72)))
     balls = (
         (0.0, 0.0, 0.10, 0.10), (0.02, 0.0, 0.27, 0.09), (0.0, -0.07, 0.35, 0.04),
         (0.0, 0.07, 0.35, 0.04), (0.14, -0.08, 0.05, 0.05), (0.14, 0.08, 0.05, 0.05),
@@ -154,14 +156,14 @@ def potted_plant(rng: np.random.Generator) -> Model:
     return make_model("potted_plant", OBJS, parts)
 
 
-def _grounded(name: str, parts: list[Part]) -> Model:
+def _clip_at_floor(name: str, parts: list[Part]) -> Model:
     """Return the model of parts with what lies under the floor cut away."""
-    kept = []
+    clipped = []
     for part in parts:
         x0, y0, z0, x1, y1, z1 = part.box_m
         # The upper half of a low, wide ball: as if it had sunk into the floor.
-        kept.append(Part((x0, y0, max(z0, 0.0), x1, y1, z1), part.colour, part.grain, part.form))
-    return make_model(name, OBJS, kept)
+        clipped.append(Part((x0, y0, max(z0, 0.0), x1, y1, z1), part.colour, part.grain, part.form))
+    return make_model(name, OBJS, clipped)
 
 
 ON_TABLES: tuple[ModelFactory, ...] = (
@@ -249,11 +251,11 @@ def bicycle(rng: np.random.Generator) -> Model:
         corners = np.linspace(0, 2 * np.pi, 17)
         rim = [(middle + 0.31 * np.cos(a), 0.0, 0.335 + 0.31 * np.sin(a)) for a in corners]
         for a, b in pairwise(rim):
-            parts.append(Bar(_at(a), _at(b), 0.022, (44, 44, 48)))
+            parts.append(Bar(_as_point(a), _as_point(b), 0.022, (44, 44, 48)))
         for a in corners[:8:2]:
             off = (0.3 * np.cos(a), 0.0, 0.3 * np.sin(a))
             ends = [(middle + s * off[0], 0.0, 0.335 + s * off[2]) for s in (-1, 1)]
-            parts.append(Bar(_at(ends[0]), _at(ends[1]), 0.008, (170, 172, 176)))
+            parts.append(Bar(_as_point(ends[0]), _as_point(ends[1]), 0.008, (170, 172, 176)))
     tubes = (
         ((-0.5, 0.335), (-0.06, 0.30)), ((-0.06, 0.30), (-0.18, 0.82)),
         ((-0.5, 0.335), (-0.16, 0.74)),
@@ -270,7 +272,7 @@ def bicycle(rng: np.random.Generator) -> Model:
     return make_model("bicycle", OBJS, parts)
 
 
-def _at(point: tuple[float, ...]) -> tuple[float, float, float]:
+def _as_point(point: tuple[float, ...]) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in point)
     return x, y, z
 

@@ -58,7 +58,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Cut:
-    """A corner cut off at 45 degrees: at x = max and y = max as told, ``leg_m`` along each wall."""
+    """A corner cut off at 45 degrees: at x = max and y = max as stated, ``leg_m`` along each wall."""
 
     high_x: bool
     high_y: bool
@@ -114,7 +114,7 @@ class Ground:
         return (*main, *(wall for wall in found if wall not in main))
 
     def holds(self, box: Box) -> bool:
-        """Tell whether a box lies in the room's air."""
+        """Return whether a box lies in the room's air."""
         inside = all(
             box[n] >= -TOUCH_M and box[n + 3] <= self.size_m[n] + TOUCH_M for n in range(3)
         )

@@ -24,7 +24,7 @@ STONE_NAMES = frozenset(("counter", "sink_counter", "washstand"))
 
 
 class Material(IntEnum):
-    """What a surface is made of; ``texture`` draws it."""
+    """What a surface is made of; ``surface_textures`` draws it."""
 
     BARE = 0
     WALL = 1

@@ -61,12 +61,12 @@ class Item:
 
 
 def boxes_intersect(a: Box, b: Box) -> bool:
-    """Tell whether two boxes share more than a face."""
+    """Return whether two boxes share more than a face."""
     return all(a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3))
 
 
 def items_intersect(a: Item, b: Item) -> bool:
-    """Tell whether two items share more than a face, as they are turned."""
+    """Return whether two items share more than a face, as they are turned."""
     if not boxes_intersect(a.box_m, b.box_m):
         return False
     if a.yaw_deg % 90 == 0 and b.yaw_deg % 90 == 0:
@@ -99,7 +99,7 @@ class Plan:
         return snap_to_voxels(Item(model, x, y, z_m, 90.0 * side.turn))
 
     def fits(self, item: Item, *, may_block: bool = False, among: list[Item] | None = None) -> bool:
-        """Tell whether an item lies in the room and meets nothing (nor a reserved place).
+        """Return whether an item lies in the room and meets nothing (nor a reserved place).
 
         Args:
             item: what is asked about.
@@ -109,10 +109,10 @@ class Plan:
         box = item.box_m
         inside = self.ground.holds(box)
         others = self.items if among is None else among
-        kept = [] if may_block else self.reserved
+        reserved = [] if may_block else self.reserved
         return (
             inside
-            and not any(boxes_intersect(box, other) for other in kept)
+            and not any(boxes_intersect(box, other) for other in reserved)
             and not any(items_intersect(item, other) for other in others)
         )
 
@@ -224,7 +224,7 @@ def snap_to_voxels(item: Item) -> Item:
 
 
 def paths_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.24) -> bool:
-    """Tell whether a person who comes in at a door reaches most of the free floor.
+    """Return whether a person who comes in at a door reaches most of the free floor.
 
     The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person. All
     doors must lead to the same floor.

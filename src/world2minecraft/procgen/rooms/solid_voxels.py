@@ -1,4 +1,4 @@
-"""Round and turned parts become voxels: every voxel is asked at 27 places whether it is filled.
+"""Voxelization of round and turned parts: every voxel is sampled at 27 points.
 
 Boxes turned by quarters need none of this: they fall on whole voxels.
 """
@@ -36,7 +36,7 @@ def make_model(name: str, class_id: int, parts: Sequence[Part | Bar]) -> Model:
 
 
 def is_plain(item: Item, part: Part | Bar) -> bool:
-    """Tell whether a part is a box that falls on whole voxels where the item stands."""
+    """Return whether a part is a box that falls on whole voxels where the item stands."""
     return isinstance(part, Part) and part.form == "box" and item.yaw_deg % 90 == 0
 
 
@@ -72,7 +72,7 @@ def _bounds_m(item: Item, part: Part | Bar) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside(part: Part | Bar, points: np.ndarray) -> np.ndarray:
-    """Tell which points, float64 [..., 3] in the item's own frame, lie in a part."""
+    """Return which points, float64 [..., 3] in the item's own frame, lie in a part."""
     if isinstance(part, Bar):
         return _inside_bar(part, points)
     low, high = np.array(part.box_m[:3]), np.array(part.box_m[3:])

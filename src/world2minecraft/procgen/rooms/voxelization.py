@@ -188,7 +188,7 @@ def _grain(part: Part | Bar, shape: tuple[int, ...], rng: np.random.Generator) -
 
 
 def _is_bare_wood(colour: Colour) -> bool:
-    """Tell a brown from a paint: painted wood shows no streaks."""
+    """Return whether a colour is that of bare wood: painted wood shows no streaks."""
     red, green, blue = colour
     return red - blue > 30 and 0.5 < green / max(red, 1) < 0.88
 

@@ -101,7 +101,7 @@ def quantize_disparity(model: Sensor, depth_m: np.ndarray, focal_px: float) -> n
 
 
 def depth_edges(depth_m: np.ndarray) -> np.ndarray:
-    """Tell which pixels lie at a depth edge: one of their four neighbours is far off."""
+    """Return which pixels lie at a depth edge: one of their four neighbours is far off."""
     found = np.zeros(depth_m.shape, bool)
     for axis in (0, 1):
         a, b = np.moveaxis(depth_m, axis, 0)[:-1], np.moveaxis(depth_m, axis, 0)[1:]

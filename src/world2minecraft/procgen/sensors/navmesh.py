@@ -1,4 +1,4 @@
-"""Where a person can stand and walk in a room or a house, on every storey and on the stairs.
+"""The navigation mesh of a room or a house: where a person can stand and walk, stairs included.
 
 The floor is looked at in squares of 10 cm. A person stands on what is solid, where 1.9 m above it
 and half a metre around it are free, and steps up or down by 26 cm at most: so one walk leads
@@ -53,9 +53,9 @@ def build_navmesh(room: Room) -> NavMesh:
     spots = _tops(room, squares, below)
     places_m = _places_m(room, spots)
     inside, storey_room, on_floor = _where(room.layouts, places_m)
-    kept = inside & _is_free_around(room, below, spots, KNEE_M)
+    reachable = inside & _is_free_around(room, below, spots, KNEE_M)
     spots, places_m, storey_room, on_floor = (
-        values[kept] for values in (spots, places_m, storey_room, on_floor)
+        values[reachable] for values in (spots, places_m, storey_room, on_floor)
     )
     easy = on_floor & _is_free_around(room, below, spots, ANKLE_M)
     return NavMesh(places_m, easy, storey_room, _links(room, spots, easy))
@@ -91,7 +91,7 @@ def _solid_between(below: np.ndarray, spots: np.ndarray, low: int, high: int) ->
 
 
 def _is_free_around(room: Room, below: np.ndarray, spots: np.ndarray, low_m: float) -> np.ndarray:
-    """Tell where a body stands free from ``low_m`` above its feet to its shoulders."""
+    """Return where a body stands free from ``low_m`` above its feet to its shoulders."""
     low, high = _cells(room, low_m), _cells(room, SHOULDER_M)
     free = np.ones(len(spots), bool)
     for di, dj in _offsets():
@@ -117,7 +117,7 @@ def _places_m(room: Room, spots: np.ndarray) -> np.ndarray:
 
 
 def _where(layouts: tuple[Layout, ...], places_m: np.ndarray):
-    """Tell of each place whether it is in a room or its walls, in which room, and on its floor."""
+    """Return for each place whether it is in a room or its walls, in which room, and on its floor."""
     near, on_floor = np.zeros(len(places_m), bool), np.zeros(len(places_m), bool)
     index = np.full(len(places_m), -1)
     for n, layout in enumerate(layouts):
@@ -134,7 +134,7 @@ def _where(layouts: tuple[Layout, ...], places_m: np.ndarray):
 
 
 def is_inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Tell which points, float64 [N, 2], lie in a polygon, float64 [M, 2], by crossings."""
+    """Return which points, float64 [N, 2], lie in a polygon, float64 [M, 2], by crossings."""
     x, y = points[:, 0], points[:, 1]
     odd = np.zeros(len(points), bool)
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):

@@ -44,7 +44,7 @@ MOMENTS = 4  # Rays of a pixel, each at its own moment.
 class CameraTrack:
     """Where the camera is and looks at each of F moments, and evenly in between."""
 
-    camera_positions_m: np.ndarray  # float64 [F, 3]
+    eyes_m: np.ndarray  # float64 [F, 3]
     angles: np.ndarray  # float64 [F, 2], yaw (it may exceed a full turn) and pitch in radians
 
     def pose(self, moment: float) -> np.ndarray:
@@ -85,8 +85,8 @@ def plan_camera_track(
     eyes = camera_positions_m(walk.feet_m, rng)
     every = LOOK_PICTURES if smooth else LOOK_PHOTOS
     looks = np.unique(np.append(np.arange(0, pictures, every), pictures - 1))
-    gaze = ViewPlanner(scene, camera, walk.pace_m * every, (LOOK_TURN[0], LOOK_TURN[1]))
-    seen = np.array([gaze.turn(eyes[n]) for n in looks])
+    planner = ViewPlanner(scene, camera, walk.pace_m * every, (LOOK_TURN[0], LOOK_TURN[1]))
+    seen = np.array([planner.next_direction(eyes[n]) for n in looks])
     seen[:, 0] = np.unwrap(seen[:, 0])
     angles = np.column_stack([np.interp(np.arange(pictures), looks, seen[:, n]) for n in (0, 1)])
     if smooth:

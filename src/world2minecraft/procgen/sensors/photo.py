@@ -29,7 +29,7 @@ from world2minecraft.rendering.grid_traversal import TILE, bundle_start, trace_r
 from world2minecraft.rendering.scene_tables import NO_FACE
 
 UNDER_CEILING_M = 0.35
-GRID_M, MAX_STEPS = 0.1, 300  # How finely a place for a lamp is looked for.
+GRID_M, MAX_STEPS = 0.1, 300  # The grid on which a place for a lamp is searched.
 COARSE = 4  # Voxels of 2 cm a cell of the blurred grid: shadows are soft over 16 cm.
 BLUR_CELLS = 1.6
 NEAR_VOXELS = 7.0  # How far off the surface the blurred grid is read.
@@ -108,15 +108,21 @@ class Photo(NamedTuple):
     cosine: np.ndarray  # float32 [H, W], 1 where the ray meets the surface squarely
 
 
+class Lighting(NamedTuple):
+    """What lights the surfaces of a room; arrays of coarse cells are [X, Y, Z]."""
+
+    solid: np.ndarray  # float32, the blurred share of solid voxels of each coarse cell
+    lamps: np.ndarray  # float64 [L, 3], in voxels, one a layout
+    lamp_of: np.ndarray  # uint8, the lamp that lights each coarse cell
+
+
 @dataclass(frozen=True, eq=False)
 class PhotoScene:
     """A room made ready for photos."""
 
     scene: VoxelScene
     colour: np.ndarray  # uint8 [X, Y, Z, 3]
-    solid: np.ndarray  # float32, the blurred share of solid voxels
-    lamps: np.ndarray  # float64 [L, 3], in voxels, one a layout
-    lamp_of: np.ndarray  # uint8 [X, Y, Z] of coarse cells, the lamp that lights each
+    lighting: Lighting
 
 
 def prepare_photos(room: Room) -> PhotoScene:
@@ -129,9 +135,11 @@ def prepare_photos(room: Room) -> PhotoScene:
     return PhotoScene(
         scene=prepare_voxels(room.labels, room.voxel_m, room.origin_m),
         colour=room.colour,
-        solid=ndimage.gaussian_filter(coarse, BLUR_CELLS, mode="nearest"),
-        lamps=(hang_lamps(room) - room.origin_m) / room.voxel_m,
-        lamp_of=nearest_lamps(room, coarse.shape, COARSE * room.voxel_m),
+        lighting=Lighting(
+            solid=ndimage.gaussian_filter(coarse, BLUR_CELLS, mode="nearest"),
+            lamps=(hang_lamps(room) - room.origin_m) / room.voxel_m,
+            lamp_of=nearest_lamps(room, coarse.shape, COARSE * room.voxel_m),
+        ),
     )
 
 
@@ -146,16 +154,23 @@ def take_photo(scene: PhotoScene, camera: Camera, camera_to_room: np.ndarray) ->
     )
     pose = np.ascontiguousarray((scene.scene.room_to_grid @ camera_to_room)[:3])
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
-    _expose(
-        scene.scene.cells, scene.colour, scene.solid, scene.lamps, scene.lamp_of, pose, rays, *photo
-    )
+    _render_photo(scene.scene.cells, scene.colour, scene.lighting, pose, rays, photo)
     return photo
 
 
 @njit
-def _expose(
-    cells, colours, solid, lamps, lamp_of, pose, rays, image, depth, index, cosine
-):  # fmt: skip
+def _render_photo(cells, colours, lighting, pose, rays, photo):
+    """Fill a photo by one ray a pixel.
+
+    Args:
+        cells: the voxels as ``VoxelScene`` has them.
+        colours: uint8 [X, Y, Z, 3].
+        lighting: a ``Lighting``.
+        pose: float64 [3, 4], from the camera to voxels.
+        rays: float64 [4], the focal lengths and the centre of the camera in pixels.
+        photo: the ``Photo`` to fill, of zeros.
+    """
+    image, depth, index, cosine = photo.colour, photo.depth_m, photo.voxel_index, photo.cosine
     height, width = depth.shape
     ny, nz = cells.shape[1], cells.shape[2]
     scale = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
@@ -179,17 +194,16 @@ def _expose(
                     along = dx if face < 2 else (dy if face < 4 else dz)
                     cosine[v, u] = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
                     px, py, pz = pose[0, 3] + t * dx, pose[1, 3] + t * dy, pose[2, 3] + t * dz
-                    light = surface_light(solid, lamps, lamp_of, px, py, pz, face) * _grain(
-                        px, py, pz
-                    )
+                    light = surface_light(lighting, px, py, pz, face) * _grain(px, py, pz)
                     light *= 1.0 - 0.10 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
                     for n in range(3):
                         image[v, u, n] = np.uint8(min(255.0, colours[i, j, k, n] * light))
 
 
 @njit
-def surface_light(solid, lamps, lamp_of, px, py, pz, face):
-    """Return the light on a face at a point, about 1 in the open."""
+def surface_light(lighting, px, py, pz, face):
+    """Return the light of a ``Lighting`` on a face at a point in voxels, about 1 in the open."""
+    lamps, lamp_of = lighting.lamps, lighting.lamp_of
     sign = 1.0 if face % 2 == 1 else -1.0
     axis = face // 2
     off = sign * NEAR_VOXELS
@@ -205,7 +219,7 @@ def surface_light(solid, lamps, lamp_of, px, py, pz, face):
     far = np.sqrt(lx * lx + ly * ly + lz * lz) + 20.0
     direct = max(0.0, toward / far) / (1.0 + (far / 160.0) ** 2)
     base = 0.74 if axis == 0 else (0.80 if axis == 1 else (0.84 if sign > 0 else 0.72))
-    return (base + 0.42 * direct) * (1.08 - 0.62 * _blurred(solid, ox, oy, oz))
+    return (base + 0.42 * direct) * (1.08 - 0.62 * _blurred(lighting.solid, ox, oy, oz))
 
 
 @njit
@@ -243,24 +257,29 @@ def _hash(i, j, k):
     return ((mixed ^ (mixed >> 16)) & 0xFFFF) / 65535.0
 
 
+class SurfaceMarks(NamedTuple):
+    """What the marks on the surfaces of a room depend on."""
+
+    materials: np.ndarray  # uint8 [X, Y, Z]
+    instance: np.ndarray  # uint16 [X, Y, Z]
+    planes: np.ndarray  # bool [4, N], the planes of wall with room for posters
+    heights_m: np.ndarray  # float64 [Z], over the floor of the storey
+    voxel_m: float
+    seed: int
+    strength: float  # 0 leaves the colours flat, 1 is as in real rooms
+
+
 @dataclass(frozen=True, eq=False)
 class TexturedScene:
     """A room made ready for photos with marks on its surfaces."""
 
     photos: PhotoScene
-    materials: np.ndarray  # uint8 [X, Y, Z]
-    instance: np.ndarray  # uint16 [X, Y, Z]
-    planes: np.ndarray  # bool [4, N]
-    heights_m: np.ndarray  # float64 [Z]
-    voxel_m: float
-    seed: int
-    strength: float
+    marks: SurfaceMarks
 
 
 def prepare_textured(room: Room, strength: float = 1.0) -> TexturedScene:
     """Return the scene of a room; ``strength`` 0 leaves its colours flat, 1 is as in real rooms."""
-    return TexturedScene(
-        prepare_photos(room),
+    marks = SurfaceMarks(
         room_materials(room),
         np.ascontiguousarray(room.instance),
         wall_planes(room),
@@ -269,6 +288,7 @@ def prepare_textured(room: Room, strength: float = 1.0) -> TexturedScene:
         room.seed,
         strength,
     )
+    return TexturedScene(prepare_photos(room), marks)
 
 
 def expose(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) -> np.ndarray:
@@ -286,10 +306,8 @@ def expose(scene: TexturedScene, camera: Camera, cameras_to_room: np.ndarray) ->
         pose = np.ascontiguousarray((photos.scene.room_to_grid @ at)[:3])
         rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px - across, camera.cy_px - down])
         _accumulate_light(
-            photos.scene.cells, photos.colour, photos.solid, photos.lamps, photos.lamp_of,
-            scene.materials, scene.instance, scene.planes, scene.heights_m, scene.voxel_m,
-            scene.seed, scene.strength, pose, rays, total,
-        )  # fmt: skip
+            photos.scene.cells, photos.colour, photos.lighting, scene.marks, pose, rays, total
+        )
     return total / np.float32(len(OFFSETS_PX))
 
 
@@ -312,11 +330,12 @@ def develop(light: np.ndarray, rng: np.random.Generator, drift: float = 1.0) -> 
 
 
 @njit
-def _accumulate_light(
-    cells, colours, solid, lamps, lamp_of, materials, instance, planes, heights, voxel_m, seed,
-    strength, pose, rays, total,
-):  # fmt: skip
-    """Add to ``total`` the light of one ray a pixel."""
+def _accumulate_light(cells, colours, lighting, marks, pose, rays, total):
+    """Add to ``total`` float32 [H, W, 3] the light of one ray a pixel.
+
+    ``marks`` are ``SurfaceMarks``; the other arguments are as in ``_render_photo``.
+    """
+    planes, voxel_m, strength = marks.planes, marks.voxel_m, marks.strength
     height, width = total.shape[:2]
     scale = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
     sheet = np.zeros(3)
@@ -338,11 +357,11 @@ def _accumulate_light(
                     cosine = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
                     foot = t / rays[0] / np.sqrt(max(cosine, 0.05))
                     px, py, pz = pose[0, 3] + t * dx, pose[1, 3] + t * dy, pose[2, 3] + t * dz
-                    light = surface_light(solid, lamps, lamp_of, px, py, pz, face)
+                    light = surface_light(lighting, px, py, pz, face)
                     light *= 1.0 - 0.22 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
-                    material = materials[i, j, k]
+                    material = marks.materials[i, j, k]
                     mark = 1.0 + strength * (
-                        tone(material, int(instance[i, j, k]) + FLOOR_SEED,
+                        tone(material, int(marks.instance[i, j, k]) + FLOOR_SEED,
                              px * voxel_m, py * voxel_m, pz * voxel_m, face, foot) - 1.0
                     )  # fmt: skip
                     hung = False
@@ -350,8 +369,8 @@ def _accumulate_light(
                         plane = i if face < 2 else j
                         if planes[face, plane]:
                             along_m = (py if face < 2 else px) * voxel_m
-                            above_m = heights[k] + (pz - k) * voxel_m
-                            number = seed * 1013 + face * 97 + plane
+                            above_m = marks.heights_m[k] + (pz - k) * voxel_m
+                            number = marks.seed * 1013 + face * 97 + plane
                             hung = poster(along_m, above_m, number, foot, sheet)
                     for n in range(3):
                         base = sheet[n] if hung else colours[i, j, k, n] * mark

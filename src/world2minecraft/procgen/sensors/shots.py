@@ -41,7 +41,7 @@ class ScanSettings:
         UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
     """
 
-    find_sensor: str = "rgbd"
+    sensor: str = "rgbd"
     frames: int | None = None
     seed: int = 0
     with_labels: bool = False

@@ -183,10 +183,10 @@ def plan_trajectory(
         rng: draws the door where the walk begins, the height of the eye and the hand's unrest.
     """
     walk = plan_walk(room, frames, rng)
-    gaze = ViewPlanner(scene, camera, walk.pace_m)
+    planner = ViewPlanner(scene, camera, walk.pace_m)
     poses = np.empty((frames, 4, 4))
     for n, eye_m in enumerate(camera_positions_m(walk.feet_m, rng)):
-        yaw, pitch = gaze.turn(eye_m)
+        yaw, pitch = planner.next_direction(eye_m)
         yaw += rng.uniform(-YAW_SPREAD, YAW_SPREAD)
         pitch += rng.uniform(-PITCH_SPREAD, PITCH_SPREAD)
         ahead = [np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), np.sin(pitch)]

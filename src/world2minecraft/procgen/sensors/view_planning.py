@@ -1,4 +1,4 @@
-"""Where a person who scans looks: at what was seen least, from a side it was not seen from yet.
+"""View planning of a scan: look at what was seen least, from a side not seen from before.
 
 One look around by coarse rays tells what lies in each direction; every picture that could be
 taken from there is a window of it, so that choosing among hundreds costs a few milliseconds.
@@ -66,7 +66,7 @@ class ViewPlanner:
         self._yaw: float | None = None
         self._pitch = 0.0
 
-    def turn(self, eye_m: np.ndarray) -> tuple[float, float]:
+    def next_direction(self, eye_m: np.ndarray) -> tuple[float, float]:
         """Return the yaw and the pitch, in radians, of the next picture, and remember it."""
         patch, worth, side = self._look_around(eye_m)
         fresh = self._freshness(patch, side)

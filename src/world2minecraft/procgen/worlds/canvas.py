@@ -64,7 +64,7 @@ class WorldCanvas(Canvas):
         """Return the volume, its designs uint16 [X, Y, Z] in block axes, and their names."""
         used = np.unique(self.design)
         names = tuple(self.designs)
-        kept = sorted(names[int(number)] for number in used if number)
-        order = {name: number for number, name in enumerate(kept, 1)} | {"": 0}
+        used_names = sorted(names[int(number)] for number in used if number)
+        order = {name: number for number, name in enumerate(used_names, 1)} | {"": 0}
         renumber = np.array([order.get(name, 0) for name in names], np.uint16)
-        return self.volume(), grid_to_block_axes(renumber[self.design]), ("", *kept)
+        return self.volume(), grid_to_block_axes(renumber[self.design]), ("", *used_names)

@@ -1,4 +1,4 @@
-"""Ways that stay free: from every door of a room to every other, as wide as a person.
+"""Clear paths: from every door of a room to every other, as wide as a person.
 
 A room's ways are asked before a thing is put: what would shut a door, or close off a good part of
 the floor, is not put.

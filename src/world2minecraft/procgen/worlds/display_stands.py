@@ -55,19 +55,19 @@ def mount_table() -> dict[str, Any]:
 def load_wares() -> tuple[Ware, ...]:
     """Return all wares, sorted by name."""
     raw = mount_table()
-    told: dict[str, Ware] = {}
+    by_name: dict[str, Ware] = {}
     for mount in MOUNTS[1:]:
         for states in raw[mount]:
             column = [states] if isinstance(states, str) else states
             name = next((s for s in column if s.startswith("*")), column[-1]).removeprefix("*")
             name = name.partition("[")[0]
-            told[name] = Ware(name, mount, tuple(s.removeprefix("*") for s in column))
+            by_name[name] = Ware(name, mount, tuple(s.removeprefix("*") for s in column))
     skipped = {name for names in raw["skipped"].values() for name in names}
     for block in known_blocks():
         name = block.removeprefix("minecraft:")
-        if name not in told and name not in skipped:
-            told[name] = Ware(name, "board", (name + raw["states"].get(name, ""),))
-    return tuple(told[name] for name in sorted(told))
+        if name not in by_name and name not in skipped:
+            by_name[name] = Ware(name, "board", (name + raw["states"].get(name, ""),))
+    return tuple(by_name[name] for name in sorted(by_name))
 
 
 @cache
@@ -114,7 +114,7 @@ class StandBuilder:
         """Set a ware with its foot at a free place of the house; say whether it fits."""
         states = ware.turned(facing)
         cells = [self.canvas.at(at[0], at[1], at[2] + n) for n in range(len(states))]
-        if any(self.canvas.states[cell] or self.furnisher.kept[cell] for cell in cells):
+        if any(self.canvas.states[cell] or self.furnisher.reserved[cell] for cell in cells):
             return False
         instance = self.furnisher.next_instance()
         for cell, state in zip(cells, states, strict=True):
@@ -194,7 +194,7 @@ class StandBuilder:
             foot[axis] += step
             columns = np.array([foot, head])
             cells = [self.canvas.at(x, y, room.ground) for x, y in columns.tolist()]
-            free = not any(self.canvas.states[at] or furnisher.kept[at] for at in cells)
+            free = not any(self.canvas.states[at] or furnisher.reserved[at] for at in cells)
             if free and self._is_bare((head[0], head[1]), room, turns, (0, 2)):
                 if not furnisher.ways.stay(room, columns):
                     continue
@@ -299,7 +299,7 @@ class StandBuilder:
         box = self.canvas.box((*low, ground), (low[0] + size[0], low[1] + size[1], ground + 4))
         columns = np.argwhere(np.ones(size, bool)) + low
         inside = room.floor(self.furnisher.house.size)[tuple(columns.T)].all()
-        if self.canvas.states[box].any() or self.furnisher.kept[box].any() or not inside:
+        if self.canvas.states[box].any() or self.furnisher.reserved[box].any() or not inside:
             return 0
         if not self.furnisher.ways.stay(room, columns):
             return 0
@@ -370,7 +370,7 @@ class StandBuilder:
         wall = self.canvas.box((behind[0], behind[1], low), (behind[0] + 1, behind[1] + 1, high))
         here = self.canvas.box((*column, low), (column[0] + 1, column[1] + 1, high))
         bare = (self.canvas.semantic[wall] == WALL).all() and not self.canvas.states[here].any()
-        bare &= not self.furnisher.kept[here].any()
+        bare &= not self.furnisher.reserved[here].any()
         return bool(bare and room.floor(self.furnisher.house.size)[column])
 
     def _takes(self, room: BlockRoom, column: Sequence[int], level: int) -> bool:

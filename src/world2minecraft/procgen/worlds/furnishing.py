@@ -1,4 +1,4 @@
-"""Designs of the library are put into rooms, block by block, where they fit and shut no way.
+"""Placement of library designs in rooms, block by block, where they fit and block no path.
 
 A thing of a metric layout keeps its place to within two blocks, its front, and the wall that it
 stands at; other things look for a place along a wall, in the middle, or on something.
@@ -52,10 +52,10 @@ class Furnisher:
     ways: ClearPaths
     things: list[PlacedFurniture] = field(default_factory=list)
     count: int = 0
-    kept: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas: must stay air.
+    reserved: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas: must stay air.
 
     def __post_init__(self):
-        self.kept = np.zeros(self.canvas.states.shape, bool)
+        self.reserved = np.zeros(self.canvas.states.shape, bool)
 
     def next_instance(self) -> int:
         """Return a number that no thing has yet."""
@@ -196,7 +196,7 @@ class Furnisher:
         turns: int | None = None,
         size_m: Sequence[float] | None = None,
     ) -> int:
-        """Lay a rug around a place, under what stands there already; drawn where not said."""
+        """Lay a rug around a place, under what stands there already; drawn where not given."""
         turns = int(rng.integers(4)) if turns is None else turns
         found = self.design(name, room, turns, rng, size_m)
         if found is None:
@@ -246,7 +246,7 @@ class Furnisher:
         if at[:, 2].min() < room.ground or at[:, 2].max() >= room.ground + room.height:
             return False
         own = tuple((at + self.canvas.at(0, 0, 0)).T)
-        free = (self.canvas.states[own] == 0) & ~self.kept[own]
+        free = (self.canvas.states[own] == 0) & ~self.reserved[own]
         return bool(free.all() and inside[tuple(flat.T)].all())
 
     def _set(

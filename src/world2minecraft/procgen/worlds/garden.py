@@ -1,4 +1,4 @@
-"""What one sees from the windows: a garden around the house, with a hedge at its end.
+"""The garden around a house, as seen from its windows, with a hedge at its end.
 
 It is no part of the rooms, so its blocks are of the unknown class: nothing learns from them that
 they are floor or wall.

@@ -38,8 +38,8 @@ RIMS = (
     "bricks", "mud_bricks", "spruce_planks", "stone_bricks", "mossy_cobblestone", "cut_sandstone",
     "stripped_oak_log[axis=x]", "prismarine_bricks", "smooth_quartz", "packed_mud", "calcite",
 )  # fmt: skip
-# Which kind a room of a metric house may become, and how often.
 PICTURES = ("picture", "portrait")
+# Which kind a room of a metric house may become, and how often.
 KIND_CHANGES: dict[str, tuple[tuple[str, float], ...]] = {
     "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
     "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),

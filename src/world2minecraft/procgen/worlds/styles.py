@@ -1,4 +1,4 @@
-"""How rooms look: a style is a palette of blocks that go together; a room draws its look from it.
+"""Styles of houses: palettes of blocks that go together, from which a room draws its look.
 
 ``data/styles.json`` holds the styles.
 """

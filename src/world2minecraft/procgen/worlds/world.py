@@ -190,10 +190,10 @@ def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None
     middle = (flight.x0 + flight.x1 - wide) // 2
     furnisher.ways.end(lower, (middle, flight.y0 - wide))
     furnisher.ways.end(upper, (middle, flight.end - 1))
-    kept = furnisher.canvas.box(
+    box = furnisher.canvas.box(
         (flight.x0, flight.y0 - wide, 0), (flight.x1, flight.end + wide - 1, upper.ground + high)
     )
-    furnisher.kept[kept] = True
+    furnisher.reserved[box] = True
 
 
 def _is_night(hour: int) -> bool:

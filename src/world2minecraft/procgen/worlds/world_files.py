@@ -145,7 +145,7 @@ def write_worlds(
         houses: how many.
         seed: of the series.
         style: of all houses; each draws its own where None.
-        progress: told of each house.
+        progress: called for each house.
 
     Raises:
         OutputError: the folder cannot be written. UnknownNameError: no style has this name.

@@ -118,7 +118,7 @@ def scaled_capture(
     stated["depth_unit"] = repr(float(stated["depth_unit"]) * found.scale)
     stated["scale"] = "metric" if knowns else "estimated"
     stated["scale_sigma"] = round(found.sigma, 4)
-    stated["notes"] = [*stated["notes"], *found.told]
+    stated["notes"] = [*stated["notes"], *found.notes]
     write_json(folder / "capture.json", stated)
 
 

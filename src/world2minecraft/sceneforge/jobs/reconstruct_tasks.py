@@ -29,7 +29,7 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
 
     Returns:
         What ``survey.json`` holds: ``kind`` (``frames`` or ``plan``), ``called``, ``lines``
-        [[name, text]], ``doubts`` [{level, text, advice}], ``can_start``, ``about_s``,
+        [[name, text]], ``diagnostics`` [{level, text, advice}], ``can_start``, ``about_s``,
         ``frames``, ``has_scale`` and ``data``, all that ``w2m scan --json`` prints.
 
     Raises:
@@ -45,20 +45,20 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
         progress("look", 1, 3)
         write_bytes(target / PICTURE, poster_png(summary))
         progress("look", 2, 3)
-        stops = any(doubt.level == "stop" for doubt in summary.doubts)
+        stops = any(diagnostic.level == "stop" for diagnostic in summary.diagnostics)
         told = {
             "kind": "frames",
             "route": summary.route.kind,
             "called": summary.route.called,
             "lines": _rows(summary_lines(summary)),
             "doubts": [
-                {"level": doubt.level, "text": doubt.text, "advice": doubt.advice}
-                for doubt in summary.doubts
+                {"level": diagnostic.level, "text": diagnostic.text, "advice": diagnostic.advice}
+                for diagnostic in summary.diagnostics
             ],
             "can_start": summary.usable > 0 and not stops,
             "about_s": summary.route.about_s,
             "frames": summary.usable,
-            "has_scale": summary.survey.judged.capture.scale == "metric"
+            "has_scale": summary.survey.validated.capture.scale == "metric"
             and not summary.route.from_pictures,
             "data": summary_to_json(summary),
         }

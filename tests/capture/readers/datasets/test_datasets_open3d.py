@@ -138,7 +138,7 @@ def test_the_shared_sample(shared_data):
     assert "trajectory.log; odometry.log is left alone" in capture.notes[0]
     camera = capture.frames[0].depth_camera
     assert (camera.fx_px, camera.cx_px, camera.cy_px) == (525.0, 320.0, 240.0)
-    judged = validate_capture(folder, ScanOptions())
-    assert judged.complete
-    assert judged.encoding.said == "millimetres"
-    assert judged.typical_depth_m == pytest.approx(1.86, abs=0.05)
+    validated = validate_capture(folder, ScanOptions())
+    assert validated.complete
+    assert validated.encoding.description == "millimetres"
+    assert validated.typical_depth_m == pytest.approx(1.86, abs=0.05)

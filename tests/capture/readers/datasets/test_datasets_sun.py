@@ -98,7 +98,7 @@ def test_the_shared_frame(tmp_path, shared_data):
         (tmp_path / kind).mkdir()
         (tmp_path / kind / name).symlink_to(found / name)
     save_text(tmp_path / "intrinsics.txt", "520.5 0 319.5 0 520.5 239.5 0 0 1")
-    judged = validate_capture(tmp_path, ScanOptions())
-    assert judged.encoding.said == "millimetres, bits rotated by three"
-    assert 1 < judged.typical_depth_m < 4
-    assert read_raw(judged.frames[0].depth_path).shape == (480, 640)
+    validated = validate_capture(tmp_path, ScanOptions())
+    assert validated.encoding.description == "millimetres, bits rotated by three"
+    assert 1 < validated.typical_depth_m < 4
+    assert read_raw(validated.frames[0].depth_path).shape == (480, 640)

@@ -65,11 +65,11 @@ def test_a_mesh_of_any_format_is_the_same_room(exports, name):
 @pytest.mark.parametrize("name", CLOUDS)
 def test_a_cloud_of_any_format_is_the_same_room(exports, name):
     loaded = load_geometry(exports / name)
-    own = loaded.solid.places + loaded.offset
+    own = loaded.geometry.positions + loaded.offset
     shift = (500_000, 4_000_000, 0) if name.startswith("room.la") else (0, 0, 0)
     np.testing.assert_allclose(own.min(axis=0) - shift, 0, atol=0.002)
     np.testing.assert_allclose(own.max(axis=0) - shift, SIZE_M, atol=0.002)
-    counts = {tuple(c) for c in np.unique(loaded.solid.colour, axis=0).tolist()}
+    counts = {tuple(c) for c in np.unique(loaded.geometry.colour, axis=0).tolist()}
     assert {(230, 225, 210), (120, 90, 60), (200, 40, 40)} <= counts
 
 
@@ -225,7 +225,7 @@ def test_a_texture_beside_its_mesh_is_found_however_it_is_named(tmp_path, named)
     path = writers.write_obj(tmp_path / "export", room_quads())
     materials = tmp_path / "export" / "room.mtl"
     materials.write_text(materials.read_text().replace("map_Kd paint.png", f"map_Kd {named}"))
-    assert load_geometry(path).solid.coloured
+    assert load_geometry(path).geometry.coloured
 
 
 def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
@@ -236,7 +236,7 @@ def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
         (tmp_path / f"my room {number}.bin").write_bytes(files[name])
         tree = tree.replace(name.encode(), f"my%20room%20{number}.bin".encode())
     (tmp_path / "room.gltf").write_bytes(tree)
-    assert len(load_geometry(tmp_path / "room.gltf").solid.faces)
+    assert len(load_geometry(tmp_path / "room.gltf").geometry.faces)
     (tmp_path / "my room 0.bin").unlink()
     with pytest.raises(InputError, match=r"names 'my%20room%200.bin', which is not there: put it"):
         load_geometry(tmp_path / "room.gltf")

@@ -20,7 +20,7 @@ def mesh_of(quads):
 
 
 def interior_of(solid, inside=None):
-    low, high = solid.places.min(axis=0), solid.places.max(axis=0)
+    low, high = solid.positions.min(axis=0), solid.positions.max(axis=0)
     grid = voxelise_surface(solid, low.astype(float) - 0.3, high.astype(float) + 0.3)
     return grid, find_interior(grid, inside)
 
@@ -62,11 +62,11 @@ def test_triangles_mark_the_cells_that_they_pass():
     s, t = s.ravel()[inner, None], t.ravel()[inner, None]
     a, b, c = mesh.vertices.astype(float)
     cells = np.floor((a + s * (b - a) + t * (c - a) - grid.origin_m) / grid.cell_m).astype(int)
-    expected = np.zeros_like(grid.held)
+    expected = np.zeros_like(grid.occupied)
     expected[tuple(cells.T)] = True
-    assert (grid.held & expected).sum() > 0.85 * expected.sum()  # Corners of cells are missed,
+    assert (grid.occupied & expected).sum() > 0.85 * expected.sum()  # Corners of cells are missed,
     assert not (
-        expected & ~ndimage.binary_dilation(grid.held)
+        expected & ~ndimage.binary_dilation(grid.occupied)
     ).any()  # never a whole cell and its neighbours.
 
 

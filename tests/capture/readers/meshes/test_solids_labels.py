@@ -32,8 +32,8 @@ def test_scannets_labels_lie_beside_its_colours(tmp_path, quads):
     for path in (plain, labelled, tmp_path):
         loaded = load_geometry(path) if path.is_file() else None
         if loaded is not None:
-            assert set(np.unique(loaded.solid.labels)) == {1, 2, 3, 8, 10}
-            assert set(map(tuple, loaded.solid.colour.tolist())) == {
+            assert set(np.unique(loaded.geometry.labels)) == {1, 2, 3, 8, 10}
+            assert set(map(tuple, loaded.geometry.colour.tolist())) == {
                 tuple(c) for c in quads.colour.tolist()
             }
     capture = find_capture(tmp_path)
@@ -48,11 +48,11 @@ def test_a_map_beside_the_file_says_what_its_numbers_mean(tmp_path, quads):
     more = [("segment", "i4", numbers_of(quads, table))]
     path = tmp_path / "room.ply"
     path.write_bytes(writers.quad_ply(quads, "a", more))
-    assert load_geometry(path).solid.labels is None
+    assert load_geometry(path).geometry.labels is None
     assert "map them in room.classes.json" in load_geometry(path).notes[0]
     beside = tmp_path / "room.classes.json"
     beside.write_text(json.dumps({"900": "ceiling", "7": "floor", "31": "wall", "77": "desk"}))
-    assert set(np.unique(load_geometry(path).solid.labels)) == {1, 2, 3, 8, 255}
+    assert set(np.unique(load_geometry(path).geometry.labels)) == {1, 2, 3, 8, 255}
     beside.write_text(json.dumps({"900": "spaceship"}))
     with pytest.raises(CaptureError, match=r"names 'spaceship'; known are ceiling, floor"):
         load_geometry(path)
@@ -67,7 +67,7 @@ def test_labels_of_faces_and_own_ids_are_read(tmp_path, quads):
         writers.quad_ply(quads, ">", face_columns=[("class", "u1", quads.labels.tolist())])
     )
     loaded = load_geometry(path)
-    assert set(np.unique(loaded.solid.labels)) == {1, 2, 3, 8, 10}
+    assert set(np.unique(loaded.geometry.labels)) == {1, 2, 3, 8, 10}
     assert loaded.notes == ("column class is read as our class ids",)
 
 
@@ -134,4 +134,4 @@ def test_things_of_a_scene_are_classed_by_their_names(tmp_path):
     )
     scene.add_geometry(box, node_name="Table0", geom_name="Table0")
     (tmp_path / "room.glb").write_bytes(scene.export(file_type="glb"))
-    assert set(np.unique(load_geometry(tmp_path / "room.glb").solid.labels)) == {8, 255}
+    assert set(np.unique(load_geometry(tmp_path / "room.glb").geometry.labels)) == {8, 255}

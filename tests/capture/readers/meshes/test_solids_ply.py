@@ -46,7 +46,7 @@ def test_colours_of_faces_and_shares_are_read(tmp_path):
             [(name, kind, values[1:]) for name, kind, values in columns],
         )
     )
-    mesh = load_ply(path).solid
+    mesh = load_ply(path).geometry
     assert mesh.colour.tolist() == [[20, 20, 20]] * 3 + [[30, 30, 30]] * 3
     assert to_uint8_colours(np.array([[0.0, 0.5, 1.0]])).tolist() == [[0, 128, 255]]
     assert to_uint8_colours(np.array([[0, 32896, 65535]], np.uint16)).tolist() == [[0, 128, 255]]
@@ -58,7 +58,7 @@ def test_gaussian_splats_are_the_cloud_of_their_firm_middles(tmp_path):
     vertex += [(f"f_dc_{c}", "f4", np.full(5, value)) for c, value in enumerate((-1, 0, 1.0))]
     vertex += [("opacity", "f4", np.array([2, 2, -3, 2, 2.0]))]
     (tmp_path / "a.ply").write_bytes(writers.ply_bytes("<", vertex))
-    cloud = load_ply(tmp_path / "a.ply").solid
+    cloud = load_ply(tmp_path / "a.ply").geometry
     assert len(cloud.points) == 4 and cloud.colour[0].tolist() == [56, 128, 199]
 
 
@@ -67,7 +67,7 @@ def test_places_far_from_the_origin_keep_their_millimetres(tmp_path):
     vertex = [(axis, "f8", far[:, a]) for a, axis in enumerate("xyz")]
     (tmp_path / "a.ply").write_bytes(writers.ply_bytes("<", vertex))
     loaded = load_ply(tmp_path / "a.ply")
-    np.testing.assert_allclose(loaded.solid.points + loaded.offset, far, atol=1e-4)
+    np.testing.assert_allclose(loaded.geometry.points + loaded.offset, far, atol=1e-4)
 
 
 def test_many_points_are_thinned_to_the_means_of_cells():
