@@ -23,7 +23,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes, figure_of, markdown
-from world2minecraft.cli.progress import shown
+from world2minecraft.cli.progress import show_progress
 from world2minecraft.core.files import write_text
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
 from world2minecraft.networks.data.run_data import CacheLocation
@@ -84,7 +84,7 @@ HEAD = ("way", "seeds", "test scenes", "IoU (95 %)", "IoU by seed", "mIoU (95 %)
 
 
 def config_of(words: argparse.Namespace, way: str, seed: int) -> RunConfig:
-    target, others = DataSource(words.target), DataSource.parsed(words.others)
+    target, others = DataSource(words.target), DataSource.parse(words.others)
     data = {"alone": (target,), "joint": (target, others), "others": (others,)}[way]
     config = RunConfig(words.network, data).with_preset(words.preset)
     steps = words.steps or config.steps
@@ -113,13 +113,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--cache", default="")
     parser.add_argument("--markdown", type=Path)
     words = parser.parse_args(arguments)
-    cache, runs = CacheLocation.named(words.cache), {way: [] for way in words.ways}
-    with shown() as progress:
+    cache, runs = CacheLocation.parse(words.cache), {way: [] for way in words.ways}
+    with show_progress() as progress:
         blind = [average_scenes(config_of(words, "alone", 0), cache, progress)]
     for seed in words.seeds:  # Seeds first: a stopped table has whole rows of fewer seeds.
         for way in words.ways:
             config, folder = config_of(words, way, seed), words.out / f"{way}-{seed}"
-            with shown() as progress:
+            with show_progress() as progress:
                 done_run(config, folder, words.device, cache, progress)
                 runs[way].append(
                     done_scenes(config, folder, words.target, words.device, cache, progress)

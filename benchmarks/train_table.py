@@ -24,7 +24,7 @@ from rich.console import Console
 from rich.table import Table
 from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, row
 
-from world2minecraft.cli.progress import shown
+from world2minecraft.cli.progress import show_progress
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress
@@ -211,7 +211,7 @@ def cells_of(network: str, done: dict[str, Any]) -> list[str]:
 
 def blind_row(config: RunConfig, cache: CacheLocation) -> dict[str, Any]:
     """Return the scores of the average of all training boxes."""
-    with shown() as progress:
+    with show_progress() as progress:
         said, frames, rows = averaged(config, cache, progress)
         scored = network_predictions(frames, rows, iter([said] * len(rows)))
         return {"facts": None, "scores": protocol_scores(scored, config.cells.voxel_m)}
@@ -286,10 +286,10 @@ def main(arguments: list[str] | None = None) -> int:
     """Train, score and print; 0 when every network has its row."""
     words = options().parse_args(arguments)
     names = words.networks or [*NETWORKS.names(), *ALSO]
-    cache = CacheLocation.named(words.cache)
+    cache = CacheLocation.parse(words.cache)
     rows = {BLIND: blind_row(chosen(words, names[0]), cache)}
     for name in names:
-        with shown() as progress:
+        with show_progress() as progress:
             rows[name] = done_run(
                 chosen(words, name), words.out / name, words.device, cache, progress
             )

@@ -35,7 +35,7 @@ def store(npz, tmp_path_factory):
 
 def test_a_data_set_is_imported_and_exported(made, store, tmp_path, capsys):
     found = open_occupancy(store)
-    assert found.described() == "store, 1 samples (1 train)"
+    assert found.describe() == "store, 1 samples (1 train)"
     out = tmp_path / "NYU"
     words = ["dataset", "export", str(store), "--format", "nyu", "--out", str(out)]
     assert w2m(words) == 0

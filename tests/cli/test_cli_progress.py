@@ -25,7 +25,7 @@ def ticking():
 
 def test_a_stage_is_two_lines():
     stream = io.StringIO()
-    lines = progress.Lines(stream, clock=ticking())
+    lines = progress.LineProgress(stream, clock=ticking())
     for done in range(41):
         lines("fuse", done, 40)
     assert stream.getvalue() == "fuse ...\nfuse done in 20.0 s\n"
@@ -33,7 +33,7 @@ def test_a_stage_is_two_lines():
 
 def test_a_long_stage_says_how_far_it_is_and_how_long_it_will_take():
     stream, now = io.StringIO(), [0.0]
-    lines = progress.Lines(stream, clock=lambda: now[0])
+    lines = progress.LineProgress(stream, clock=lambda: now[0])
     for done in range(0, 2001, 100):
         lines("images", done, 2000, "9.1 a second")
         now[0] += 11
@@ -46,7 +46,7 @@ def test_a_long_stage_says_how_far_it_is_and_how_long_it_will_take():
 
 def test_a_stage_of_unknown_length_ends_with_the_next():
     stream = io.StringIO()
-    lines = progress.Lines(stream, clock=ticking())
+    lines = progress.LineProgress(stream, clock=ticking())
     lines("scan", 3, 0, "3 frames")
     lines("fuse", 0, 2)
     lines.finish()
@@ -58,7 +58,7 @@ def test_a_stage_of_unknown_length_ends_with_the_next():
 
 def test_a_stage_that_comes_again_is_shown_again():
     stream = io.StringIO()
-    lines = progress.Lines(stream, clock=ticking())
+    lines = progress.LineProgress(stream, clock=ticking())
     lines("fuse", 1, 1)
     lines("fuse", 1, 1)
     assert stream.getvalue().count("fuse ...") == 2
@@ -66,14 +66,14 @@ def test_a_stage_that_comes_again_is_shown_again():
 
 def test_shown_ends_the_last_stage():
     stream = io.StringIO()
-    with progress.shown(stream) as report:
+    with progress.show_progress(stream) as report:
         report("scan", 0, 0)
     assert stream.getvalue().endswith(" s\n")
 
 
 def test_a_stage_that_failed_is_not_called_done():
     stream = io.StringIO()
-    with pytest.raises(KeyError), progress.shown(stream) as report:
+    with pytest.raises(KeyError), progress.show_progress(stream) as report:
         report("scan", 0, 9)
         raise KeyError
     assert stream.getvalue() == "scan ...\n"
@@ -81,7 +81,7 @@ def test_a_stage_that_failed_is_not_called_done():
 
 def test_a_terminal_gets_a_bar_with_the_notes_as_they_are():
     stream = Terminal()
-    with progress.shown(stream) as report:
+    with progress.show_progress(stream) as report:
         report("fuse", 0, 4)
         report("fuse", 4, 4, "frame[red].png")
         report("label", 1, 1)

@@ -205,8 +205,8 @@ def test_a_verbs_help_shows_its_docstring_to_its_args(verb, capsys):
 
 
 def test_system_exit_keeps_its_code():
-    assert failures.report(SystemExit(7)) == 7
-    assert failures.report(SystemExit(None)) == 0
+    assert failures.report_error(SystemExit(7)) == 7
+    assert failures.report_error(SystemExit(None)) == 0
 
 
 def test_main_leaves_with_the_exit_code(monkeypatch):

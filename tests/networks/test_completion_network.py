@@ -108,8 +108,8 @@ def test_the_same_run_twice_gives_the_same_weights(pool):
 
 def test_the_rate_warms_up_stays_and_falls(pool):
     trainer = Trainer(replace(RUN, steps=1000), pool)
-    assert trainer.rate_at(0) < trainer.rate_at(4) == trainer.rate_at(500) == RUN.rate
-    assert trainer.rate_at(999) < 0.02 * RUN.rate
+    assert trainer.learning_rate_at(0) < trainer.learning_rate_at(4) == trainer.learning_rate_at(500) == RUN.rate
+    assert trainer.learning_rate_at(999) < 0.02 * RUN.rate
 
 
 def test_a_folder_without_samples_is_refused(tmp_path):

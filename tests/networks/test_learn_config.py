@@ -38,7 +38,7 @@ def test_numbers_are_read_as_people_write_them():
     [("a", "a", 1.0), ("a:2", "a", 2.0), ("C:\\sets", "C:\\sets", 1.0), ("C:/a:0.5", "C:/a", 0.5)],
 )
 def test_a_weight_follows_the_last_colon(text, path, weight):
-    assert DataSource.parsed(text) == DataSource(path, weight)
+    assert DataSource.parse(text) == DataSource(path, weight)
 
 
 GOLDEN = {

@@ -180,9 +180,9 @@ def test_the_first_set_is_the_target_and_test_frames_train_nowhere(store, tmp_pa
     first, second = data.parts
     assert (len(first.rows), len(data.split.val), len(data.split.test)) == (4, 2, 2)
     assert {second.frames.scenes[row] for row in second.rows} == {"room_0", "room_1"}
-    assert data.described[1].endswith("store, 4 train")
+    assert data.descriptions[1].endswith("store, 4 train")
     assert data.counts[0] > data.counts[3] > 0
-    assert open_run_data(config, CacheLocation.named("off")).counts.shape == (12,)
+    assert open_run_data(config, CacheLocation.parse("off")).counts.shape == (12,)
 
 
 def test_rare_classes_weigh_more_and_absent_ones_are_bounded():

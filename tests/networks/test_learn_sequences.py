@@ -102,10 +102,10 @@ def test_those_that_look_into_the_box_come_first(frames):
     assert views_grid(anchor, GRID.voxel_m)
     found = SequenceSampler(Held(), rows, GRID.voxel_m)  # type: ignore[arg-type]
     for seed in range(5):
-        both = found.beside(rows[0], anchor, 2, np.random.default_rng(seed))
+        both = found.sample(rows[0], anchor, 2, np.random.default_rng(seed))
         assert [one.key for one in both] == [frames.keys[rows[2]], frames.keys[rows[1]]]
     alone = SequenceSampler(Held(), rows[:1], GRID.voxel_m)  # type: ignore[arg-type]
-    again = alone.beside(rows[0], anchor, 2, np.random.default_rng(0))
+    again = alone.sample(rows[0], anchor, 2, np.random.default_rng(0))
     assert [one.key for one in again] == [anchor.key] * 2
 
 

@@ -31,6 +31,6 @@ def run(arguments: Sequence[str]) -> int:
 
         return call(words)
     except BaseException as error:
-        from world2minecraft.cli.failures import report
+        from world2minecraft.cli.failures import report_error
 
-        return report(error, with_traceback=wants_traceback)
+        return report_error(error, with_traceback=wants_traceback)

@@ -67,24 +67,24 @@ def run(
     from world2minecraft.editing.cleanup.passes import RULES, repair_volume
 
     build = build_folder(source)
-    history = opened(build)
+    history = open_history(build)
     if list_:
         edits, is_done = history.journal.edits, history.journal.is_done
-        print(listed(edits, is_done) or "Nothing was mended.")
+        print(format_edits(edits, is_done) or "Nothing was mended.")
         return
     if not dry_run:
         check_unplayed(build / "world")  # Before any edit is recorded.
     if undo or undo_all or redo:
-        print(taken_back(history, undo, undo_all, redo))
+        print(undo_edits(history, undo, undo_all, redo))
     else:
         edits = repair_volume(history.volume, tuple(only or RULES))[1]
         first = 0 if dry_run else len(history.journal.edits)
-        print(listed(edits, [True] * len(edits), first) or "Nothing is left to mend.")
+        print(format_edits(edits, [True] * len(edits), first) or "Nothing is left to mend.")
         if dry_run or not edits:
             return
         for edit in edits:
             history.do(edit)
-    write_again(build, history)
+    rewrite_build(build, history)
 
 
 def build_folder(source: Path) -> Path:
@@ -113,7 +113,7 @@ def check_unplayed(world: Path) -> None:
         raise OutputError(world, f"{reason}; build it again to another --out, and clean that")
 
 
-def opened(build: Path) -> "History":
+def open_history(build: Path) -> "History":
     """Return the blocks of a build with the edits made to them.
 
     Raises:
@@ -131,7 +131,7 @@ def opened(build: Path) -> "History":
         raise ConflictError(build / EDITS_FILE, f"{reason}; remove it, or build again") from error
 
 
-def listed(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) -> str:
+def format_edits(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) -> str:
     """Return edits as lines: number, verb, blocks, object, place, reason."""
     from world2minecraft.core.classes import CLASS_NAMES
 
@@ -147,7 +147,7 @@ def listed(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) ->
     return "\n".join(lines)
 
 
-def taken_back(history: "History", undo: int | None, undo_all: bool, redo: int | None) -> str:
+def undo_edits(history: "History", undo: int | None, undo_all: bool, redo: int | None) -> str:
     """Take mends back, or do one again; return a line that tells.
 
     Raises:
@@ -164,7 +164,7 @@ def taken_back(history: "History", undo: int | None, undo_all: bool, redo: int |
     return f"{count} mend{'s' * (count != 1)} taken back."
 
 
-def write_again(build: Path, history: "History") -> None:
+def rewrite_build(build: Path, history: "History") -> None:
     """Write a build with other blocks in it, under the name that its world has."""
     from world2minecraft.construction import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json

@@ -102,13 +102,13 @@ def convert(
     from world2minecraft.minecraft.file_format import Losses
 
     unread, unwritten = Losses(), Losses()
-    volume = with_labels(scaled(read_part(source, box, unread), blocks_per_metre), labels)
-    with_parent(target)
+    volume = with_labels(with_scale(read_part(source, box, unread), blocks_per_metre), labels)
+    make_parent(target)
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".w2m-") as folder:
         # The new one is whole before the old one goes; both lie on one disk.
         written = Path(folder) / target.name
         write_volume(volume, written, options, unwritten)
-        put_all_in_place(written, target, force)
+        replace_target(written, target, force)
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
@@ -118,8 +118,8 @@ def convert(
     for mod, count in count_mod_blocks(volume).items():
         if f"{mod}:" not in told:
             print(f"kept by their names: {count:,} blocks of the mod {mod}")
-    tell_losses(unread, f"not read from {source.name}")
-    tell_losses(unwritten, f"not written to {target.name}")
+    print_losses(unread, f"not read from {source.name}")
+    print_losses(unwritten, f"not written to {target.name}")
 
 
 def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume":
@@ -135,7 +135,7 @@ def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume
     return read_volume(source, losses) if box is None else read_build(source, box).volume
 
 
-def scaled(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
+def with_scale(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
     """Return the volume at a scale; at its own where none is given.
 
     Raises:
@@ -170,7 +170,7 @@ def with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
     return label_volume(volume, meanings)
 
 
-def tell_losses(losses: "Losses", head: str) -> None:
+def print_losses(losses: "Losses", head: str) -> None:
     """Print what was lost, one line a kind; nothing where nothing was."""
     for what, count in losses:
         print(f"{head}: {count:,} {what}")
@@ -209,7 +209,7 @@ def check_target(source: Path, target: Path, force: bool) -> None:
         raise UsageError(f"{target} is a folder of other things; give another name")
 
 
-def put_all_in_place(written: Path, target: Path, force: bool) -> None:
+def replace_target(written: Path, target: Path, force: bool) -> None:
     """Move what was written to ``target``, and files that were written beside it to beside it.
 
     Raises:
@@ -225,7 +225,7 @@ def put_all_in_place(written: Path, target: Path, force: bool) -> None:
     put_in_place(written, target)
 
 
-def with_parent(target: Path) -> None:
+def make_parent(target: Path) -> None:
     """Make the folder that ``target`` lies in.
 
     Raises:

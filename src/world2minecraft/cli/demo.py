@@ -21,7 +21,7 @@ w2m demo --seed 7 --out other   another one again
 """
 DEMO_SEED = 5
 DEMO_FRAMES = 40
-LEAST_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
+MIN_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
 
 
 def run(
@@ -51,8 +51,8 @@ def run(
         palette: which blocks may be used.
         formats: further forms of the build.
     """
-    from world2minecraft.cli.outcome import compiling_note, say_where
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note, print_outcome
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.construction import BuildParameters
     from world2minecraft.procgen import generate_room, scan_room
     from world2minecraft.reconstruction.parameters import Parameters
@@ -65,14 +65,14 @@ def run(
     chosen = with_build_options(chosen, style, palette, formats)
     check_writable(out)
     style_note(chosen)
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         progress("room", 0, 1)
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
         facts = run_capture(out / "capture", out, chosen, progress=progress)
-    say_where(out, facts)
+    print_outcome(out, facts)
 
 
 def check_figures(seed: int, frames: int) -> None:
@@ -81,5 +81,5 @@ def check_figures(seed: int, frames: int) -> None:
 
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
-    if frames < LEAST_FRAMES:
-        raise UsageError(f"--frames must be {LEAST_FRAMES} or more, not {frames}; 40 are usual")
+    if frames < MIN_FRAMES:
+        raise UsageError(f"--frames must be {MIN_FRAMES} or more, not {frames}; 40 are usual")

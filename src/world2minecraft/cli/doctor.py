@@ -17,8 +17,8 @@ w2m doctor && w2m demo      check it, then build the demo room
 """
 
 PYTHON_RANGE = ((3, 11), (3, 14))
-LEAST_MEMORY_GB = 1.0  # A 40-frame capture has a budget of 1 GB.
-LEAST_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB; the rest is room.
+MIN_MEMORY_GB = 1.0  # A 40-frame capture has a budget of 1 GB.
+MIN_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB; the rest is room.
 CORE_PACKAGES = ("numpy", "numba", "scipy", "pillow")
 
 
@@ -105,16 +105,16 @@ def check_memory(free_gb: float | None) -> Check:
     """Check the free memory, None where the system does not say."""
     if free_gb is None:
         return Check("memory", "ok", "not known on this system")
-    if free_gb >= LEAST_MEMORY_GB:
+    if free_gb >= MIN_MEMORY_GB:
         return Check("memory", "ok", f"{free_gb:.1f} GB free")
-    advice = f"{LEAST_MEMORY_GB:.0f} GB is wanted: close programs, or use a larger --voxel"
+    advice = f"{MIN_MEMORY_GB:.0f} GB is wanted: close programs, or use a larger --voxel"
     return Check("memory", "warn", f"{free_gb:.1f} GB free", advice)
 
 
 def check_disk(folder: Path) -> Check:
     """Check the free space of the disk that holds ``folder``."""
     free_gb = shutil.disk_usage(folder).free / 1e9
-    if free_gb >= LEAST_DISK_GB:
+    if free_gb >= MIN_DISK_GB:
         return Check("disk", "ok", f"{free_gb:.1f} GB free here")
     return Check("disk", "warn", f"{free_gb:.1f} GB free here", "work on a disk with more space")
 

@@ -52,11 +52,11 @@ def run(
     )
     written = export_network(network, out, facts, weights=stored)
     OccupancyNetwork(out)
-    for line in told(out, facts.name, stored, written):
+    for line in summary_lines(out, facts.name, stored, written):
         print(line)
 
 
-def told(out: Path, name: str, stored: str, written: "ExportReport") -> list[str]:
+def summary_lines(out: Path, name: str, stored: str, written: "ExportReport") -> list[str]:
     """Return what is printed of a file."""
     lines = [
         f"{out}: {name}, {written.size / 1e6:.1f} MB; "

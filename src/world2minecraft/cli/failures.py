@@ -9,22 +9,22 @@ from world2minecraft.core.errors import World2MinecraftError, one_line
 FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
 
 
-def report(error: BaseException, with_traceback: bool = False) -> int:
+def report_error(error: BaseException, with_traceback: bool = False) -> int:
     """Say on stderr what went wrong, and return the exit code that says it too."""
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else int(error.code is not None)
     if with_traceback:
         traceback.print_exception(error, file=sys.stderr)
-    text, code = explain(error)
+    text, code = explain_error(error)
     print(f"error: {text}" if code != STOPPED else text, file=sys.stderr)
     return code
 
 
-def explain(error: BaseException) -> tuple[str, int]:
+def explain_error(error: BaseException) -> tuple[str, int]:
     """Return one line that says what went wrong and what to do, and the exit code.
 
     Example:
-        >>> explain(MemoryError())
+        >>> explain_error(MemoryError())
         ('out of memory; try a larger --voxel, or close other programs', 1)
     """
     if isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":

@@ -54,14 +54,14 @@ def run(
 
     games = [] if saves else find_games(sys.platform, Path.home(), os.environ)
     if list_:
-        print(listed(games) or "No game was found; give its saves folder with --saves DIR.")
+        print(format_games(games) or "No game was found; give its saves folder with --saves DIR.")
         return
     if source is None:
         raise UsageError("say what to install: w2m install OUT")
     from world2minecraft.minecraft.worlds.installation import age_note, find_world, install_world
 
     world = find_world(source)
-    chosen = Game("the game", saves) if saves else choose(games, game)
+    chosen = Game("the game", saves) if saves else choose_game(games, game)
     if not chosen.saves.parent.is_dir():
         reason = "is no saves folder, nor is there one to make it in"
         raise InputError(chosen.saves, f"{reason}; give --saves DIR, the folder of a game's worlds")
@@ -76,7 +76,7 @@ def run(
         print("\nFrom 1.20.5 on, /function w2m:human_size makes you as large as a person there.")
 
 
-def choose(games: "list[Game]", wanted: str) -> "Game":
+def choose_game(games: "list[Game]", wanted: str) -> "Game":
     """Return the game that ``wanted`` says: a number of the list or a part of a name.
 
     Raises:
@@ -98,7 +98,7 @@ def choose(games: "list[Game]", wanted: str) -> "Game":
     raise UsageError(f"{what}; choose with --game NUMBER: {names}")
 
 
-def listed(games: "list[Game]") -> str:
+def format_games(games: "list[Game]") -> str:
     """Return the games as lines: number, name, version, saves folder."""
     return "\n".join(
         f"{number:2}  {game.name}{f' ({game.version})' if game.version else ''}  {game.saves}"

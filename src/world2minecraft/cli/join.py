@@ -61,8 +61,8 @@ def run(
         mc_version: the game version.
         settings: further parameters.
     """
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.evaluation.report import write_brief_report
     from world2minecraft.reconstruction.homes import join
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
@@ -70,13 +70,13 @@ def run(
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
     chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])
     style_note(chosen)
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         scan = join(rooms, out, chosen, places or (), progress)
         progress("report", 0, 1)
         write_brief_report(out, scan, report_links(rooms, out))
         progress("report", 1, 1)
-    say_home(out, scan, len(rooms))
+    print_home(out, scan, len(rooms))
 
 
 def report_links(rooms: list[Path], out: Path) -> list[tuple[str, str]]:
@@ -93,13 +93,13 @@ def report_links(rooms: list[Path], out: Path) -> list[tuple[str, str]]:
     return links
 
 
-def say_home(out: Path, scan: "Scan", rooms: int) -> None:
+def print_home(out: Path, scan: "Scan", rooms: int) -> None:
     """Print what was joined, and how to see it."""
-    from world2minecraft.cli.outcome import say_how_to_play
+    from world2minecraft.cli.outcome import print_play_steps
 
     size = " x ".join(f"{side:.1f}" for side in scan.room_size_m)
     print(f"\n{rooms} rooms in one home, {size} m.")
     for note in scan.notes:
         print(f"note: {note}")
     print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
-    say_how_to_play(out / "build")
+    print_play_steps(out / "build")

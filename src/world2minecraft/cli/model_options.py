@@ -1,6 +1,6 @@
 """What the verbs that ask a model share: whom to ask, what it may cost, and where replies are.
 
-A verb that ``asks_a_model`` has their options on the command line and gets them as one value.
+A verb that ``with_model_options`` has their options on the command line and gets them as one value.
 """
 
 import inspect
@@ -99,10 +99,12 @@ class ModelOptions:
         )
 
 
-USUAL = ModelOptions()
+DEFAULTS = ModelOptions()
 
 
-def asks_a_model(usual: ModelOptions = USUAL) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def with_model_options(
+    usual: ModelOptions = DEFAULTS,
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Give a verb a model's options in place of its parameter ``asked``, which they become.
 
     Args:
@@ -132,11 +134,11 @@ def asks_a_model(usual: ModelOptions = USUAL) -> Callable[[Callable[..., Any]], 
     return with_options
 
 
-def folder_of(agent: str) -> Path:
+def default_run_folder(agent: str) -> Path:
     """Return where a run of an agent is kept if nobody says where.
 
     Example:
-        >>> folder_of("openai:gpt-4.1").name
+        >>> default_run_folder("openai:gpt-4.1").name
         'vln_openai_gpt_4_1'
     """
     return Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")

@@ -91,8 +91,8 @@ def run(
         _check_no_depth(source)
         if colour is not None:
             raise typer.BadParameter("--colour goes with one depth picture and its --grid")
-        cells = _of_capture(source, out, place, predictor, labels, fov, keep)
-    for line in told(source, out, cells, grid):
+        cells = _from_capture(source, out, place, predictor, labels, fov, keep)
+    for line in summary_lines(source, out, cells, grid):
         print(line)
 
 
@@ -176,7 +176,7 @@ class _Frame:
         return Camera(width, height, focal_px, focal_px, width / 2 + 0.5, height / 2 + 0.5)
 
 
-def _of_capture(
+def _from_capture(
     capture: Path,
     out: Path,
     place: "GridPlace | None",
@@ -186,8 +186,8 @@ def _of_capture(
     keep: Path | None,
 ) -> "PredictedCells":
     """Run a capture as far as its labels, and write what they are."""
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import (
         cells_of_room,
@@ -199,8 +199,8 @@ def _of_capture(
 
     chosen = Parameters(predictor=predictor)
     chosen = with_settings(chosen, [] if fov is None else [f"capture.fov_deg={fov}"])
-    compiling_note()
-    with tempfile.TemporaryDirectory() as spare, shown() as progress:
+    print_compile_note()
+    with tempfile.TemporaryDirectory() as spare, show_progress() as progress:
         run_folder = Path(spare) if keep is None else keep
         reconstruct(capture, run_folder, chosen, until=LAST_STAGE, labels=labels, progress=progress)
         room, scan_to_room = read_room(run_folder / "room.npz")
@@ -220,7 +220,7 @@ def _write_frame(out: Path, cells: "PredictedCells", place: "GridPlace") -> None
     write_cells(out, cells, "xzy", camera_to_world=place.camera_to_world)
 
 
-def told(source: Path, out: Path, cells: "PredictedCells", grid: Path | None) -> list[str]:
+def summary_lines(source: Path, out: Path, cells: "PredictedCells", grid: Path | None) -> list[str]:
     """Return what is printed of the cells of a capture or a photo."""
     import numpy as np
 

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 
-def compiling_note() -> None:
+def print_compile_note() -> None:
     """Say, once after installation, why the first run takes longer."""
     from world2minecraft.core.jit import KERNEL_CACHE
 
@@ -12,7 +12,7 @@ def compiling_note() -> None:
         print("First run: compiling the inner loops, about 30 s; later runs start at once.")
 
 
-def say_where(out: Path, facts: dict[str, Any]) -> None:
+def print_outcome(out: Path, facts: dict[str, Any]) -> None:
     """Print the outcome and the next steps."""
     explained = facts["surface_explained"]["within_one_voxel"]
     size = " x ".join(f"{side:.1f}" for side in facts["room_size_m"])
@@ -24,10 +24,10 @@ def say_where(out: Path, facts: dict[str, Any]) -> None:
     for note in facts["scan"]["notes"]:
         print(f"note: {note}")
     print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
-    say_how_to_play(out / "build")
+    print_play_steps(out / "build")
 
 
-def say_how_to_play(build: Path) -> None:
+def print_play_steps(build: Path) -> None:
     """Print how to open the world in the game, and what the further forms left out."""
     print(f"  play   w2m install {build.parent}      puts the world into your game")
     print(f"  or     copy {build / 'world'} into the game's saves folder")
@@ -35,10 +35,10 @@ def say_how_to_play(build: Path) -> None:
     print(
         f"         {build / 'room.schem'} for WorldEdit" + f", {pack} for a server" * pack.is_file()
     )
-    say_forms(build)
+    print_extra_formats(build)
 
 
-def say_forms(build: Path) -> None:
+def print_extra_formats(build: Path) -> None:
     """Print the further forms that were asked for, each with what it could not carry."""
     from world2minecraft.core.files import read_json
 

@@ -12,7 +12,7 @@ w2m palettes                      the palettes there are
 w2m palettes mine.yaml            check one of your own, and what each class is made of
 w2m build OUT --palette mine.yaml
 """
-SHOWN = 6
+MAX_SHOWN = 6
 
 
 def run(
@@ -56,8 +56,8 @@ def lines_of(palette: "Palette") -> list[str]:
         lines.append(f"  restricted to {len(palette.only)} blocks")
     for number, states in palette.blocks.items():
         names = [state.partition("[")[0].removeprefix("minecraft:") for state in states]
-        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-        lines.append(f"  {CLASS_NAMES[number]:<10}{', '.join(names[:SHOWN])}{more}")
+        more = f" and {len(names) - MAX_SHOWN} more" if len(names) > MAX_SHOWN else ""
+        lines.append(f"  {CLASS_NAMES[number]:<10}{', '.join(names[:MAX_SHOWN])}{more}")
     for piece in palette.furniture:
         lines.append(f"  {', '.join(piece.designs)}: {', '.join(cell.id for cell in piece.cells)}")
     return lines

@@ -11,17 +11,17 @@ from typing import Any, TextIO
 
 from world2minecraft.core.progress import Progress
 
-EVERY_S = 30.0  # Between the lines of a long stage, where there is no terminal.
+LINE_INTERVAL_S = 30.0  # Between the lines of a long stage, where there is no terminal.
 
 
 @contextmanager
-def shown(stream: TextIO | None = None) -> Iterator[Progress]:
+def show_progress(stream: TextIO | None = None) -> Iterator[Progress]:
     """Show progress while the block runs, on stderr or ``stream``.
 
     Example:
         >>> import io
         >>> lines = io.StringIO()
-        >>> with shown(lines) as progress:
+        >>> with show_progress(lines) as progress:
         ...     progress("fuse", 0, 2)
         ...     progress("fuse", 2, 2)
         >>> lines.getvalue().splitlines()[0]
@@ -32,12 +32,12 @@ def shown(stream: TextIO | None = None) -> Iterator[Progress]:
         with _bars(target) as bars:
             yield bars
     else:
-        lines = Lines(target)
+        lines = LineProgress(target)
         yield lines
         lines.finish()
 
 
-class Lines:
+class LineProgress:
     """One line when a stage begins, one every half minute, and one, with its time, at its end."""
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic):
@@ -55,9 +55,9 @@ class Lines:
         self._note = note
         if total and done >= total:
             self.finish()
-        elif total and done and (now := self._clock()) - self._told >= EVERY_S:
+        elif total and done and (now := self._clock()) - self._told >= LINE_INTERVAL_S:
             self._told = now
-            left = spoken((now - self._began) * (total - done) / done)
+            left = format_duration((now - self._began) * (total - done) / done)
             told = f", {note}" if note else ""
             line = f"{stage} {done:,} of {total:,}{told}, {left} left"
             print(line, file=self._stream, flush=True)
@@ -72,11 +72,11 @@ class Lines:
         self._stage, self._note = "", ""
 
 
-def spoken(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """Return a time in two words.
 
     Example:
-        >>> [spoken(seconds) for seconds in (7.2, 125, 8000)]
+        >>> [format_duration(seconds) for seconds in (7.2, 125, 8000)]
         ['7 s', '2 min', '2.2 h']
     """
     if seconds < 100:
@@ -99,10 +99,10 @@ def _bars(stream: TextIO) -> Iterator[Progress]:
         rich_progress.TextColumn("[dim]{task.fields[note]}", markup=True),
     )
     with rich_progress.Progress(*columns, console=Console(file=stream)) as display:
-        yield Bars(display)
+        yield BarProgress(display)
 
 
-class Bars:
+class BarProgress:
     """One bar a stage, on a rich display; a stage that is done keeps its line and its time."""
 
     def __init__(self, display: Any):

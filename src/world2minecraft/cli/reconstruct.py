@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 # A plan alone in ``w2m reconstruct``: what came of it, told.
 
 
-def say_plan(out: Path, built: "PlanWorld") -> None:
+def print_plan_outcome(out: Path, built: "PlanWorld") -> None:
     """Print what came of a plan, and how to see it."""
-    from world2minecraft.cli.outcome import say_how_to_play
+    from world2minecraft.cli.outcome import print_play_steps
 
     size = " x ".join(f"{side:.1f}" for side in built.scan.room_size_m)
     count = len(built.layouts)
@@ -35,7 +35,7 @@ def say_plan(out: Path, built: "PlanWorld") -> None:
     for note in built.scan.notes:
         print(f"note: {note}")
     print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
-    say_how_to_play(out / "build")
+    print_play_steps(out / "build")
 
 
 EXAMPLES = """\
@@ -142,8 +142,8 @@ def run(
     its last finished stage when the same command is given again. Photos and videos are given
     poses and depth first, which takes a minute or two.
     """
-    from world2minecraft.cli.outcome import compiling_note, say_where
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note, print_outcome
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
     from world2minecraft.runs import run_capture
 
@@ -159,18 +159,18 @@ def run(
         plan="" if plan is None else str(plan),
     )
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)
-    chosen = with_settings(chosen, as_settings(semantics, fov) + (settings or []))
+    chosen = with_settings(chosen, option_settings(semantics, fov) + (settings or []))
     check_stage(start, follow)
     style_note(chosen)
-    compiling_note()
+    print_compile_note()
     needs_frames = {"--from": start, "--labels": labels, "--follow": follow}
-    if built_from_plan(capture, out, chosen, [name for name in needs_frames if needs_frames[name]]):
+    if build_lone_plan(capture, out, chosen, [name for name in needs_frames if needs_frames[name]]):
         return
-    with shown() as progress:
+    with show_progress() as progress:
         if follow:
-            watch(capture, out, chosen, labels, follow_idle_s, progress)
+            follow_capture(capture, out, chosen, labels, follow_idle_s, progress)
         facts = run_capture(capture, out, chosen, start, labels, progress)
-    say_where(out, facts)
+    print_outcome(out, facts)
 
 
 def check_stage(start: str | None, follow: bool) -> None:
@@ -185,13 +185,13 @@ def check_stage(start: str | None, follow: bool) -> None:
         raise UnknownNameError("stage", start, stages)
 
 
-def as_settings(semantics: str, fov: float | None) -> list[str]:
+def option_settings(semantics: str, fov: float | None) -> list[str]:
     """Return options that stand for settings as such."""
     told = {"occupy.semantics": semantics, "capture.fov_deg": "" if fov is None else str(fov)}
     return [f"{key}={value}" for key, value in told.items() if value]
 
 
-def built_from_plan(
+def build_lone_plan(
     capture: Path, out: Path, chosen: "Parameters", needs_frames: list[str]
 ) -> bool:
     """Build what a RoomPlan alone says, where the capture is one; return whether it is.
@@ -199,7 +199,7 @@ def built_from_plan(
     UsageError for options that need frames, of which a plan has none.
     """
     from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name
     from world2minecraft.runs import run_plan
@@ -211,13 +211,13 @@ def built_from_plan(
         raise UsageError(
             f"{capture} is a RoomPlan and has no frames; leave out {' and '.join(needs_frames)}"
         )
-    with shown() as progress:
+    with show_progress() as progress:
         built = run_plan(drawn, out, chosen, progress, scene_name(capture))
-    say_plan(out, built)
+    print_plan_outcome(out, built)
     return True
 
 
-def watch(
+def follow_capture(
     capture: Path,
     out: Path,
     chosen: "Parameters",

@@ -53,15 +53,15 @@ def run(
             print(f"{world}: nothing of World2Minecraft is there to undo.")
             return
         for step in steps:
-            print(f"{step.folder.name}  {step.what}, {counted(len(step.files), 'file')}")
-        print(f"{counted(len(steps), 'step')} to undo, the last one first.")
+            print(f"{step.folder.name}  {step.what}, {count_text(len(step.files), 'file')}")
+        print(f"{count_text(len(steps), 'step')} to undo, the last one first.")
         return
     if blocks:
         from world2minecraft.editing.world_build import remove_build
 
         done = remove_build(world)
-        kept = f"; {counted(done.kept, 'block')} changed since stay" if done.kept else ""
-        print(f"{world}: {counted(done.blocks, 'block')} put back as before{kept}.")
+        kept = f"; {count_text(done.kept, 'block')} changed since stay" if done.kept else ""
+        print(f"{world}: {count_text(done.blocks, 'block')} put back as before{kept}.")
         return
     print(undo_files(world, force))
 
@@ -91,10 +91,10 @@ def undo_files(world: Path, force: bool) -> str:
             reason = f"{changed[0]} was saved since; --blocks takes out what was built and keeps"
             raise ConflictError(world, f"{reason} the rest, --force brings the old files back")
         revert_step(steps[-1])
-        files = counted(len(steps[-1].files), "file")
+        files = count_text(len(steps[-1].files), "file")
         return f"{world}: {files} brought back, byte by byte as before."
 
 
-def counted(number: int, what: str) -> str:
+def count_text(number: int, what: str) -> str:
     """Return a number with its noun, in the plural where it is not one."""
     return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"

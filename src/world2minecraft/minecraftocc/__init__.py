@@ -1,1 +1,1 @@
-"""MinecraftOcc: from worlds to labelled images, and the files that trainers read."""
+"""MinecraftOcc: labelled images of worlds, and the files that trainers read."""

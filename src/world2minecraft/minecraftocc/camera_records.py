@@ -1,4 +1,4 @@
-"""The record of an image's camera: K, E and the conventions in words; or as the paper prints them.
+"""Camera records: K, E and the conventions in words, ours or as the paper prints them.
 
 By itself the record is right: K from the vertical field of view, E carries the camera's axes to the
 room. ``paper_compat`` gives the paper's two matrices exactly as its equations are printed, with

@@ -1,4 +1,4 @@
-"""What is said of cells, as the npz that ``w2m occupy`` writes and others read.
+"""Predicted labels of cells as the npz file that ``w2m occupy`` writes and others read.
 
 A frame's cells lie in the axes of its grid file, those of a capture in the room's. ``axes`` says
 which: ``xzy`` is x right, z up, y forward, as NYUv2's files are; ``xyz`` has z last.

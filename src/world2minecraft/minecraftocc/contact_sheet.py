@@ -1,4 +1,4 @@
-"""A sheet of many pictures side by side, each with a line under it: what a person looks at."""
+"""Draw contact sheets: many images side by side, each with a caption under it."""
 
 from collections.abc import Iterable, Sequence
 

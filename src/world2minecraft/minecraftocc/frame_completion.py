@@ -1,4 +1,4 @@
-"""One depth picture in the grid of its frame, named and completed: SSCNet's task.
+"""Semantic scene completion of one depth image in the grid of its frame: SSCNet's task.
 
 The grid is that of a file: of a ``.bin`` of SSCNet only its first 76 bytes are read, where the grid
 begins and where the camera stands; its labels never are. The picture is fused by our own fusion in

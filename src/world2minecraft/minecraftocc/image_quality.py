@@ -195,7 +195,7 @@ def measure_quality(
         read: returns a picture of a key, uint8 [H, W, 3].
         models: of NIQE.
         resize: width and height to measure at too; None for none.
-        progress: told after each picture.
+        progress: called after each image.
     """
     found: dict[str, list[PictureQuality]] = {NATIVE: []}
     sizes = set()

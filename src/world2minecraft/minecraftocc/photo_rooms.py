@@ -1,4 +1,4 @@
-"""Photo-like pictures of generated rooms, labelled: the data-poor neighbour of block worlds.
+"""Labelled photo-like images of generated rooms: the data-poor counterpart of block worlds.
 
 A room's own voxels of 2 cm are its truth. They become cells of 8 cm by SSCNet's rule, as NYUv2's
 do, and from there on a picture is labelled as one of a block world is: the paper's region, masks

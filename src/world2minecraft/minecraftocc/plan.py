@@ -1,4 +1,4 @@
-"""What a data set is made of: its scenes with their split and their share of the images.
+"""The plan of a data set: its scenes with their split and their share of the images.
 
 The plan also says how each picture is taken; it alone decides every byte, whoever carries it out.
 """

@@ -1,4 +1,4 @@
-"""The values of a data set: what cells a scene has, which of them an image is labelled with."""
+"""The types of a data set: the cells of a scene, the labels of an image, and samples."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""One sample as one picture: what was seen, how far it is, what it is, and the region from above.
+"""Draw a sample as one figure: its image, its depth, its labels, and the region from above.
 
 The labels are cast back into the image: where the colours lie on the things, axes, camera and
 labels belong together. A figure beside says the same of the depth.

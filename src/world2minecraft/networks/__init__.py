@@ -1,4 +1,4 @@
-"""Occupancy networks in PyTorch: what they see, what they say, how they are trained and exported.
+"""Occupancy networks in PyTorch: data, models, losses, training, scoring and ONNX export.
 
 Everything here needs ``pip install 'world2minecraft[train]'``. What is trained leaves as ONNX,
 which ``occupy`` and ``label`` run without torch.

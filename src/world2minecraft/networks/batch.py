@@ -1,4 +1,4 @@
-"""What a monocular occupancy network sees and says, as tensors of a batch.
+"""The inputs, targets and outputs of a monocular occupancy network, as tensors of a batch.
 
 Grids are ``[X, Y, Z]`` as everywhere: x right, y forward, z up of the region. A network that was
 published for another order of axes turns them inside.

@@ -1,4 +1,4 @@
-"""Who looks after a run: validates, keeps the best weights and checkpoints, and says when to stop.
+"""A Lightning callback: validation, checkpoints, the best weights and early stopping.
 
 Files of a run: ``checkpoint.safetensors`` (to go on from), ``weights.safetensors`` (the best by
 mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tensorboard/``.
@@ -57,32 +57,32 @@ class TrainingCallback(lightning.Callback):
     ):
         self._folder, self._config, self._validate = folder, config, validate
         self._progress, self.state = progress, state
-        self._journal = CsvLogger(folder, state.step)
+        self._logger = CsvLogger(folder, state.step)
         self._began, self._first = time.monotonic(), state.step
         self._cpu_began = time.process_time()
         self._before_s, self._cpu_before_s = state.seconds, state.cpu_seconds
-        self._said = ""
+        self._last_loss = ""
 
     def on_train_batch_end(
         self, trainer: Any, pl_module: Any, outputs: Any, batch: Any, batch_idx: int
     ) -> None:
         """Note the losses; validate, keep and stop where it is time."""
-        steps: OccupancyModule = pl_module
+        module: OccupancyModule = pl_module
         state, config = self.state, self._config
         state.step += 1
-        self._check(steps)
-        self._sum_up(steps)
+        self._check_finite(module)
+        self._log_losses(module)
         is_last = state.step == config.steps
         if state.step % config.validate_every == 0 or is_last:
-            self._judge(steps)
+            self._validate_network(module)
             trainer.should_stop = state.stopped
         if state.step % config.checkpoint_every == 0 or is_last or state.stopped:
-            self._keep(steps, trainer.optimizers[0])
-        self._tell(state.sums)
+            self._save_checkpoint(module, trainer.optimizers[0])
+        self._report(state.sums)
 
-    def _check(self, steps: OccupancyModule) -> None:
+    def _check_finite(self, module: OccupancyModule) -> None:
         """End a run whose loss is no number: its weights are none any more, and never will be."""
-        if not math.isfinite(float(steps.found["loss"])):
+        if not math.isfinite(float(module.losses["loss"])):
             rate = learning_rate_at(self._config, self.state.step - 1)
             raise UsageError(
                 f"the loss of step {self.state.step:,} is no number, at a learning rate of "
@@ -90,42 +90,42 @@ class TrainingCallback(lightning.Callback):
                 "(the best weights so far are kept)"
             )
 
-    def _sum_up(self, steps: OccupancyModule) -> None:
+    def _log_losses(self, module: OccupancyModule) -> None:
         state = self.state
-        for name, value in steps.found.items():
+        for name, value in module.losses.items():
             state.sums[name] = state.sums.get(name, 0.0) + float(value)
         state.summed += 1
         if state.step % LOG_EVERY_STEPS == 0 or state.step == self._config.steps:
             figures = {f"train_{k}": v / state.summed for k, v in state.sums.items()}
             figures["learning_rate"] = learning_rate_at(self._config, state.step - 1)
-            self._journal.note(state.step, figures)
+            self._logger.log_metrics(state.step, figures)
             state.sums, state.summed = {}, 0
-            self._said = f"loss {figures['train_loss']:.3f}"
+            self._last_loss = f"loss {figures['train_loss']:.3f}"
 
-    def _judge(self, steps: OccupancyModule) -> None:
+    def _validate_network(self, module: OccupancyModule) -> None:
         state, counts = self.state, self._validate()
-        self._journal.note(state.step, {"val_iou": counts.iou, "val_miou": counts.miou})
+        self._logger.log_metrics(state.step, {"val_iou": counts.iou, "val_miou": counts.miou})
         if counts.miou > state.best_miou:
             state.best_miou, state.best_step, state.worse = counts.miou, state.step, 0
-            write_weights(self._folder / WEIGHTS, steps.network, self._config)
+            write_weights(self._folder / WEIGHTS, module.network, self._config)
         else:
             state.worse += 1
         state.stopped = 0 < self._config.patience <= state.worse
 
-    def _keep(self, steps: OccupancyModule, optimiser: Any) -> None:
+    def _save_checkpoint(self, module: OccupancyModule, optimiser: Any) -> None:
         self.state.seconds = self._before_s + time.monotonic() - self._began
         self.state.cpu_seconds = self._cpu_before_s + time.process_time() - self._cpu_began
-        self._journal.save()
-        write_checkpoint(self._folder / CHECKPOINT, steps.network, optimiser, asdict(self.state))
+        self._logger.save()
+        write_checkpoint(self._folder / CHECKPOINT, module.network, optimiser, asdict(self.state))
 
-    def _tell(self, sums: dict[str, float]) -> None:
+    def _report(self, sums: dict[str, float]) -> None:
         state = self.state
         rate = (state.step - self._first) / max(time.monotonic() - self._began, 1e-9)
         best = f", best mIoU {100 * state.best_miou:.1f}" if state.best_miou >= 0 else ""
-        note = f"{self._said}{', ' if self._said else ''}{rate:.2f} steps/s{best}"
+        note = f"{self._last_loss}{', ' if self._last_loss else ''}{rate:.2f} steps/s{best}"
         self._progress("train", state.step, self._config.steps, note)
 
-    def finish(self, steps: OccupancyModule) -> None:
+    def finish(self, module: OccupancyModule) -> None:
         """Write the last weights and close the journal."""
-        write_weights(self._folder / LAST, steps.network, self._config)
-        self._journal.close()
+        write_weights(self._folder / LAST, module.network, self._config)
+        self._logger.finalize()

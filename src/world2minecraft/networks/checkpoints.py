@@ -1,4 +1,4 @@
-"""Weights and half-done runs on the disk, as safetensors: arrays and texts, nothing that runs.
+"""Weights and checkpoints as safetensors: arrays and texts, no code.
 
 A checkpoint holds what the next step depends on: weights, the moments of AdamW, and facts such as
 the step. Data and augmentation follow from the seed and the step, so no generator is kept.

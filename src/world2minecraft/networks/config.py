@@ -1,4 +1,4 @@
-"""One run of training, wholly said: ``RunConfig``, and the YAML that lies beside its results.
+"""The settings of a training run: ``RunConfig``, and its YAML file.
 
 The same file trains the same network again. Settings that are not there keep their defaults; one
 that nobody knows is refused, with the nearest name.
@@ -38,7 +38,7 @@ class DataSource:
     """A data set, and how often it is drawn from, beside the others.
 
     Example:
-        >>> DataSource.parsed("sets/NYU:2.5")
+        >>> DataSource.parse("sets/NYU:2.5")
         DataSource(path='sets/NYU', weight=2.5)
     """
 
@@ -54,7 +54,7 @@ class DataSource:
             )
 
     @classmethod
-    def parsed(cls, text: str) -> "DataSource":
+    def parse(cls, text: str) -> "DataSource":
         """Return what ``DIR`` or ``DIR:WEIGHT`` means; a colon before no number is the path's."""
         path, colon, tail = text.rpartition(":")
         try:
@@ -237,7 +237,7 @@ def _value(source: str, name: str, value: Any) -> Any:
 
 def _source(source: str, value: Any) -> DataSource:
     if isinstance(value, str):
-        return DataSource.parsed(value)
+        return DataSource.parse(value)
     if not isinstance(value, dict) or not isinstance(value.get("path"), str):
         raise DamagedFileError(source, f"data must be paths, or path and weight, not {value!r}")
     for name in value:

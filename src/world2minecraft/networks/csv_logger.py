@@ -1,4 +1,4 @@
-"""What a run writes down as it goes: ``metrics.csv``, and the same for TensorBoard.
+"""Log the metrics of a run to ``metrics.csv`` and to TensorBoard.
 
 The CSV has a row a figure: step, name, value. It holds no times, so that a run that was stopped and
 went on leaves the same bytes as one that was not.
@@ -30,7 +30,7 @@ class CsvLogger:
         self._first = first_step
         self._board: Any = None
 
-    def note(self, step: int, figures: Mapping[str, float]) -> None:
+    def log_metrics(self, step: int, figures: Mapping[str, float]) -> None:
         """Note figures of a step; TensorBoard has them at once, the CSV with ``save``."""
         if self._board is None:
             from torch.utils.tensorboard import SummaryWriter  # noqa: PLC0415
@@ -50,7 +50,7 @@ class CsvLogger:
         if self._board is not None:
             self._board.flush()
 
-    def close(self) -> None:
+    def finalize(self) -> None:
         """Write the CSV and let TensorBoard's file go."""
         self.save()
         if self._board is not None:

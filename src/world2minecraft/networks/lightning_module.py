@@ -1,4 +1,4 @@
-"""One step of training, for Lightning: the losses, the rate of the step, and who is looked after.
+"""The Lightning module: the losses, the learning rate and the seed of each training step.
 
 Everything by chance in a step is drawn from the run's seed and the step's number.
 """
@@ -50,7 +50,7 @@ class OccupancyModule(lightning.LightningModule):
         super().__init__()
         self.network, self.config, self.first_step = network, config, 0
         self.weights = LossWeights(classes=tuple(class_weights.tolist()))
-        self.found: dict[str, Tensor] = {}  # The losses of the last step.
+        self.losses: dict[str, Tensor] = {}  # The losses of the last step.
 
     def configure_optimizers(self) -> torch.optim.Optimizer:
         """Return AdamW over all weights that learn."""
@@ -81,7 +81,7 @@ class OccupancyModule(lightning.LightningModule):
         with torch.autocast(self.device.type, enabled=False):
             losses = occupancy_losses(to_float32(output), batch.target, batch.inputs, self.weights)
         total = torch.stack(list(losses.values())).sum()
-        self.found = {"loss": total.detach(), **{k: v.detach() for k, v in losses.items()}}
+        self.losses = {"loss": total.detach(), **{k: v.detach() for k, v in losses.items()}}
         return total
 
 

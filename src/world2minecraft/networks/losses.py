@@ -22,7 +22,7 @@ from world2minecraft.networks.layers.depth_bins import bin_of, min_pool_depth
 from world2minecraft.networks.layers.projection import project_cells
 
 FRUSTA = 8  # Along each side of the picture.
-MIN_CELLS = 1e-6
+MIN_SHARE = 1e-6
 COARSE_FACTOR = 4  # From the grid to its coarsest level.
 EMPTY_SHARE = 0.95  # SSCNet's: a coarse cell is empty where more than that is empty or unknown.
 EMPTY_WEIGHT = 0.05  # MonoScene's weight of empty cells in the cross entropy; all others have 1.
@@ -66,7 +66,7 @@ def frustum_loss(logits: Tensor, labels: Tensor, inputs: OccInput) -> Tensor:
     truth, predicted = truth / cells.clamp(min=1), predicted / cells.clamp(min=1)
     each = torch.where(
         truth > 0,
-        truth * (truth.clamp(min=MIN_CELLS).log() - predicted.clamp(min=MIN_CELLS).log()),
+        truth * (truth.clamp(min=MIN_SHARE).log() - predicted.clamp(min=MIN_SHARE).log()),
         torch.zeros_like(truth),
     )
     return each.sum() / (cells > 0).sum().clamp(min=1)
@@ -215,8 +215,8 @@ def _affinity(shares: Tensor, truth: Tensor) -> Tensor:
 
 
 def _less_log(part: Tensor, whole: Tensor, counted: Tensor) -> Tensor:
-    share = part / whole.clamp(min=MIN_CELLS)
-    return torch.where(counted > 0, -share.clamp(min=MIN_CELLS).log(), torch.zeros_like(share))
+    share = part / whole.clamp(min=MIN_SHARE)
+    return torch.where(counted > 0, -share.clamp(min=MIN_SHARE).log(), torch.zeros_like(share))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Predictions that were saved: ours, and those of others, as labels of our order and classes.
+"""Read saved predictions, ours and those of others, as labels of our order and classes.
 
 A folder of ``KEY.npz``, ``KEY.npy`` or ``KEY.pkl``, or one ``.npz`` with an array a key. A file
 of a single array, or one named ``labels``, is a frame's: uint8 labels, or scores of 12 or 13
@@ -76,7 +76,7 @@ class SavedPredictions:
         Raises:
             InputError: there are none of this key. DamagedFileError: they cannot be understood.
         """
-        return self._understood(*self._array(key), self._order)
+        return self._to_labels(*self._array(key), self._order)
 
     def scene_labels(self, key: str, shape: tuple[int, ...]) -> np.ndarray:
         """Return the labels of a whole scene, uint8 ``shape``, 0 to 11 or 255.
@@ -89,7 +89,7 @@ class SavedPredictions:
         """
         values, path = self._array(key)
         values = _reshape_scene(values, shape)
-        labels = self._understood(values, path, self._order or "xyz")
+        labels = self._to_labels(values, path, self._order or "xyz")
         if labels.shape != shape:
             raise DamagedFileError(
                 path, f"has {_sides(labels.shape)} cells of {key}, the truth {_sides(shape)}"
@@ -107,7 +107,7 @@ class SavedPredictions:
             raise InputError(self.path, f"holds no {key}.npz, .npy or .pkl")
         return _read_frame_array(self._files[key]), self._files[key]
 
-    def _understood(self, values: np.ndarray, path: Path, order: str = "") -> np.ndarray:
+    def _to_labels(self, values: np.ndarray, path: Path, order: str = "") -> np.ndarray:
         classes = self._classes
         if values.ndim == 5 and values.shape[0] == 1:
             values = values[0]

@@ -1,4 +1,4 @@
-"""Whole scenes by a network that remembers: all frames of a scene fused, then scored once.
+"""Score whole scenes by a network with a memory: it fuses all frames, then is scored once.
 
 What is true of a scene is put together from its frames' cells of 8 cm, which share a lattice, and
 made coarser where the network's cells are. The network sees the frames one by one in those cells;
@@ -52,7 +52,7 @@ def memory_scores(
         frames: the same samples as the network sees them.
         rows: of ``frames``.
         config: of the network: its cells, and whether it is given depth.
-        progress: told the stage ``scenes``.
+        progress: called for ``scenes``.
     """
     by_scene: dict[str, list[int]] = {}
     for row in rows:
@@ -77,9 +77,7 @@ def assemble_truth(
         sample = found[key]
         known = cells_with_masks(sample, FINE)
         boxes.append(
-            SceneFrame.packed(
-                sample.scene_id, known.labels, known, sample.occ.region.region_to_room
-            )
+            SceneFrame.pack(sample.scene_id, known.labels, known, sample.occ.region.region_to_room)
         )
     lattice, reason = align_frames(boxes, FINE.voxel_m)
     if lattice is None:

@@ -1,4 +1,4 @@
-"""Whole scenes from what is said of their frames: each frame votes where it looks.
+"""Score whole scenes by single-frame predictions: each frame votes on the cells in its view.
 
 EmbodiedOcc keeps a memory of a scene and scores it at the end. A network that knows single frames
 has none: here each frame votes for the class that it says of the cells that it has in view, and the
@@ -30,7 +30,7 @@ class SceneFrame(NamedTuple):
     grid_to_room: np.ndarray
 
     @classmethod
-    def packed(
+    def pack(
         cls, scene_id: str, predicted: np.ndarray, known: KnownCells, grid_to_room: np.ndarray
     ) -> "SceneFrame":
         """Keep what scenes are made of."""

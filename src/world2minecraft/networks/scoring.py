@@ -106,7 +106,7 @@ def protocol_scores(
                 continue
             counts[protocol.name].append(FrameScore(frame.scene_id, found))
         if "embodied" in counts and frame.known.in_frustum is not None:
-            scenes.append(SceneFrame.packed(*frame))
+            scenes.append(SceneFrame.pack(*frame))
     if not any(counts.values()):
         raise UsageError("there is no frame to score")
     result: dict[str, Any] = {}
@@ -147,7 +147,7 @@ def saved_scene_scores(
         scenes: the truth.
         names: of the scenes to score.
         seed: of the intervals.
-        progress: told the stage ``score``.
+        progress: called for ``score``.
 
     Returns:
         What ``protocol_scores`` returns, of ``embodied scenes`` alone.

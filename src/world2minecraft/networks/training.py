@@ -1,4 +1,4 @@
-"""A run of training, from its sets to its scores. The same call goes on with one that was stopped.
+"""Train a network, from its data sets to its scores. The same call continues a stopped run.
 
 A run's folder::
 
@@ -98,7 +98,7 @@ def train_run(
         folder: of its files.
         device: auto, cpu or cuda.
         cache: where decoded frames are kept.
-        progress: told the stages ``frames`` and ``train``.
+        progress: called for ``frames`` and ``train``.
 
     Raises:
         ConflictError: the folder holds a run of other settings, or another process trains in it.
@@ -158,10 +158,10 @@ def _fit(
         return state
     network = build_network(config)
     weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
-    steps = OccupancyModule(network, config, weights)
-    steps.first_step = state.step
+    module = OccupancyModule(network, config, weights)
+    module.first_step = state.step
     rows = take_evenly(data.split.val, config.validate_frames)
-    keeper = TrainingCallback(
+    callback = TrainingCallback(
         folder, config, state, lambda: validate(network, data.target, rows, config), progress
     )
     sizes = [len(part.rows) for part in data.parts]
@@ -175,7 +175,7 @@ def _fit(
             precision=LIGHTNING_PRECISION[resolve_precision(config.precision, device)],  # type: ignore[arg-type]
             max_epochs=1,
             gradient_clip_val=config.clip_norm or None,
-            callbacks=[keeper, _CheckpointLoader(folder)],
+            callbacks=[callback, _CheckpointLoader(folder)],
             logger=False,
             enable_checkpointing=False,
             enable_progress_bar=False,
@@ -183,12 +183,12 @@ def _fit(
             num_sanity_val_steps=0,
             default_root_dir=folder,
         )
-        trainer.fit(steps, batches)
+        trainer.fit(module, batches)
     if trainer.interrupted:  # Lightning takes Ctrl-C for the end of a run.
         raise KeyboardInterrupt
-    keeper.finish(steps)
-    _write_facts(folder, config, network, device, keeper.state, time.monotonic() - began)
-    return keeper.state
+    callback.finish(module)
+    _write_facts(folder, config, network, device, callback.state, time.monotonic() - began)
+    return callback.state
 
 
 def _read_state(checkpoint: Path) -> RunState:

@@ -1,4 +1,4 @@
-"""What a network says of frames: labels, and the counts that choose the best weights."""
+"""Predict the labels of frames, and compute the counts that choose the best weights."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager

@@ -194,15 +194,15 @@ def check_how(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -
 
 def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
     """Build a world of its own and its other forms under ``out``, and say how to play."""
-    from world2minecraft.cli.outcome import compiling_note, say_how_to_play
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note, print_play_steps
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.reconstruction.rebuild import rebuild
 
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         rebuild(source, out, chosen, progress)
     print()
-    say_how_to_play(out / "build")
+    print_play_steps(out / "build")
 
 
 def holds_room(source: Path) -> bool:
@@ -214,12 +214,12 @@ def holds_room(source: Path) -> bool:
 
 def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":
     """Return the blocks of a room for a target that is no folder; nothing is written."""
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.reconstruction.rebuild import blocks_of
 
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         volume = blocks_of(source, chosen, progress)
     print()
     return volume

@@ -39,7 +39,7 @@ def on_server(
     """
     host, port = parse_address(address)
     password = password_of_environment()
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.editing.relocation import place_volume
     from world2minecraft.editing.world_build import affected_mask
@@ -56,7 +56,7 @@ def on_server(
     if note.is_file():
         print("An earlier run of this build was stopped; this one goes on from there.")
     client = RconClient(host, port, password)
-    with shown() as progress:
+    with show_progress() as progress:
         result = LiveBuilder(client, plan, note, progress).run()
     x, y, z = at
     size = " x ".join(str(side) for side in volume.states.shape)

@@ -49,8 +49,8 @@ def run(
     Raises:
         InputError: the layout cannot be read. UsageError: an option is wrong.
     """
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.paper.layouts.importers import How, read_layouts_of
     from world2minecraft.paper.layouts.world import build_scene
     from world2minecraft.reconstruction.parameters import Parameters
@@ -61,9 +61,9 @@ def run(
     several = count is not None or len(scene or ()) > 1
     wanted = chosen_scenes(found, scene or [], count)
     places = [out / name for name in folder_names(wanted)] if several else [out]
-    compiling_note()
+    print_compile_note()
     for one, place in zip(wanted, places, strict=True):
-        with shown() as progress:
+        with show_progress() as progress:
             built = build_scene(one, place, chosen, progress)
         print(f"{one.method}, {one.name}: {built.objects} of {len(one.objects)} objects, {place}")
     option.say_skipped(wanted)

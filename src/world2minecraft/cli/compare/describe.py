@@ -40,7 +40,7 @@ Keep = Annotated[Path, typer.Option("--keep", metavar="DIR", help="Where replies
 Photos = Annotated[int, typer.Option("--photos", help="How many photos are shown.", min=1, max=32)]
 
 
-@option.asks_a_model()
+@option.with_model_options()
 def run(
     scene: Scene,
     method: For = "text",

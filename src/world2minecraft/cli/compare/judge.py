@@ -43,7 +43,7 @@ Wish = Annotated[
 MOST_WISH_BYTES = 16 << 10
 
 
-@option.asks_a_model(option.ModelOptions(temperature=-1.0))
+@option.with_model_options(option.ModelOptions(temperature=-1.0))
 def run(
     places: Places,
     agent: AgentName,
@@ -90,7 +90,7 @@ def graded(
 ) -> "list[Grades]":
     """Return the grades of built rooms; their pictures are written to ``out/pictures``."""
     from world2minecraft.cli.compare.build import folder_names
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_bytes
     from world2minecraft.formats.build_source import read_build
     from world2minecraft.paper.layouts.importers import read_layouts_of
@@ -98,7 +98,7 @@ def graded(
 
     scenes = [read_layouts_of(place)[0] for place in places]
     names, grades = folder_names(scenes), []
-    with shown() as progress:
+    with show_progress() as progress:
         for done, (place, scene) in enumerate(zip(places, scenes, strict=True)):
             progress("judge", done, len(places), scene.name)
             pictures = pictures_of(read_build(place).volume)

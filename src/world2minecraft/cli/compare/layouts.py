@@ -55,7 +55,7 @@ def run(
     Raises:
         InputError: a layout cannot be read. UsageError: an option is wrong.
     """
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_json
     from world2minecraft.navigation.running.tables import format_markdown, format_text
     from world2minecraft.paper.layouts import score_scene, summary_of
@@ -68,7 +68,7 @@ def run(
     how = How(px_m, task, assets, truth if truth is not None and is_truth(truth) else None)
     found = [one for path in paths for one in read_layouts_of(path, how, layout_format)]
     scored = []
-    with shown() as progress:
+    with show_progress() as progress:
         for done, scene in enumerate(found):
             progress("layouts", done, len(found), scene.name)
             scored.append((scene.name if scenes else scene.method, score_scene(scene)))

@@ -86,28 +86,30 @@ def run(
 
 def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> None:
     """Carry out a plan and say what came of it. Raises what ``run`` raises."""
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.minecraftocc.building import build_dataset
     from world2minecraft.minecraftocc.engine import open_engine
 
-    compiling_note()
+    print_compile_note()
     processes = usable_cores() if jobs is None else jobs
-    with open_engine(engine, processes) as workers, shown() as progress:
+    with open_engine(engine, processes) as workers, show_progress() as progress:
         report = build_dataset(folder, plan, workers, progress)
     _say(folder, report)
 
 
 def _say(folder: Path, report: "BuildReport") -> None:
-    from world2minecraft.cli.progress import spoken
+    from world2minecraft.cli.progress import format_duration
     from world2minecraft.minecraftocc.building import TITLES
 
     for note in report.notes:
         print(f"note: {note}")
     splits = ", ".join(f"{count:,} {split}" for split, count in report.images.items())
     total, shards = sum(report.images.values()), report.shards
-    print(f"{folder}: {total:,} images ({splits}) in {shards:,} shards, {spoken(report.seconds)}")
+    print(
+        f"{folder}: {total:,} images ({splits}) in {shards:,} shards, {format_duration(report.seconds)}"
+    )
     if report.made:
         each = report.milliseconds
         stages = ", ".join(f"{title} {each[stage]:.0f}" for stage, title in TITLES.items())

@@ -41,7 +41,7 @@ def run(
     """
     from itertools import islice
 
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.minecraftocc.importers import open_occupancy
     from world2minecraft.minecraftocc.store import write_store
@@ -49,9 +49,9 @@ def run(
     found = open_occupancy(source, format, labels=labels)
     count = len(found.keys(split)) if limit is None else min(limit, len(found.keys(split)))
     if not count:
-        raise UsageError(f"{source} has no sample in {split}: {found.described()}")
-    print(f"{source}: {found.described()}")
-    with shown() as progress:
+        raise UsageError(f"{source} has no sample in {split}: {found.describe()}")
+    print(f"{source}: {found.describe()}")
+    with show_progress() as progress:
         write_store(
             out,
             islice(found.samples(split), count),

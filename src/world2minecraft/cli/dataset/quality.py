@@ -60,7 +60,7 @@ def run(
     Raises:
         InputError: there are no pictures. UsageError: a size or a model is none.
     """
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.metrics.image_quality import niqe_model
     from world2minecraft.evaluation.metrics.image_quality.niqe import available_variants
@@ -77,7 +77,7 @@ def run(
     models = [niqe_model(name) for name in variant or available_variants()]
     source = open_pictures(path)
     keys = sample_keys(source.keys, sample, seed, source.is_picture)
-    with shown() as progress:
+    with show_progress() as progress:
         report = measure_quality(source.name, keys, source.read, models, size, progress=progress)
     print(quality_text(report))
     print()

@@ -30,15 +30,15 @@ def run(
     dataset build it stands for real photos, of which there are few: see docs/training.md.
     """
     from world2minecraft.cli.dataset.options import camera_named
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples
     from world2minecraft.minecraftocc.store import write_store
 
     plan = PhotoRooms(rooms, images, test_share, seed, camera_named("nyu", size, None))
-    compiling_note()
+    print_compile_note()
     facts = {"rooms": rooms, "images": images, "test_share": test_share, "seed": seed}
-    with shown() as progress:
+    with show_progress() as progress:
         write_store(
             out,
             photo_samples(plan),

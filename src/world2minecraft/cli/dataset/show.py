@@ -37,7 +37,7 @@ def run(
     from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)
-    print(f"{source}: {found.described()}")
+    print(f"{source}: {found.describe()}")
     sample = found[key or found.keys()[0]]
     share = share_of_depth_in_cells(sample)
     if share is not None:

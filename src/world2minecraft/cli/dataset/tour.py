@@ -106,8 +106,8 @@ def run(
 def _planned(
     source: "SceneSource", count: int, seed: int, camera, reachable: bool
 ) -> "list[PlannedView]":
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views
 
@@ -120,8 +120,8 @@ def _planned(
         reachable_only=reachable,
         layouts=find_layouts(source.path),
     )
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         return plan_views(source.volume(), count, seed, rule, progress=progress)
 
 

@@ -14,11 +14,11 @@ def run(folder: option.Folder) -> None:
     Raises:
         InputError: it is no data set, or not finished. DamagedFileError: something is wrong.
     """
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import DamagedFileError
     from world2minecraft.minecraftocc.store import verify_store
 
-    with shown() as progress:
+    with show_progress() as progress:
         verdict = verify_store(folder, progress)
     for fault in verdict.faults[:MOST_SHOWN]:
         print(f"fault: {fault}")

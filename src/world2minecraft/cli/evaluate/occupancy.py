@@ -76,7 +76,7 @@ def run(
     """
     from rich.console import Console
 
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_json, write_text
     from world2minecraft.minecraftocc.importers import open_occupancy
     from world2minecraft.networks.scoring import latex_rows
@@ -90,7 +90,7 @@ def run(
     what = _Asked(
         said, found, part, limit, tuple(protocol or ()), order, classes, device, cache, seed
     )
-    with shown() as progress:
+    with show_progress() as progress:
         scores = what.scores(progress)
     scores |= {"said": str(said), "data": str(truth), "split": part or "all"}
     console = Console(highlight=False)
@@ -146,7 +146,7 @@ class _Asked:
         from world2minecraft.networks.data.frames import FrameRule
         from world2minecraft.networks.data.run_data import CacheLocation, open_frames
 
-        place = CacheLocation.named(self.cache)
+        place = CacheLocation.parse(self.cache)
         return open_frames(self.found, FrameRule(grid, *size), place, progress)
 
     def _of_onnx(self, progress: "Progress") -> dict[str, Any]:

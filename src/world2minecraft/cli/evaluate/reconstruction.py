@@ -43,7 +43,7 @@ def run(
     """
     from rich.console import Console
 
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.scoring import evaluate_reconstruction
@@ -59,7 +59,7 @@ def run(
     else:
         facts = evaluate_foreign(foreign, truth)
     if stages:
-        with shown() as progress:
+        with show_progress() as progress:
             facts["stages"] = stage_losses(out, truth, progress=progress)
     console = Console(highlight=False)
     console.print(score_table(facts))

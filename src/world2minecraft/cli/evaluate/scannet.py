@@ -32,14 +32,14 @@ def run(
     SCENE.aggregation.json. Of all that, the truth knows surfaces and what cameras saw through;
     what lies behind surfaces, and the fronts of chairs, it does not know and does not ask for.
     """
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.evaluation.scoring.scannet import scenes_in, write_scannet_truth
 
     scenes = scenes_in(scene)
-    compiling_note()
+    print_compile_note()
     for one in scenes:
-        with shown() as progress:
+        with show_progress() as progress:
             made = write_scannet_truth(one, folder_of(one, scene, out), progress)
         print(told(made))
     place = folder_of(scenes[0], scene, out) or scenes[0]

@@ -112,7 +112,7 @@ def run(
 
 def _walk(source: Path | None, no_browser: bool) -> None:
     """Let a person walk in a world on the page that shows what agents see."""
-    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.core.errors import UsageError
     from world2minecraft.navigation.browser_window import Window
     from world2minecraft.navigation.free_walk import walk_freely
@@ -121,7 +121,7 @@ def _walk(source: Path | None, no_browser: bool) -> None:
 
     if source is None:
         raise UsageError("say where to walk, such as w2m forge OUT --walk")
-    compiling_note()
+    print_compile_note()
     scene = open_scene(source)
     window = Window(VIEW_WIDTH_PX)
     print(f"walk here: {window.link}\nCtrl+C ends it.", flush=True)

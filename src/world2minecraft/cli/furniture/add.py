@@ -79,7 +79,9 @@ def run(
     )
     adopted = import_blocks(volume, wish)
     write_checked(adopted, target)
-    _tell(adopted, target, front, [f"{count} {what} left behind" for what, count in losses])
+    _print_summary(
+        adopted, target, front, [f"{count} {what} left behind" for what, count in losses]
+    )
 
 
 def check_free(name: str, force: bool) -> Path:
@@ -109,7 +111,9 @@ def write_checked(adopted: "ImportedFurniture", target: Path) -> None:
     write_json(target, adopted.content)
 
 
-def _tell(adopted: "ImportedFurniture", target: Path, front: str | None, lost: list[str]) -> None:
+def _print_summary(
+    adopted: "ImportedFurniture", target: Path, front: str | None, lost: list[str]
+) -> None:
     content = adopted.content
     size = " x ".join(f"{content['size_m'][key][1]:.2f}" for key in ("depth", "width", "height"))
     count = sum(length for number, length in content["blocks"]["runs"] if number)

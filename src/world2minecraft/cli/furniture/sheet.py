@@ -39,14 +39,14 @@ def run(
     Raises:
         UnknownNameError: there is no such piece or class. OutputError: it cannot be written.
     """
-    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.core.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
 
     number = class_id(kind) if kind else None
     every = [template(name) for name in (names or TEMPLATES.names())]
     chosen = [one for one in every if number in (None, one.class_id)]
-    compiling_note()
+    print_compile_note()
     draw(chosen, out)
     print(f"{out}: {len(chosen)} designs")
 

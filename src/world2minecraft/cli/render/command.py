@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from world2minecraft.cli.render import options as option
-from world2minecraft.cli.render.look import Look, Looks, take
+from world2minecraft.cli.render.look import Look, Looks, make_look
 from world2minecraft.cli.render.output_files import (
     LINES_FILE,
     Target,
@@ -17,7 +17,14 @@ from world2minecraft.cli.render.output_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render.shots import Plan, View, plan_of, settled, turntable_count, view_of
+from world2minecraft.cli.render.shots import (
+    Plan,
+    View,
+    plan_of,
+    resolve_view,
+    turntable_count,
+    view_of,
+)
 from world2minecraft.cli.render.source import Source, read_source
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress
@@ -28,7 +35,7 @@ if TYPE_CHECKING:
     from world2minecraft.rendering.presentation.shot_frames import DrawOptions
     from world2minecraft.rendering.views import Shot
 
-MOST_WRITERS = 16  # Each holds a picture.
+MAX_WRITERS = 16  # Each holds a picture.
 EXAMPLES = """\
 w2m render OUT                                        from where the player starts
 w2m render house.schem --out house.png                a schematic, from outside
@@ -108,13 +115,13 @@ def draw(
     """Draw a view and say what was drawn. Raises what ``run`` raises."""
     from time import perf_counter
 
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.rendering.output import required_outputs
     from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
-    compiling_note()
-    view = settled(view, source)
+    print_compile_note()
+    view = resolve_view(view, source)
     plan = plan_of(view, source, choice, target.medium)
     count = len(plan.shots) or turntable_count(view, target.medium)
     check_many(target, count)
@@ -132,13 +139,13 @@ def draw(
     tour_id = f"{source.name}-{view.kind}"
     writer = Writer(target, source.volume.block_to_room, source.name, tour_id)
     began = perf_counter()
-    with shown() as progress, writer.open(view.rate_hz):
+    with show_progress() as progress, writer.open(view.rate_hz):
         if view.kind == "turntable":
             _draw_turntable(source, view, choice, writer, count, looks, options, progress)
         else:
             _draw_plan(plan, writer, look, looks, options, progress)
     writer.finish(plan.volume_of(plan.shots[0]) if plan.shots else source.volume)
-    _say(writer, view, source, (perf_counter() - began) / count)
+    _print_summary(writer, view, source, (perf_counter() - began) / count)
 
 
 def _draw_plan(
@@ -157,7 +164,7 @@ def _draw_plan(
 
     progress("render", 0, total)
     # Each picture is written while the next ones are drawn; a moving one takes them one by one.
-    most = 1 if writer.target.medium == "moving" else MOST_WRITERS
+    most = 1 if writer.target.medium == "moving" else MAX_WRITERS
     writers = min(max(look.threads, look.jobs), most)
     with closing(_pictures(plan, look, looks, options, step)) as pictures:
         written = (writer.later(*one) for one in pictures)
@@ -181,7 +188,7 @@ def _pictures(
         if exposure is None:  # One for all, so that pictures of one plan belong together.
             exposure = with_common_exposure(scene, options.light, shots).exposure
         scene = replace(scene, exposure=exposure)
-        pictures = take(scene, shots, look, options, step)
+        pictures = make_look(scene, shots, look, options, step)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume
 
@@ -210,7 +217,7 @@ def _draw_turntable(
         progress("render", done, count)
 
 
-def _say(writer: Writer, view: View, source: Source, seconds: float) -> None:
+def _print_summary(writer: Writer, view: View, source: Source, seconds: float) -> None:
     """Say what was written, from where the first picture was taken, and what to try next."""
     target, first, count = writer.target, writer.lines[0], len(writer.lines)
     what = "one picture" if count == 1 else f"{count:,} pictures"

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from world2minecraft.rendering.views import Shot
 
 TEXTURES_PX = (16, 32, 64, 128)
-MOST_SAMPLES = 4
-MOST_JOBS = 256
+MAX_SAMPLES = 4
+MAX_JOBS = 256
 DEVICES = ("auto", "cpu", "gpu")
-MOST_PHOTO_SAMPLES = 4096
+MAX_PHOTO_SAMPLES = 4096
 STILL_SAMPLES = 2
 OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
 
@@ -75,18 +75,18 @@ class Look:
     jobs: int = 1
 
     def __post_init__(self):
-        if self.samples is not None and not 1 <= self.samples <= MOST_SAMPLES:
-            raise UsageError(f"--samples is 1 to {MOST_SAMPLES}, not {self.samples}")
+        if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
+            raise UsageError(f"--samples is 1 to {MAX_SAMPLES}, not {self.samples}")
         if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
             raise UsageError(f"--textures is 16, 32, 64 or 128, not {self.texture_px}")
-        if not 1 <= self.photo_samples <= MOST_PHOTO_SAMPLES:
+        if not 1 <= self.photo_samples <= MAX_PHOTO_SAMPLES:
             raise UsageError(
-                f"--photo-samples is 1 to {MOST_PHOTO_SAMPLES:,}, not {self.photo_samples}"
+                f"--photo-samples is 1 to {MAX_PHOTO_SAMPLES:,}, not {self.photo_samples}"
             )
         if self.device not in DEVICES:
             raise UsageError(f"--device is auto, cpu or gpu, not {self.device!r}")
-        if not 1 <= self.jobs <= MOST_JOBS:
-            raise UsageError(f"--jobs is 1 to {MOST_JOBS}, not {self.jobs}")
+        if not 1 <= self.jobs <= MAX_JOBS:
+            raise UsageError(f"--jobs is 1 to {MAX_JOBS}, not {self.jobs}")
         if self.jobs > 1 and (self.photo or self.device == "gpu"):
             other = "--photo" if self.photo else "--device gpu"
             raise UsageError(f"--jobs is for plain pictures on the CPU, not for {other}")
@@ -142,7 +142,7 @@ class Look:
         return Looks(ModelSourceStack((packs, BuiltinModels(side_px))), side_px, packs)
 
 
-def take(
+def make_look(
     scene: "BlockScene",
     shots: "Sequence[Shot]",
     look: Look,
@@ -195,10 +195,10 @@ def _photos(
         except ValueError as error:
             raise UsageError(f"--photo cannot do this: {error}") from error
         step(look.photo_samples - told)
-        light = replace(light, exposure=within(picture.exposure))
+        light = replace(light, exposure=check_exposure(picture.exposure))
         yield picture
 
 
-def within(exposure: float) -> float:
+def check_exposure(exposure: float) -> float:
     """Return an exposure within what a light may have."""
     return min(max(exposure, 0.01), 100.0)

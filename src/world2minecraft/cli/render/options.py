@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from world2minecraft.rendering.output import FileFormats
     from world2minecraft.rendering.views import GamePose
 
-MOST_FRAMES = 1_000_000
+MAX_FRAMES = 1_000_000
 
 
 def _option(*names: str, text: str, metavar: str | None = None) -> Any:
@@ -205,8 +205,8 @@ def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileFo
 
 def check_count(frames: int | None, rate_hz: float) -> None:
     """Check ``--frames`` and ``--fps``. Raises UsageError."""
-    if frames is not None and not 1 <= frames <= MOST_FRAMES:
-        raise UsageError(f"--frames is 1 to {MOST_FRAMES:,}, not {frames}")
+    if frames is not None and not 1 <= frames <= MAX_FRAMES:
+        raise UsageError(f"--frames is 1 to {MAX_FRAMES:,}, not {frames}")
     if not 1 <= rate_hz <= 240:
         raise UsageError(f"--fps is 1 to 240, not {rate_hz:g}")
 

@@ -92,7 +92,7 @@ def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) ->
     )
 
 
-def settled(view: View, source: Source) -> View:
+def resolve_view(view: View, source: Source) -> View:
     """Return the view, with one from outside for a build that says no spawn."""
     if view.kind != "spawn" or source.spawn is not None:
         return view

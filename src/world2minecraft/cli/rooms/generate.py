@@ -70,14 +70,14 @@ def _generate(
     clutter: float,
     out: Path,
 ) -> None:
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.run_folder import check_writable
 
     check_writable(out)
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         progress("room", 0, 1)
         try:
             made = _house(seed, *house, clutter) if house else _room(seed, kind, shape, clutter)
@@ -113,15 +113,15 @@ def _check_worlds(
 
 
 def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.procgen.worlds import write_worlds
 
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         written = write_worlds(worlds, houses, seed, style=style, progress=progress)
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")

@@ -55,8 +55,8 @@ def run(
     a capture for w2m reconstruct; its truth lies beside it, for w2m evaluate. A trial brings
     settings of its own.
     """
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
 
     figures = {
         "sensor": sensor, "frames": frames, "depth_scale_sigma": depth_scale_sigma,
@@ -68,8 +68,8 @@ def run(
     _check_source(room_dir, seed, kind, trial, given)
     _check_figures(given)
     _check_empty(out)
-    compiling_note()
-    with shown() as progress:
+    print_compile_note()
+    with show_progress() as progress:
         if trial is not None:
             _scan_trial(trial, out, progress)
         else:

@@ -46,7 +46,7 @@ def run(
     A run that was stopped goes on with the same command. RUN/run.yaml holds every setting; others
     than the options here are set there, and trained with --config.
     """
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
 
     given = {
         "size": size, "backbone": backbone, "grid": grid, "depth": depth, "steps": steps,
@@ -61,23 +61,25 @@ def run(
     from world2minecraft.networks.data.run_data import CacheLocation
     from world2minecraft.networks.training import score_run, train_run
 
-    with shown() as progress:
+    with show_progress() as progress:
         trained = train_run(
-            chosen, out, device=device, cache=CacheLocation.named(cache), progress=progress
+            chosen, out, device=device, cache=CacheLocation.parse(cache), progress=progress
         )
         scores = score_run(trained, chosen, device, progress)
-    for line in trained.data.described:
+    for line in trained.data.descriptions:
         print(line)
     tell(out, chosen, trained.state, scores)
 
 
 def tell(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> None:
     """Say what came of a run and what to do next."""
-    from world2minecraft.cli.progress import spoken
+    from world2minecraft.cli.progress import format_duration
 
     micro = scores["protocols"]["monoscene"]["micro"]
     stopped = ", stopped early" if state.stopped else ""
-    print(f"{state.step:,} steps in {spoken(state.seconds)}{stopped}; best at {state.best_step:,}")
+    print(
+        f"{state.step:,} steps in {format_duration(state.seconds)}{stopped}; best at {state.best_step:,}"
+    )
     print(
         f"IoU {100 * micro['iou']:.2f}, mIoU {100 * micro['miou']:.2f} by monoscene on the "
         f"{scores['split']} frames ({out / 'scores.json'} has all protocols)"

@@ -63,7 +63,7 @@ def chosen_run(
     from world2minecraft.core.errors import UsageError
     from world2minecraft.networks.config import DataSource, RunConfig, read_config
 
-    sources = tuple(DataSource.parsed(text) for text in data)
+    sources = tuple(DataSource.parse(text) for text in data)
     if config is not None:
         if network or preset:
             raise UsageError("--config says network and sizes; leave NET and --preset out")

@@ -120,8 +120,8 @@ def run(
 def _built(
     out: Path, scenes: list[Path], made: tuple[int, int], rule: "BuildRule", workers: int | None
 ) -> "BuiltSet":
-    from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.navigation.data.generated_scenes import make_scenes
     from world2minecraft.navigation.data.set_building import build_navigation_set
@@ -129,9 +129,9 @@ def _built(
     from world2minecraft.reconstruction.run_folder import check_writable
 
     check_writable(out)
-    compiling_note()
+    print_compile_note()
     hands, seed = workers or usable_cores(), rule.work.seed
-    with shown() as progress:
+    with show_progress() as progress:
         places = scenes + make_scenes(out / SCENES_FOLDER, *made, seed, hands, progress)
         return build_navigation_set(places, out, rule, progress, hands)
 

@@ -53,7 +53,7 @@ Training = Annotated[
 Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1)]
 
 
-@option.asks_a_model()
+@option.with_model_options()
 def run(
     folder: Set,
     agent: AgentName,
@@ -88,7 +88,7 @@ def run(
 
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
-    target = out or option.folder_of(agent)
+    target = out or option.default_run_folder(agent)
     every = read_items(folder)
     items = select_items(
         every, split=split, task=task, composition=composition, count=count, seed=seed
@@ -109,10 +109,10 @@ def run(
 def _evaluate(
     target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
 ) -> None:
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.navigation.running.item_evaluation import evaluate, write_result
 
-    with shown() as progress:
+    with show_progress() as progress:
         found = evaluate(items, answerer, jobs=jobs, progress=progress)
     write_result(target, found, facts)
 

@@ -32,7 +32,7 @@ Plain = Annotated[bool, typer.Option("--plain", help="Ask in the program's own w
 Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1, max=64)]
 
 
-@option.asks_a_model()
+@option.with_model_options()
 def run(
     path: SetPath,
     annotations: Annotations = None,
@@ -77,7 +77,7 @@ def run(
 def _rewritten(
     made: "NavigationSet", chat: "ChatModel", jobs: int
 ) -> "tuple[NavigationSet, Counter[str]]":
-    from world2minecraft.cli.progress import shown
+    from world2minecraft.cli.progress import show_progress
     from world2minecraft.external_models.chat_messages import Turn
     from world2minecraft.external_models.structured_replies import strip_reasoning
     from world2minecraft.navigation.data.rewording import reword_set
@@ -85,7 +85,7 @@ def _rewritten(
     def ask(prompt: str) -> str:
         return strip_reasoning(chat.ask((Turn("user", (prompt,)),))[1].text)
 
-    with shown() as progress:
+    with show_progress() as progress:
         return reword_set(made, ask, chat.name, jobs, progress)
 
 

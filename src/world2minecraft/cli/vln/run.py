@@ -82,7 +82,7 @@ Server = Annotated[
 Video = Annotated[bool, typer.Option("--video/--no-video", help="Write walk.mp4 of each walk.")]
 
 
-@option.asks_a_model()
+@option.with_model_options()
 def run(
     scene: Scene,
     instruction: Sentence = "",
@@ -116,7 +116,7 @@ def run(
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.sentence_goals import GoalRequest
 
-    folder = out or option.folder_of(agent)
+    folder = out or option.default_run_folder(agent)
     _check_apart(folder, scene)
     chats: list[Any] = []
 
@@ -209,7 +209,7 @@ def _walk(
     folder: Path, episodes: "list[Episode]", grounds: _Grounds, walker: Any, seed: int,
     video: bool, chats: list[Any],
 ) -> dict[str, Any]:  # fmt: skip
-    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.vln.live_view import live
     from world2minecraft.navigation.records import write_episodes
     from world2minecraft.navigation.running.episode_evaluation import (
@@ -219,7 +219,7 @@ def _walk(
     from world2minecraft.navigation.running.film import FILM_FILE, Film
     from world2minecraft.navigation.running.trace import TraceWriter
 
-    compiling_note()
+    print_compile_note()
     films: list[Film] = []
 
     def watching(episode: "Episode", ground: Any) -> list[Any]:

@@ -1,4 +1,4 @@
-"""Block maps: from the blocks of any world to the 12 classes, by name and by where they are.
+"""Block maps: from the blocks of any world to the 12 classes, by name and by place.
 
 ``load_block_map`` gives a shipped map or one of a YAML file, ``classify`` labels a volume by it,
 and ``remap_labels`` gives what is labelled already other classes.
@@ -22,10 +22,10 @@ __all__ = [
     "MAPS",
     "BlockMap",
     "block_map_json",
-    "parse_block_map",
     "class_of_fine",
     "classify",
     "load_block_map",
+    "parse_block_map",
     "read_block_map",
     "remap_labels",
 ]

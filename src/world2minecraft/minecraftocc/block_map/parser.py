@@ -1,4 +1,4 @@
-"""Reading block maps from YAML, and telling what is wrong with one.
+"""Read block maps from YAML, and report what is wrong with one.
 
 A file may begin from another map (``extends``): then what it says comes before what that map says.
 """

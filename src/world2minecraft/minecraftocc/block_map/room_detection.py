@@ -1,4 +1,4 @@
-"""Where rooms are in a volume of blocks: floors, ceilings, walls and what lies between.
+"""Detect rooms in a volume of blocks: floors, ceilings, walls and what lies between.
 
 In: which blocks can be structure, and the scale. Out: a zone for each block. A floor is a wide
 flat top with a roof over it under which a person stands; walls are the columns that reach from it

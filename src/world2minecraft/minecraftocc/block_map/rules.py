@@ -1,4 +1,4 @@
-"""A block map as a value: what a block stands for by its name, and else by where it is.
+"""The types of a block map: what a block stands for by its name, and else by where it is.
 
 A block's name says its class, or a kind. A kind has rules, of which the first that holds at a
 block counts. So a map is a table that a person can read and edit, and nothing in code.

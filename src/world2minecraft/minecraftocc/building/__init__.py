@@ -1,4 +1,4 @@
-"""A data set from its plan: scenes looked at, shards made by an engine, the index written."""
+"""Build a data set from its plan: survey scenes, render shards with an engine, write the index."""
 
 from world2minecraft.minecraftocc.building.build import BuildReport, build_dataset
 from world2minecraft.minecraftocc.building.cpu_clock import STAGES, TITLES

@@ -142,7 +142,7 @@ def build_dataset(
         folder: where; the same plan there is gone on with.
         plan: what it is made of.
         engine: who does the work.
-        progress: told of scenes, images and the index.
+        progress: called with scenes, images and the index.
 
     Raises:
         ConflictError: the folder has another data set, or another run is at work there.

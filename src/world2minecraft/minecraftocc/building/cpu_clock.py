@@ -1,4 +1,4 @@
-"""The CPU time of the stages that an image goes through."""
+"""CPU time of the stages of making an image."""
 
 import time
 from collections import defaultdict

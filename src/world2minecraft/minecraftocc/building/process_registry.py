@@ -1,4 +1,4 @@
-"""The processes at work in a data set's folder, for the next run to wait for.
+"""Register the processes at work in a data set's folder, so that the next run can wait for them.
 
 A build that is killed lets go of its folder before its workers have noticed. Each worker therefore
 holds the folder's ``.crew`` file, shared, while it has something to do there, and looks whether the

@@ -1,4 +1,4 @@
-"""Views that were recorded: the poses of a tour file, or the game's own screenshots."""
+"""Load recorded views: the poses of a tour file, or the game's own screenshots."""
 
 import re
 from dataclasses import replace

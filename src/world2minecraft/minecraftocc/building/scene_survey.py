@@ -1,4 +1,4 @@
-"""The first look at a scene: its world is there, its classes are known, its views are planned.
+"""Survey a scene before rendering: make its world, list its classes and plan its views.
 
 ``scenes/ID.json`` tells what was found, ``scenes/ID.poses.jsonl`` has the views, in the one format
 of tours. Both are made once; a build that was broken off finds them.

@@ -1,4 +1,4 @@
-"""Who does the work of a data set: this process, a pool of processes, or many machines with Ray.
+"""Engines that run the tasks of a build: this process, a pool of processes, or Ray.
 
 All call the same function with the same items, so all make the same files.
 """

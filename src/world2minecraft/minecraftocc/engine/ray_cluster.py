@@ -1,4 +1,4 @@
-"""The engine for many machines: Ray calls the same task there.
+"""Run tasks on many machines with Ray.
 
 The data set's folder and its worlds lie on a disk that all machines share. Without ``RAY_ADDRESS``
 a cluster of this machine alone is started, and ended again.

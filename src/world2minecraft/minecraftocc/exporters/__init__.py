@@ -1,4 +1,4 @@
-"""Data sets in the formats that the loaders of others read: nyu, occscannet, embodied, npz.
+"""Export data sets in the formats that the loaders of others read.
 
 In: samples with their split, one at a time. Out: a folder. Each file is written whole or not at
 all, and a sample's last file says that it is finished, so that a stopped export goes on where it

@@ -1,4 +1,4 @@
-"""EmbodiedOcc-ScanNet: whole scenes, and which of their cells each frame sees.
+"""Export as EmbodiedOcc-ScanNet: whole scenes, and which of their cells each frame sees.
 
 OUT stands for the loader's ``data`` folder: ``occscannet/`` holds the frames, ``scene_occ/`` the
 packages of scenes and the masks. A scene is put together from the boxes of its frames, all of

@@ -1,4 +1,4 @@
-"""The way from samples to a folder: what is done is passed over, what is left is written."""
+"""Export samples into a folder: finished ones are skipped, the others are written."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -58,7 +58,7 @@ def export_samples(
         rule: the choices that the format leaves open.
         split: train or test alone; all by default.
         limit: at most so many samples.
-        progress: told of each sample.
+        progress: called with each sample.
 
     Raises:
         UnknownNameError: there is no such format. UsageError: there is nothing to export.

@@ -1,4 +1,4 @@
-"""Plain ``.npz``, one a sample: every array of it under its own name, nothing to unpickle."""
+"""Export as plain ``.npz``, one per sample: every array under its own name, nothing to unpickle."""
 
 import json
 from collections.abc import Sequence

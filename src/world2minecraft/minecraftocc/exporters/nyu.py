@@ -1,4 +1,4 @@
-"""NYUv2 as MonoScene, NDC-Scene, ISO and Symphonies read it.
+"""Export as NYUv2, as MonoScene, NDC-Scene, ISO and Symphonies read it.
 
 ``NYUtrain/`` and ``NYUtest/`` hold NAME_color.jpg, NAME.png and NAME.bin; ``base/NYUtrain/`` and
 ``base/NYUtest/`` hold NAME.pkl. The world of each file is its region's: z up, the minimum corner

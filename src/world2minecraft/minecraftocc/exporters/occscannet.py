@@ -1,4 +1,4 @@
-"""OccScanNet as ISO, EmbodiedOcc and GPOcc read it.
+"""Export as OccScanNet, as ISO, EmbodiedOcc and GPOcc read it.
 
 ``gathered_data/SCENE/NNNNN.pkl``, ``posed_images/SCENE/NNNNN.jpg`` and ``.png``, and the lists.
 Labels are stored as [y, x, z]: EmbodiedOcc and GPOcc swap the first two axes when they load, and

@@ -1,4 +1,4 @@
-"""Names as ScanNet's for our scenes and frames, with the table that leads back.
+"""ScanNet-like names for our scenes and frames, with the table that maps them back.
 
 OccScanNet's loaders cut ``scene0000_00/00000`` out of paths. A scene has the number of its first
 appearance, a frame the number of its turn within the scene. The table is kept in the folder, so

@@ -1,1 +1,1 @@
-"""What the exchange formats share: pickles, SSCNet's voxels, codes of depth, cameras, axes."""
+"""What exporters and importers share: pickles, SSCNet's voxels, depth codes, cameras, boxes."""

@@ -1,4 +1,4 @@
-"""SSCNet's ``.bin``: the voxels of one NYU frame at 2 cm, as runs of equal values.
+"""Read and write SSCNet's ``.bin``: the voxels of one NYU frame at 2 cm, run-length encoded.
 
 A file is 3 float32 (where voxel (0, 0, 0) begins in the world), 16 float32 (the camera's pose in
 the world, row by row), then uint32 pairs of value and count: 240 x 144 x 240 voxels in C order,

@@ -1,4 +1,4 @@
-"""Occupancy data sets of others, and our exports of the same formats, read as samples."""
+"""Import the occupancy data sets of others, and our exports of the same formats, as samples."""
 
 from world2minecraft.minecraftocc.importers.format_detection import IMPORTED, open_occupancy
 from world2minecraft.minecraftocc.importers.samples import ImportedSet

@@ -1,4 +1,4 @@
-"""EmbodiedOcc-ScanNet: frames of whole scenes, and the scenes themselves.
+"""Import EmbodiedOcc-ScanNet: frames of whole scenes, and the scenes themselves.
 
 ``scene_occ`` holds the packages; the frames' poses and pictures are those of ``occscannet`` beside
 it, as the loaders of the format have them.

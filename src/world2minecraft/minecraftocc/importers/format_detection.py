@@ -1,4 +1,4 @@
-"""Which format a folder is in, and its samples."""
+"""Detect the format of a folder, and open its samples."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Plain ``.npz`` files, one a sample, as our own exporter writes them."""
+"""Import plain ``.npz`` files, one per sample, as our own exporter writes them."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""NYUv2 in the layout of MonoScene and all after it.
+"""Import NYUv2 in the layout of MonoScene and all after it.
 
 The labels are in ``NAME.pkl`` where MonoScene's preprocessing has run, under ``base/`` here or in
 another folder; else ``NAME.bin`` is read and made coarse the same way.

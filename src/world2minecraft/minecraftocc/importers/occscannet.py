@@ -1,4 +1,4 @@
-"""OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with pictures in ``posed_images``.
+"""Import OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with images in ``posed_images``.
 
 Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them. The paths inside the pickles are
 those of the machine that wrote them, and are not followed: pictures are found by scene and number.

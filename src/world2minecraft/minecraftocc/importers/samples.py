@@ -53,7 +53,7 @@ class ImportedSet:
         """Return the keys, of one split or of all."""
         return [key for key, of in self.splits.items() if split in (None, of)]
 
-    def described(self) -> str:
+    def describe(self) -> str:
         """Return format and counts in words, such as ``nyu, 3 samples (1 test, 2 train)``."""
         counts = Counter(self.splits.values())
         parts = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))

@@ -1,4 +1,4 @@
-"""What the cells of a world are made of: a short number for each block and furniture design."""
+"""Number the fine classes of a world: each block and each furniture design."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Observed free space, exactly: the empty cells that the ray of some pixel went through.
+"""Observed free space, exactly: the empty cells that the ray of some pixel crossed.
 
 A ray went through a cell where it was in it over more than ``CROSSED_M`` of depth before it met its
 surface. All pixels count, however many there are; and yet most cells cost one look: the pixel that

@@ -1,4 +1,4 @@
-"""The labels of one image: what its region holds, and what of it the image shows.
+"""Label an image: what its region holds, and what of it the image shows.
 
 In: the cells of a scene, a region, a camera and the depth of its image. Out: ``OccLabels``. The
 labels are the scene's own. Masks follow from them, the camera and the depth as it was drawn:

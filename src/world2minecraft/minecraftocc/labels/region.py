@@ -1,4 +1,4 @@
-"""The region of a view of a scene: on its cells, from the floor under the camera on.
+"""The region of a view: on the scene's cells, from the floor under the camera upwards.
 
 The rule itself is that of ``geometry/view_region.py``.
 """

@@ -1,4 +1,4 @@
-"""What a data set holds, in numbers, beside the data sets that the paper compares."""
+"""Statistics of a data set, beside those of the data sets that the paper compares."""
 
 from world2minecraft.minecraftocc.statistics.counting import (
     PictureCounts,

@@ -1,4 +1,4 @@
-"""Counting a data set on disk, a picture at a time.
+"""Compute the statistics of a data set on disk, an image at a time.
 
 A stored one is counted by several processes, and its pictures are not read.
 """
@@ -46,7 +46,7 @@ def statistics_of(
         split: its name; all where None.
         format: of a folder of others; found out where None.
         jobs: how many processes count a stored one.
-        progress: told the pictures that are counted.
+        progress: called with the images counted so far.
 
     Raises:
         InputError: it is no data set, or has no such split. DamagedFileError: a sample cannot be
@@ -82,7 +82,7 @@ def store_statistics(
         path: of the data set.
         split: its name; all where None.
         jobs: how many processes count.
-        progress: told the pictures that are counted.
+        progress: called with the images counted so far.
 
     Raises:
         InputError: it is no data set. DamagedFileError: a sample cannot be read. UsageError: there

@@ -1,4 +1,4 @@
-"""Plots of a data set: its classes, its fine classes, its scenes. PNG files, by matplotlib."""
+"""Plot the statistics of a data set with matplotlib: classes, fine classes, scenes."""
 
 import io
 from collections.abc import Sequence

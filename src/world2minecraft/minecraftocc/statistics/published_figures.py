@@ -1,4 +1,4 @@
-"""The figures of other data sets, with where they are printed."""
+"""Published figures of other data sets, with their sources."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The numbers of a data set."""
+"""The types of statistics: counts of fine classes, of scenes and of a data set."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

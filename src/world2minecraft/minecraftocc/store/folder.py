@@ -1,4 +1,4 @@
-"""Where the files of a data set lie, and what its ``dataset.json`` and ``classes.json`` hold.
+"""The folder of a data set: where its files lie, and ``dataset.json`` and ``classes.json``.
 
 ::
 

@@ -1,4 +1,4 @@
-"""The index of a data set: one row a sample, in a Parquet file.
+"""The index of a data set: one row per sample, in a Parquet file.
 
 It is made from the shards alone, by their headers and their JSON, so that it can be made again at
 any time; pictures are not read.

@@ -1,4 +1,4 @@
-"""A data set on disk as its samples, any of them at once or all in their order.
+"""Read a data set on disk: any sample by its key, or all in their order.
 
 What is read may come from anywhere: names, places and sizes are checked before anything is opened
 or taken into memory.

@@ -1,4 +1,4 @@
-"""Whether a data set is what its index says: every file there, every sum right, nothing else."""
+"""Verify a data set against its index: every file and checksum, and nothing unexpected."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

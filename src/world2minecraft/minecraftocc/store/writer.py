@@ -1,4 +1,4 @@
-"""How a data set begins and ends, and one written from samples that are there already."""
+"""Write a data set from samples, and finish one whose shards are there."""
 
 import platform
 import re
@@ -109,7 +109,7 @@ def write_store(
             too; ``split`` is train, val, test or left empty.
         meta: further facts for ``dataset.json``.
         files: how pictures are packed.
-        progress: told the samples that are done.
+        progress: called with the samples done so far.
 
     Raises:
         ConflictError: there is a data set already, or half of one. UsageError: a name or a split

@@ -1,4 +1,4 @@
-"""Which pictures of a world are taken: smooth walks through its rooms, and views worth having."""
+"""Tours: smooth walks through the rooms of a world, and the views that are worth taking."""
 
 from world2minecraft.minecraftocc.tours.planning import plan_views
 from world2minecraft.minecraftocc.tours.pose_files import read_views, view_line, write_views
@@ -14,8 +14,8 @@ from world2minecraft.minecraftocc.tours.types import (
 __all__ = [
     "PlannedView",
     "TourRule",
-    "kind_of_yaw",
     "find_layouts",
+    "kind_of_yaw",
     "nyu_camera",
     "paper_camera",
     "plan_views",

@@ -1,4 +1,4 @@
-"""Where one looks along a walk: into the room, along its axes and diagonals in stretches.
+"""Choose where a camera looks along a walk: into the room, along its axes and diagonals.
 
 At each place the room is seen all round in small pictures; each of 24 headings is rated by what a
 camera would see there. The best sequence of headings, in which turning costs, is found exactly.

@@ -227,7 +227,7 @@ def plan_views(
         seed: 0 or more.
         rule: the camera and all choices.
         scene: ``prepare_scene`` of the volume, where the caller has it already.
-        progress: told of the views found.
+        progress: called with the views found.
 
     Raises:
         UsageError: the count is below 1, or nobody can stand anywhere in the volume.

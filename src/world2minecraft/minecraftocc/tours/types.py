@@ -1,4 +1,4 @@
-"""What a plan of views is asked for, and the views that it is made of."""
+"""The rules of a tour, and the views that a plan consists of."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""Whether views are worth a picture, judged by small ones: not blocked, empty, flat or dark."""
+"""Assess views by small renderings: whether they are blocked, empty, flat or dark."""
 
 from dataclasses import dataclass
 

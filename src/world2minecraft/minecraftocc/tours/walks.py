@@ -1,4 +1,4 @@
-"""One walk through a room: from stop to stop over its free floor, smooth, and never into anything.
+"""Plan a smooth, collision-free walk through a room, from stop to stop over its free floor.
 
 Stops are spread: each lies far from those before it. Ways keep away from walls where there is room.
 """

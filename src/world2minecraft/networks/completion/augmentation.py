@@ -1,4 +1,4 @@
-"""A sample seen anew: turned, mirrored, cut, spoilt, with channels missing.
+"""Augment a sample: rotate, mirror, crop, corrupt, drop channels.
 
 All is drawn from one generator, so that a seed and a step give the same batch.
 """

@@ -1,4 +1,4 @@
-"""The trained completion network as ONNX, weights in half precision, held against torch."""
+"""Export the completion network as ONNX in half precision, checked against PyTorch."""
 
 import io
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The completion network: a 3D U-Net that works at half resolution and speaks at full.
+"""The completion network: a 3D U-Net that works at half resolution and predicts at full.
 
 Two cells a side become one at its entry, so that a room costs an eighth. The last layer sees the
 full cells again beside what the body says of them; without it labels came in stripes of two cells.

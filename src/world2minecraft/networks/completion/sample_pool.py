@@ -1,4 +1,4 @@
-"""Batches for the completion network out of a folder of sample files that may still grow."""
+"""Batches for the completion network from a folder of sample files that may still grow."""
 
 from pathlib import Path
 

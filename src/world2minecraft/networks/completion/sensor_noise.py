@@ -1,4 +1,4 @@
-"""How a virtual scan errs: drawn once a scan, harsh enough that a quarter of the surface is false.
+"""Noise of virtual scans: drawn once per scan, so strong that a quarter of the surface is false.
 
 On real single frames 23 % of fused surface cells are empty in the truth: depth errs, poses err,
 scale is wrong, and who labelled them fitted furniture by hand. Here the same comes about by poses

@@ -99,16 +99,16 @@ class Trainer:
         while self.step < min(until, self.run.steps):
             if self.step and self.step % REFRESH_EVERY_STEPS == 0:
                 self.pool.refresh()
-            for name, value in self._one().items():
+            for name, value in self._training_step().items():
                 sums[name] = sums.get(name, 0.0) + value / every
             self.step += 1
             if report and self.step % every == 0:
                 report(self.step, sums, self.mean)
                 sums = {}
 
-    def _one(self) -> dict[str, float]:
+    def _training_step(self) -> dict[str, float]:
         for group in self.optimiser.param_groups:
-            group["lr"] = self.rate_at(self.step)
+            group["lr"] = self.learning_rate_at(self.step)
         rng = np.random.default_rng([self.run.seed, self.step])
         torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
         cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
@@ -120,17 +120,17 @@ class Trainer:
         torch.stack(list(losses.values())).sum().backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
         self.optimiser.step()
-        self._follow()
+        self._update_mean()
         return {name: float(value.detach()) for name, value in losses.items()}
 
-    def rate_at(self, step: int) -> float:
+    def learning_rate_at(self, step: int) -> float:
         """Return the learning rate of a step."""
         run = self.run
         left = (run.steps - step) / max(run.fall * run.steps, 1)
         return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, 0.01))
 
     @torch.no_grad()
-    def _follow(self) -> None:
+    def _update_mean(self) -> None:
         """Draw the running mean towards the weights; fast at first, when all is new."""
         keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
         new = self.network.state_dict()

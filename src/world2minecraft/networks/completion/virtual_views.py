@@ -1,4 +1,4 @@
-"""Virtual scans for learning: which views are taken, and what our own fusion makes of them.
+"""Virtual scans of rooms: which views are taken, and the evidence that our fusion makes of them.
 
 A *walk* is a share of a person's tour, a *few* is two to six pictures, a *single* is one, as a data
 set of depth frames has it. Walks and fews lie in the room's own axes, as after alignment; most

@@ -150,7 +150,7 @@ class DrawnDataset(Dataset):
     ):
         self._parts, self._draws, self._config, self._first = parts, draws, config, first
         fuses, voxel_m = config.fused > 1, config.cells.voxel_m
-        self._companions = [SequenceSampler(*part, voxel_m) for part in parts] if fuses else []
+        self._samplers = [SequenceSampler(*part, voxel_m) for part in parts] if fuses else []
 
     def __len__(self) -> int:
         return len(self._draws.source) - self._first
@@ -161,10 +161,10 @@ class DrawnDataset(Dataset):
         part = self._parts[source]
         row = part.rows[self._draws.row[draw]]
         frames = [part.frames[row]]
-        if self._companions:
+        if self._samplers:
             count = sequence_length(config.seed, draw // config.batch, config.fused) - 1
             rng = np.random.default_rng([config.seed, 2**22, draw])
-            frames += self._companions[source].beside(row, frames[0], count, rng) if count else []
+            frames += self._samplers[source].sample(row, frames[0], count, rng) if count else []
         rng = draw_rng(config.seed, draw)
         return augment_sequence(frames, config.cells.voxel_m, config.flip, config.jitter, rng)
 

@@ -1,4 +1,4 @@
-"""Frames kept decoded: pictures of a run's size and coarse labels, as plain arrays on the disk.
+"""A cache of decoded frames: images of a run's size and coarse labels, as plain arrays on disk.
 
 To open a JPEG of 640x480 and to make cells coarser takes longer than a step of a small network; so
 it is done once a set, size and grid. The arrays are mapped, not read: a run holds only the frames
@@ -118,7 +118,7 @@ def open_cached_frames(
         source: the set.
         rule: size of pictures and cells.
         root: the folder of all caches; in the user's cache folder where None.
-        progress: told of the stage ``frames``.
+        progress: called for the stage ``frames``.
 
     Raises:
         OutputError: the disk is full. ConflictError: another process fills it.

@@ -1,4 +1,4 @@
-"""How often each class is, and what weight the loss gives it for that.
+"""Class frequencies, and the class weights of the loss.
 
 - ``frequency``: ``1 / ln(1.02 + share)`` (Paszke et al. 2016, ENet), scaled so that the 11 classes
   have mean 1: a rare class counts for more, and the constant bounds by how much.

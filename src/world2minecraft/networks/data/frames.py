@@ -1,4 +1,4 @@
-"""A sample as a network sees it: a picture of one size, and labels in cells of one size.
+"""Frames: samples at one image size and with labels in cells of one size.
 
 The picture's middle is cropped to the wanted shape and resampled, and the intrinsics follow: a
 point's pixel moves as the picture does. Labels of finer cells are made coarser by SSCNet's rule,

@@ -1,4 +1,4 @@
-"""All data of a run: what it trains on, validates on and is scored on.
+"""Open all data of a run: what it trains on, validates on and is scored on.
 
 The first set is the target: its held-out frames choose the best weights and give the score. The
 others only train.
@@ -30,7 +30,7 @@ class CacheLocation:
     root: Path | None = None  # The user's cache folder where None.
 
     @classmethod
-    def named(cls, text: str) -> "CacheLocation":
+    def parse(cls, text: str) -> "CacheLocation":
         """Return what ``--cache`` says: a folder, ``off``, or nothing for the usual place."""
         return cls(False) if text == "off" else cls(True, Path(text) if text else None)
 
@@ -44,7 +44,7 @@ class RunData:
     target: Frames
     split: Split  # Of the target.
     counts: np.ndarray  # int64 [12], training cells of each class, sets by their weights
-    described: tuple[str, ...]
+    descriptions: tuple[str, ...]
 
 
 def frame_rule(config: RunConfig) -> FrameRule:
@@ -80,7 +80,7 @@ def open_run_data(
         target=parts[0].frames,
         split=splits[0],
         counts=np.round(total * 1e9).astype(np.int64),
-        described=tuple(descriptions),
+        descriptions=tuple(descriptions),
     )
 
 

@@ -1,4 +1,4 @@
-"""Several frames of one scene as one sample: the first with its box and truth, others beside it.
+"""Sequences: several frames of one scene as one sample, in the grid of the first.
 
 The others are looked at in the cells of the first one's box: their poses are carried into it, and
 nothing is resampled. Chosen are frames of the same scene that look into the box, where there are
@@ -33,7 +33,7 @@ class SequenceSampler:
         for row in rows:
             self._rows.setdefault(frames.scenes[row], []).append(row)
 
-    def beside(self, row: int, frame: Frame, count: int, rng: np.random.Generator) -> list[Frame]:
+    def sample(self, row: int, frame: Frame, count: int, rng: np.random.Generator) -> list[Frame]:
         """Return ``count`` frames in the box of ``frame``, which is that of ``row``.
 
         Those that look into the box come first. A scene of fewer frames gives some of them again.

@@ -1,4 +1,4 @@
-"""Which frames of a set train, which choose the best weights, and which are kept for the score.
+"""Split the frames of a set into training, validation and test.
 
 A set's own test split is the score's. Of the scenes that train, a share is held out to validate
 on; scenes are chosen by the digest of their name, so that the same set is always split alike.

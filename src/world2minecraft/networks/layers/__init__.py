@@ -1,1 +1,1 @@
-"""What the networks are made of: backbones, ways to lift pictures into cells, 3D layers, heads."""
+"""Layers: backbones, projection and lifting, attention, 3D blocks and U-Nets, heads."""

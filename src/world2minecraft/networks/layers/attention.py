@@ -1,4 +1,4 @@
-"""Attention among queries, and deformable attention: a query looks at a few places that it picks.
+"""Multi-head attention, and deformable attention on maps and volumes.
 
 Of maps and volumes alike, by ``sampling.sample``, so that no compiled operator is needed. Places
 are shares of each axis, 0 to 1, in the order of the axes.

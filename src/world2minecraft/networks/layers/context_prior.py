@@ -1,4 +1,4 @@
-"""MonoScene's context prior: which regions of the room have to do with which (CVPR 2022, 3.4).
+"""MonoScene's context prior: relations between voxels and mega-voxels (CVPR 2022, 3.4).
 
 The coarsest cells are gathered into mega-voxels of 2x2x2. For each relation a matrix says how far
 each cell has it with each mega-voxel; by that matrix the mega-voxels' features come to the cells.

@@ -1,4 +1,4 @@
-"""Depth of pixels in bins that grow linearly (LID), and a branch that says it."""
+"""Depth in linearly increasing bins (LID), and a branch that predicts it."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Our own 2D backbone: residual stages down to 1/32 of the picture, and MonoScene's decoder back.
+"""Our own 2D backbone: a residual encoder down to 1/32, and MonoScene's decoder.
 
 The papers take EfficientNet-B7, trained on ImageNet, whose taps are 32, 48, 80, 224 and 2560
 channels wide. Size ``full`` has taps of the same widths and so the same decoder; the stages between

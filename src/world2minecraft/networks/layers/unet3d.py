@@ -1,4 +1,4 @@
-"""The 3D U-Net of MonoScene: the grid, its half, its quarter, and back, with its head.
+"""The 3D U-Net of MonoScene, with its context prior and its head.
 
 At 60x60x36 cells of 0.08 m the quarter is what the paper calls 1/16: 15x15x9.
 """

@@ -1,4 +1,4 @@
-"""Monocular occupancy networks: the published ones, on shared parts, in plain PyTorch.
+"""Monocular occupancy networks: the published ones, on shared layers, in plain PyTorch.
 
 A network is one file that holds a class made of ``(size, grid_shape, voxel_m, backbone)`` whose
 ``forward`` turns an ``OccInput`` into an ``OccOutput``, and one line of ``NETWORKS``.

@@ -1,4 +1,4 @@
-"""From a name and a size to a network with its first weights."""
+"""Make a network by its name and size, with its initial weights."""
 
 import torch
 from torch import nn

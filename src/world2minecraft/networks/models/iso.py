@@ -1,4 +1,4 @@
-"""ISO (Yu et al., ECCV 2024): MonoScene whose features know how far away they belong.
+"""ISO (Yu et al., ECCV 2024): MonoScene with features weighted by predicted depth.
 
 A depth branch says for each pixel how likely its surface lies in each of 64 bins; where a cell
 takes its pixel's feature, it takes it by the likelihood of its own depth besides (dual projection).

@@ -1,4 +1,4 @@
-"""MonoScene (Cao and de Charette, CVPR 2022): features laid along rays, told apart in 3D.
+"""MonoScene (Cao and de Charette, CVPR 2022): features lifted along rays, refined in 3D.
 
 A 2D U-Net gives maps at 1, 1/2, 1/4 and 1/8; each cell takes the sum of what lies at its pixel
 (FLoSP); a 3D U-Net with a context prior names the cells.
