@@ -118,7 +118,7 @@ def test_look_at_straight_up_or_down_is_still_a_rotation(up):
 
 
 @pytest.mark.parametrize("up", [1.0, -1.0])
-def test_looking_straight_up_or_down_is_where_tilting_from_ahead_ends(up):
+def test_looking_straight_up_is_the_limit_of_tilting(up):
     """Who looks along +x and tilts to the zenith, or the nadir, ends in the same picture."""
     almost = co.look_at(np.zeros(3), np.array([1e-5, 0, up]))
     straight = co.look_at(np.zeros(3), np.array([0, 0, up]))
@@ -217,7 +217,7 @@ def test_integer_maps_and_metres_agree(grid, blocks_per_metre):
     np.testing.assert_array_equal(np.floor(block), expected)
 
 
-def test_an_l_shaped_room_with_a_chair_in_one_corner_is_not_mirrored():
+def test_an_l_shaped_room_is_not_mirrored():
     """Seen from above, the chair stands to the left of one who looks from the door to the notch.
 
     A mirror image would put it to the right; a turn cannot.
@@ -309,7 +309,7 @@ def test_the_papers_rotation_is_world_to_camera(yaw, pitch):
     np.testing.assert_allclose(co.paper_rotation(yaw, pitch), ours.T, atol=1e-6)
 
 
-def test_the_papers_rotation_used_as_it_says_goes_wrong_with_pitch():
+def test_the_papers_rotation_is_wrong_for_nonzero_pitch():
     """Level it is its own transpose; facing north and looking down, it says up."""
     level = co.paper_rotation(37, 0)
     np.testing.assert_allclose(level, level.T, atol=1e-12)
@@ -348,7 +348,7 @@ def test_a_game_pose_comes_back_from_its_camera(eye, yaw, pitch):
     [(0, 0, (0, 0, 1)), (90, 0, (-1, 0, 0)), (180, 0, (0, 0, -1)), (-90, 0, (1, 0, 0)),
      (0, 90, (0, -1, 0)), (0, -90, (0, 1, 0))],
 )  # fmt: skip
-def test_the_games_yaw_begins_in_the_south_and_goes_with_the_clock(yaw, pitch, ahead):
+def test_game_yaw_is_clockwise_from_south(yaw, pitch, ahead):
     pose = co.camera_to_block_of_game_pose(np.zeros(3), yaw, pitch)
     np.testing.assert_allclose(pose[:3, 2], ahead, atol=1e-12)
 
@@ -382,7 +382,7 @@ def test_any_frame_may_carry_a_camera(camera_to_a, a_to_b, scale):
 
 
 @given(rigid())
-def test_a_camera_that_leans_or_hangs_upside_down_has_a_pitch_that_a_neck_can_take(pose):
+def test_pitch_of_a_rolled_camera_stays_within_90_degrees(pose):
     _, yaw, pitch = co.game_pose_of_camera_to_block(pose)
     assert -180 <= yaw < 180
     assert -90 <= pitch <= 90
@@ -399,7 +399,7 @@ def test_a_focal_length_spans_its_field_of_view(side, fov):
     assert seen == pytest.approx(fov)
 
 
-def test_the_sides_of_a_room_have_the_compass_names_of_their_blocks():
+def test_sides_of_a_room_have_the_compass_names_of_blocks():
     block_of = {"east": (1, 0, 0), "west": (-1, 0, 0), "south": (0, 0, 1), "north": (0, 0, -1)}
     for side, name in co.COMPASS_OF_SIDE.items():
         outward = np.zeros(3)

@@ -10,7 +10,7 @@ def test_a_limit_of_the_system_counts(monkeypatch):
     assert usable_cores() == 3
 
 
-def test_a_system_that_tells_of_no_limit_says_all_cores_and_never_none(monkeypatch):
+def test_without_affinity_all_cores_count_at_least_one(monkeypatch):
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 6)
     assert usable_cores() == 6

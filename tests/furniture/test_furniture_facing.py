@@ -80,7 +80,7 @@ BACK = np.s_[16:18, 22:28, 5:12]
 
 @pytest.mark.parametrize("turns", range(4))
 @pytest.mark.parametrize("boxes", [(SEAT,), (STOOL,), (BACK,), (BACK, SEAT)])
-def test_a_chair_at_a_table_faces_it_where_its_back_does_not_tell(boxes, turns):
+def test_a_chair_without_visible_back_faces_its_table(boxes, turns):
     front = _front(_at_table(*boxes, turns=turns))
     assert front.quarter_turns == turns
     assert front.confidence > 0.5

@@ -84,7 +84,7 @@ def test_there_are_many_designs_of_every_kind():
 
 
 @given(st.floats(0.05, 40.0), st.sampled_from(SCALES))
-def test_a_front_stands_before_its_body_and_not_far_beyond_the_size(depth, scale):
+def test_fronts_stand_before_the_body_and_within_the_size(depth, scale):
     size = block_size(np.array([depth, 1.0, 1.0]) / scale, scale)
     body = body_of(size)
     assert 1 <= body.depth <= size.depth and body.front in (None, body.depth)
@@ -145,7 +145,7 @@ def test_doors_open_to_the_front_alone():
                 assert facing == "east" or "stairs" in state
 
 
-def test_a_curtain_leaves_the_window_free_where_it_is_drawn_aside():
+def test_an_open_curtain_leaves_the_window_free():
     one = template("curtain")
     blocks = one.blocks(block_size(np.array(one.typical_m), 4.0))
     cloth = {block.cell[1] for block in blocks if block.role == "cloth"}

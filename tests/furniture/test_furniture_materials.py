@@ -38,7 +38,7 @@ def test_a_swatch_has_all_the_shapes_that_were_asked_for(kind, shape):
         assert {"full", shape} <= set(kinds()[swatch.kind].blocks[swatch.value])
 
 
-def test_a_state_keeps_its_shape_and_properties_in_another_material():
+def test_with_swatch_keeps_shape_and_properties():
     state = "minecraft:oak_stairs[facing=west,half=bottom]"
     (birch,) = [one for one in list_swatches("wood", frozenset({"stairs"})) if one.value == "birch"]
     shape = shape_of(state, "wood")

@@ -106,7 +106,7 @@ def test_a_top_is_level_and_within_half_a_block_of_its_height(name, scale):
     assert abs(_top(name, scale) - template(name).typical_m[2] * scale) <= 0.5
 
 
-def test_nothing_is_lost_of_what_stands_on_a_table_at_four_blocks_a_metre():
+def test_things_on_a_table_survive_at_four_blocks_per_metre():
     layers = {block.cell[2] for block in blocks_of("dining_table", 4.0, (0.85, 1.5, 0.75))}
     assert layers == {0, 1, 2}
 

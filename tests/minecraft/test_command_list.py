@@ -160,7 +160,7 @@ def test_any_text_is_read_or_refused(tmp_path_factory, text):
 
 
 @pytest.mark.parametrize("name", ["a.mcfunction", "a.zip", "a.nbt"])
-def test_tags_that_are_none_and_letters_that_end_lines_do_no_harm(name, tmp_path):
+def test_invalid_tags_and_line_separators_do_no_harm(name, tmp_path):
     held = {"Tags": 7, "CustomName": "a\nsay hello\r\x0bb\x7f", "Air": float("nan")}
     cat = Entity((0.5, 1.0, 0.5), "minecraft:cat", held)
     volume = volume_of(np.ones((49, 1, 1)), (AIR, "minecraft:stone"), (0, 0, 0), entities=(cat,))

@@ -73,7 +73,7 @@ def test_what_is_not_there_or_unknown_is_refused(tmp_path):
         write_blocks(VOLUME, tmp_path / "a.txt" / "b.schem")
 
 
-def test_the_player_of_a_converted_world_stands_on_the_floor_of_the_middle():
+def test_default_spawn_is_on_the_floor_of_the_middle():
     states = np.zeros((7, 5, 7))
     states[:, 0] = states[:, 4] = 1  # A floor and a ceiling.
     states[3, 1:3, 3] = 1  # On a pillar in the middle a head would be in the ceiling.

@@ -129,7 +129,7 @@ def test_a_name_with_control_characters_is_shown_without_them(tmp_path):
     assert find_games("linux", tmp_path, {})[0].name == "Prism: Red[31m pack"
 
 
-def test_drives_that_are_away_and_folders_of_others_are_passed_over(tmp_path, monkeypatch):
+def test_missing_drives_and_unreadable_folders_are_skipped(tmp_path, monkeypatch):
     is_dir, iterdir = Path.is_dir, Path.iterdir
 
     def guarded(look):

@@ -314,7 +314,7 @@ def test_a_damaged_file_is_refused_by_name(tree, reason, tmp_path):
     assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
 
 
-def test_regions_in_one_another_that_ask_for_too_much_together_are_refused(tmp_path, monkeypatch):
+def test_nested_regions_too_large_together_are_refused(tmp_path, monkeypatch):
     small = VOLUMES["small"]
     write_regions({"a": small, "b": small}, tmp_path / "a.litematic")
     assert len(read_regions(tmp_path / "a.litematic")) == 2

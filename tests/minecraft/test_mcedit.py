@@ -60,7 +60,7 @@ def one(number: int, value: int, tmp_path: Path, **tags) -> str:
 # The table.
 
 
-def test_every_number_of_the_table_is_a_state_that_the_game_knows():
+def test_every_legacy_number_maps_to_a_known_state():
     for number in range(256):
         for value in range(16):
             text, is_known = legacy_state(number, value, {})
@@ -124,7 +124,7 @@ def test_where_it_was_copied_from_is_its_corner(tmp_path):
     assert read(schematic({}, (2, 2, 2)), tmp_path).corner == (0, 0, 0)
 
 
-def test_blocks_of_mods_keep_their_number_or_their_name_and_are_told(tmp_path):
+def test_blocks_of_mods_keep_number_or_name_and_are_counted(tmp_path):
     losses = Losses()
     blocks = {(0, 0, 0): (1, 0), (1, 0, 0): (300, 3), (2, 0, 0): (4095, 0), (3, 0, 0): (301, 0)}
     names = {"Shop:Shelf": Short(300), "minecraft:stone": Short(1), "no name": Short(301)}
@@ -190,7 +190,7 @@ def test_two_chests_side_by_side_are_one(value, along_x, first, tmp_path):
     )
 
 
-def test_fences_panes_and_stairs_take_their_shape_from_their_neighbours(tmp_path):
+def test_connected_blocks_take_shape_from_their_neighbours(tmp_path):
     blocks = {(0, 0, 0): (85, 0), (1, 0, 0): (85, 0), (2, 0, 0): (1, 0), (0, 0, 2): (102, 0)}
     blocks |= {(1, 0, 2): (53, 0), (2, 0, 2): (53, 2)}
     texts = state_texts(read(schematic(blocks, (3, 1, 3)), tmp_path))

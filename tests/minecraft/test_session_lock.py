@@ -38,7 +38,7 @@ def world(tmp_path):
     return tmp_path / "world"
 
 
-def test_the_lock_file_goes_where_there_was_none_and_stays_where_there_was(world):
+def test_a_lock_file_is_removed_only_where_it_was_created(world):
     with session_lock(world):
         assert (world / "session.lock").read_bytes() == SNOWMAN
     assert not (world / "session.lock").exists()

@@ -90,7 +90,7 @@ def test_commands_for_a_game_before_1_20_set_its_four_texts():
     assert '"messages":[{"text":"Küche"' in part
 
 
-def test_lines_of_mixed_parts_become_nbt_of_one_kind_and_come_back():
+def test_lines_of_mixed_parts_round_trip_as_nbt_of_one_kind():
     line = json.dumps(
         ["", {"text": "my ", "bold": True, "extra": ["red", {"text": " room"}]}, 7, None]
     )

@@ -98,7 +98,7 @@ def test_every_state_of_the_game_can_be_asked():
     assert find_unstable_cells(states, ("minecraft:air", *names))
 
 
-def test_builds_that_the_game_itself_saved_keep_their_connections(shared_data):
+def test_builds_saved_by_the_game_keep_their_connections(shared_data):
     """People built these in the game, so every connection in them is the game's own."""
     found = [
         path for end in ("litematic", "nbt", "schem") for path in shared_data.rglob(f"*.{end}")

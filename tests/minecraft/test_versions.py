@@ -19,7 +19,7 @@ def test_versions_grow():
     assert formats == sorted(formats)
 
 
-def test_worlds_for_new_games_are_written_as_the_last_known_layout():
+def test_worlds_for_newer_games_use_the_last_known_layout():
     assert game_version("1.21.4").level_data_version == 4189
     assert game_version("26.3").level_data_version == game_version("1.21.8").data_version
 

@@ -278,7 +278,7 @@ def test_a_full_disk_leaves_the_old_world_and_nothing_else(tmp_path, monkeypatch
     assert [path.name for path in tmp_path.iterdir()] == ["world"]
 
 
-def test_a_build_above_the_sky_is_refused_before_anything_is_written(tmp_path):
+def test_a_build_above_the_height_limit_is_refused_unwritten(tmp_path):
     tall = volume_of(np.ones((1, 300, 1)), (AIR, "minecraft:stone"), (0, 63, 0))
     with pytest.raises(UsageError, match=r"from layer 63 to 362.*-64 to 319; choose fewer"):
         write(tall, tmp_path / "world")
@@ -300,7 +300,7 @@ def test_a_folder_that_is_no_world_is_refused(tmp_path):
         read_world(tmp_path / "missing")
 
 
-def test_a_world_of_bedrock_and_the_folder_around_a_world_are_told_of(world):
+def test_bedrock_worlds_and_parents_of_worlds_are_reported(world):
     with pytest.raises(InputError, match=rf"no level.dat; {world} is one$"):
         read_world(world.parent)
     shutil.rmtree(world / "region")

@@ -160,7 +160,7 @@ def test_processes_make_the_same_bytes(made, plan, tmp_path, engine):
     assert files_of(tmp_path / "data") == files_of(made[0])
 
 
-def test_a_finished_set_is_left_alone_and_a_lost_shard_is_made_again(made, plan, tmp_path):
+def test_a_finished_set_stays_and_a_lost_shard_is_rebuilt(made, plan, tmp_path):
     copy = shutil.copytree(made[0], tmp_path / "copy")
     assert build(copy, plan).made == 0
     (copy / "shards/test/first-000.tar").unlink()
@@ -198,7 +198,7 @@ def stops(folder):
     return [unfinished, no_index, part_of_a_shard, scenes_half_looked_at]
 
 
-def test_what_is_somebody_elses_is_left_alone(made, plan, tmp_path):
+def test_foreign_files_are_left_alone(made, plan, tmp_path):
     copy = shutil.copytree(made[0], tmp_path / "copy")
     (copy / ".git").mkdir()
     (copy / ".git/config").write_text("mine")
@@ -213,7 +213,7 @@ def plan_only(meta):
 
 
 @pytest.mark.parametrize("number", range(4))
-def test_wherever_it_stopped_it_comes_to_the_same(made, plan, tmp_path, number):
+def test_an_interrupted_build_resumes_to_the_same_bytes(made, plan, tmp_path, number):
     copy = shutil.copytree(made[0], tmp_path / "copy")
     stops(copy)[number](copy)
     build(copy, plan)
@@ -290,7 +290,7 @@ def test_another_plan_in_the_same_folder_is_refused(made, worlds):
             build(made[0], plan)
 
 
-def test_a_scene_that_changed_meanwhile_is_told(worlds, plan, tmp_path):
+def test_a_scene_that_changed_meanwhile_is_reported(worlds, plan, tmp_path):
     folder = tmp_path / "data"
     mine = shutil.copytree(worlds, tmp_path / "worlds")
     changing = plan_of(mine)
@@ -353,7 +353,7 @@ def test_screenshots_are_labelled_as_what_they_show(made, worlds, tmp_path):
         assert focal_px == pytest.approx(32 / np.tan(np.radians(35)))
 
 
-def test_too_few_views_are_told_and_refused_of_a_preset(worlds, tmp_path, monkeypatch):
+def test_too_few_views_are_reported_and_refused_for_a_preset(worlds, tmp_path, monkeypatch):
     real = scenes_module.plan_views
     monkeypatch.setattr(
         scenes_module, "plan_views", lambda v, count, *a, **k: real(v, min(count, 2), *a, **k)
@@ -367,7 +367,7 @@ def test_too_few_views_are_told_and_refused_of_a_preset(worlds, tmp_path, monkey
         build(tmp_path / "more", plan_of(worlds, None, preset="8k"))
 
 
-def test_units_are_in_the_order_of_the_set(plan, tmp_path):
+def test_shard_tasks_are_in_the_order_of_the_set(plan, tmp_path):
     names = [unit.name for unit in shard_tasks(tmp_path, plan)]
     assert names == ["shards/train/second-000.tar", "shards/test/first-000.tar"]
 
@@ -418,7 +418,7 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         (["--preset", "9k"], "no preset is named '9k'", 2),
     ],
 )
-def test_wrong_words_are_one_line(tmp_path, monkeypatch, capsys, words, line, code):
+def test_invalid_options_are_one_line(tmp_path, monkeypatch, capsys, words, line, code):
     monkeypatch.chdir(tmp_path)
     assert cli.run(["dataset", "build", "DATA", *words]) == code
     err = capsys.readouterr().err

@@ -144,7 +144,7 @@ def test_a_design_is_one_class_whatever_it_is_made_of():
     assert count_samples(pictures[:2]).result("x").fine_classes == 0
 
 
-def test_rooms_are_told_only_where_every_scene_tells(samples):
+def test_rooms_are_reported_only_where_every_scene_has_them(samples):
     counter = count_samples(samples, rooms={"house_0001": 5, "elsewhere": 9})
     assert counter.result("x").rooms is None
     counter.set_rooms("house_0002", 7)

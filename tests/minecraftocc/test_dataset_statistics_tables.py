@@ -102,7 +102,7 @@ def test_json_holds_every_figure_and_is_json():
     assert told["published"]["sets"][2]["voxels"] == 733_280_256
 
 
-def test_latex_has_a_row_of_eight_cells_for_each_set_and_escapes_names():
+def test_latex_rows_have_eight_cells_and_escaped_names():
     lines = statistics_latex(SMALL).splitlines()
     rows = [line for line in lines if line.endswith(r"\\")]
     assert [len(re.findall(r"(?<!\\)&", row)) for row in rows] == [7] * 5
@@ -122,7 +122,7 @@ def test_a_set_without_fine_classes_rooms_and_cells_says_so():
     assert "distinct cells" not in text
 
 
-def test_many_fine_classes_are_told_from_both_ends():
+def test_many_fine_classes_are_listed_from_both_ends():
     fine = tuple(FineCount(f"minecraft:b{n:03d}", 9_000 - n, 9, 9) for n in range(50))
     text = statistics_text(replace(SMALL, fine=fine))
     assert "minecraft:b007" in text and "minecraft:b042" in text
@@ -201,7 +201,7 @@ def test_processes_count_what_one_counts(store, monkeypatch):
     assert store_statistics(store[0], jobs=2) == store_statistics(store[0])
 
 
-def test_what_is_no_store_and_no_split_is_told(store, tmp_path):
+def test_a_missing_store_or_split_is_reported(store, tmp_path):
     with pytest.raises(InputError, match="is no data set"):
         store_statistics(tmp_path / "nothing")
     with pytest.raises(UsageError, match="the splits of .* are test, train, not 'val'"):

@@ -54,7 +54,7 @@ def header(tmp_path, runs=b"these are no runs of labels"):
     return path
 
 
-def test_of_a_bin_the_head_alone_is_read(tmp_path):
+def test_only_the_head_of_a_bin_is_read(tmp_path):
     place = read_grid_place(header(tmp_path))
     assert place.origin_m == pytest.approx(PLACE.origin_m, abs=1e-6)
     assert place.camera_to_world == pytest.approx(POSE, abs=1e-6)

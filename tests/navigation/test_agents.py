@@ -5,7 +5,7 @@ import json
 import pytest
 from open_field import OpenField, an_episode
 from tests.external_models.scripted_server import MEGABYTE, Answer, scripted
-from tests.external_models.test_chat import model_at
+from tests.external_models.test_chat_client import model_at
 
 from world2minecraft.core.errors import BudgetError, ServerError, UsageError
 from world2minecraft.external_models.chat_costs import Ledger

@@ -6,7 +6,7 @@ import time
 import pytest
 from tests.external_models.scripted_server import Answer as Wire
 from tests.external_models.scripted_server import scripted
-from tests.external_models.test_chat import model_at
+from tests.external_models.test_chat_client import model_at
 from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft.core.errors import InputError, ServerError, UsageError

@@ -13,7 +13,7 @@ from tests.external_models.scripted_server import NO_SCHEMA, scripted
 from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft import cli
-from world2minecraft.cli.vln.live_view import LinesLive, half_blocks, safe
+from world2minecraft.cli.vln.live_view import LineView, half_blocks, plain_text
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.records import read_episodes, write_items
 from world2minecraft.navigation.running.item_evaluation import select_items
@@ -230,10 +230,10 @@ def test_items_are_picked(tmp_path):
 
 def test_the_terminal_shows_no_commands_of_others():
     stream = io.StringIO()
-    shown = LinesLive(stream)
+    shown = LineView(stream)
     shown._say("a\x1b[2Jb\nc\u202ed")
     assert stream.getvalue() == "a [2Jb c d\n"
-    assert safe("  12  LEFT") == "  12  LEFT"
+    assert plain_text("  12  LEFT") == "  12  LEFT"
     blocks = half_blocks(np.full((48, 64, 3), 200, np.uint8))
     assert blocks.plain.count("\u2580") == 64 * 24
 

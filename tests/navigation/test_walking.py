@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from open_field import OpenField, an_episode
 from tests.external_models.scripted_server import scripted
-from tests.external_models.test_chat import model_at
+from tests.external_models.test_chat_client import model_at
 
 from world2minecraft.core.errors import InputError, OutputError
 from world2minecraft.external_models.chat_messages import Picture

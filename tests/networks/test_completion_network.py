@@ -62,7 +62,7 @@ def test_every_weight_learns():
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in network.parameters())
 
 
-def test_the_loss_is_least_where_the_truth_is_said_and_heeds_no_unknown_cell():
+def test_the_loss_is_least_at_the_truth_and_ignores_unknown():
     truth = torch.randint(0, 12, (1, 8, 8, 8))
     right = torch.nn.functional.one_hot(truth, 12).permute(0, 4, 1, 2, 3) * 40.0
     said = completion_loss(right, truth, truth > 0)
@@ -108,8 +108,9 @@ def test_the_same_run_twice_gives_the_same_weights(pool):
 
 def test_the_rate_warms_up_stays_and_falls(pool):
     trainer = Trainer(replace(RUN, steps=1000), pool)
-    assert trainer.learning_rate_at(0) < trainer.learning_rate_at(4) == trainer.learning_rate_at(500) == RUN.rate
-    assert trainer.learning_rate_at(999) < 0.02 * RUN.rate
+    first, warm, middle, last = (trainer.learning_rate_at(step) for step in (0, 4, 500, 999))
+    assert first < warm == middle == RUN.rate
+    assert last < 0.02 * RUN.rate
 
 
 def test_a_folder_without_samples_is_refused(tmp_path):
@@ -117,7 +118,7 @@ def test_a_folder_without_samples_is_refused(tmp_path):
         SamplePool(tmp_path, range(100))
 
 
-def test_onnx_says_what_torch_says(pool, tmp_path):
+def test_onnx_predicts_what_torch_predicts(pool, tmp_path):
     trainer = Trainer(RUN, pool)
     trainer.train(10)
     path = tmp_path / "net.onnx"

@@ -60,7 +60,7 @@ def test_what_is_written_is_read(samples, tmp_path):
         assert np.array_equal(channels(one), channels(other))
 
 
-def test_a_file_that_is_no_samples_is_told(tmp_path):
+def test_a_file_without_samples_is_reported(tmp_path):
     path = tmp_path / "1.npz"
     path.write_bytes(b"no archive")
     with pytest.raises(DamagedFileError, match="is not a readable .npz"):

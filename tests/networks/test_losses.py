@@ -98,7 +98,7 @@ def test_depth(seed):
     assert float(found) == pytest.approx(reference.depth(logits, depth_m), rel=1e-4)
 
 
-def test_a_pixel_of_the_branch_says_what_is_nearest():
+def test_pooled_depth_is_the_nearest_of_its_pixels():
     depth_m = torch.tensor([[[0.0, 3.0, 0.0, 0.0], [2.0, 9.0, 0.0, 0.0]]])
     assert min_pool_depth(depth_m, 2).tolist() == [[[2.0, 0.0]]]
 

@@ -15,7 +15,7 @@ CASES = [(name, name in USING_DEPTH) for name in NETWORKS.names()] + [("iso", Fa
 
 
 @pytest.mark.parametrize(("name", "wants_depth"), CASES)
-def test_onnx_says_the_same(name, wants_depth, tmp_path):
+def test_onnx_predicts_the_same(name, wants_depth, tmp_path):
     inputs, _ = room_batch()
     network = make_network(name, "tiny", grid_shape=SHAPE, voxel_m=VOXEL_M, seed=1)
     size = inputs.image.shape[:1:-1]
@@ -42,7 +42,7 @@ def test_onnx_says_the_same(name, wants_depth, tmp_path):
         assert np.abs(found - said[n]).max() < MAX_DIFFERENCE
 
 
-def test_a_file_that_would_say_something_else_is_not_written(tmp_path):
+def test_a_file_that_predicts_something_else_is_not_written(tmp_path):
     class Fickle(torch.nn.Module):
         """Says something else each time, which no file can."""
 

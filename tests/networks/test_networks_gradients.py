@@ -19,7 +19,7 @@ STEPS = st.tuples(*[st.integers(1, 3)] * 3)
 
 @settings(max_examples=40, deadline=None)
 @given(SIDES, STEPS)
-def test_families_joined_are_the_grid(sides, steps):
+def test_merged_phases_are_the_grid(sides, steps):
     cells = torch.arange(2 * 3 * torch.tensor(sides).prod()).float().reshape(2, 3, *sides)
     apart = split_phases(cells, steps)
     assert torch.equal(merge_phases(apart, steps, sides), cells)

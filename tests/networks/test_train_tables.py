@@ -48,7 +48,7 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
     )
 
 
-def test_the_average_box_says_what_most_training_frames_hold():
+def test_the_average_box_is_the_majority_of_training_frames():
     frames = [np.zeros((2, 1, 1), np.uint8) for _ in range(4)]
     for frame in frames[:3]:
         frame[0] = 3
@@ -60,7 +60,7 @@ def test_the_average_box_says_what_most_training_frames_hold():
 
 @given(arrays(np.uint8, (5, 3, 2, 2), elements=st.sampled_from([0, 1, 4, 255])),
        arrays(np.uint8, (3, 2, 2), elements=st.sampled_from([0, 1, 4])))  # fmt: skip
-def test_the_iou_of_saying_one_box_of_all_frames_is_that_of_their_counts(frames, said):
+def test_the_iou_of_a_constant_box_is_that_of_its_counts(frames, said):
     expected = sum((count_occupancy(said, one) for one in frames), OccupancyCounts()).iou
     assert train_table.iou_of(train_table.class_times(frames), said) == pytest.approx(expected)
 
@@ -111,7 +111,7 @@ def test_the_verdict_follows_the_interval(joint, expected):
     assert float(low_high.split()[0]) == pytest.approx(mean, abs=0.011)
 
 
-def test_a_figure_of_drawn_scenes_is_the_scene_s_own_where_all_are_alike():
+def test_resampled_scenes_that_are_alike_give_the_same_figure():
     runs = [{"a": counts(3, 1), "b": counts(3, 1)}]
     expected = OccupancyCounts(counts(3, 1)).miou
     assert train_joint.drawn_figures(runs, "miou", 20) == pytest.approx(np.full(20, expected))

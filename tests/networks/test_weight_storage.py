@@ -79,7 +79,7 @@ def _slowly_rounded(model):
     return result
 
 
-def test_bytes_say_what_a_network_of_rounded_weights_says(traced):
+def test_int8_weights_predict_as_rounded_weights_do(traced):
     model, example = traced
     found = _run_onnx(compress_weights(model, "int8").SerializeToString(), example)
     wanted = _run_onnx(_slowly_rounded(model).SerializeToString(), example)

@@ -25,7 +25,9 @@ SOURCES = Registry(
         "arkitscenes": "world2minecraft.capture.readers.apps.arkitscenes:ARKitScenesSource",
         "scanner_app": "world2minecraft.capture.readers.apps.scanner_app:ScannerAppSource",
         "scannet_sens": "world2minecraft.capture.readers.datasets.scannet_sens:ScanNetSensSource",
-        "scannet_folder": "world2minecraft.capture.readers.datasets.scannet_folder:ScanNetFolderSource",
+        "scannet_folder": (
+            "world2minecraft.capture.readers.datasets.scannet_folder:ScanNetFolderSource"
+        ),
         "scannetpp": "world2minecraft.capture.readers.datasets.scannetpp:ScanNetPpSource",
         "tum": "world2minecraft.capture.readers.datasets.tum:TumSource",
         "replica": "world2minecraft.capture.readers.datasets.replica:ReplicaSource",
@@ -137,8 +139,10 @@ def _count_phrase(count: int, kind: str) -> str:
     """Return how many there are, in words.
 
     Example:
-        >>> [_counted(count, "file without suffix") for count in (1, 2)] + [_count_phrase(2, ".png")]
-        ['1 file without suffix', '2 files without suffix', '2 .png']
+        >>> [_count_phrase(count, "file without suffix") for count in (1, 2)]
+        ['1 file without suffix', '2 files without suffix']
+        >>> _count_phrase(2, ".png")
+        '2 .png'
     """
     first, *rest = kind.split()
     return " ".join([str(count), first + "s" * (count > 1 and not first.startswith(".")), *rest])

@@ -50,7 +50,7 @@ def summary_to_json(summary: "CaptureSummary") -> dict[str, Any]:
     data = {
         field.name: getattr(summary, field.name)
         for field in dataclasses.fields(summary)
-        if field.name not in ("survey", "route", "doubts", "folder")
+        if field.name not in ("survey", "route", "diagnostics", "folder")
     }
     route = {**dataclasses.asdict(summary.route), "about": summary.route.about}
     diagnostics = [dataclasses.asdict(diagnostic) for diagnostic in summary.diagnostics]

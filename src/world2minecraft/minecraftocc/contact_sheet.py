@@ -49,16 +49,16 @@ def make_contact_sheet(
     return np.asarray(page)
 
 
-def spread_indices(count: int, most: int) -> list[int]:
-    """Return up to ``most`` numbers below ``count``, evenly spread.
+def spread_indices(count: int, limit: int) -> list[int]:
+    """Return up to ``limit`` numbers below ``count``, evenly spread.
 
     Example:
         >>> spread_indices(10, 4)
         [0, 3, 6, 9]
     """
-    if count <= most:
+    if count <= limit:
         return list(range(count))
-    return [int(n) for n in np.round(np.linspace(0, count - 1, most))]
+    return [int(n) for n in np.round(np.linspace(0, count - 1, limit))]
 
 
 def draw_views(

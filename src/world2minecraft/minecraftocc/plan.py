@@ -18,9 +18,8 @@ from world2minecraft.minecraftocc.tours import nyu_camera
 
 TEST_SHARE = 0.2  # Of images and of scenes, where no preset says it.
 MAX_IMAGES, MAX_SCENES = 10_000_000, 100_000
-MAX_SCENE_NAME = (
-    46  # Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
-)
+# Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
+MAX_SCENE_NAME = 46
 
 
 @dataclass(frozen=True)

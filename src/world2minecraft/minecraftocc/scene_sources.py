@@ -37,9 +37,8 @@ from world2minecraft.minecraftocc.block_map.parser import MAPS
 from world2minecraft.minecraftocc.labels.fine_classes import map_fine_classes
 
 SECTION = 16
-NEAR_CHUNKS = (
-    6  # Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
-)
+# Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.
+NEAR_CHUNKS = 6
 MAX_CHUNKS = 6144  # About half a minute of reading; six regions.
 MAX_SIDE = 320  # Blocks; what is larger is cut around the middle of what was built.
 MARGIN = 2
@@ -198,8 +197,8 @@ def _designs_of_run(
     volume: BlockVolume, templates: Mapping[int, str]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     names = ("", *sorted(set(templates.values())))
-    most = max([int(volume.instance.max(initial=0)), *templates])
-    table = np.zeros(most + 1, np.uint16)
+    highest = max([int(volume.instance.max(initial=0)), *templates])
+    table = np.zeros(highest + 1, np.uint16)
     for number, template in templates.items():
         table[number] = names.index(template)
     return np.where(volume.states > 0, table[volume.instance], 0).astype(np.uint16), names
@@ -352,13 +351,13 @@ def classify_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
         return volume
     classified = classify(volume, rules)
     semantic = np.where(unlabelled, classified.semantic, volume.semantic)
-    most = int(volume.instance.max(initial=0))
+    highest = int(volume.instance.max(initial=0))
     new = (
         unlabelled
         & (classified.instance > 0)
-        & (classified.instance.astype(np.int64) + most <= 0xFFFF)
+        & (classified.instance.astype(np.int64) + highest <= 0xFFFF)
     )
-    instance = np.where(new, classified.instance + np.uint16(most), volume.instance)
+    instance = np.where(new, classified.instance + np.uint16(highest), volume.instance)
     return replace(volume, semantic=semantic, instance=instance.astype(np.uint16))
 
 

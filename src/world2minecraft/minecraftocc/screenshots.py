@@ -217,8 +217,8 @@ def _regex_parts(tree: Any, inside: bool = False) -> Iterator[tuple[str, bool, b
     for code, value in tree:
         name = str(code)
         if name.endswith("_REPEAT"):
-            _, most, body = value
-            is_many = int(most) > 1
+            _, max_repeats, body = value
+            is_many = int(max_repeats) > 1
             if is_many:
                 yield "REPEAT", inside, _matches_anything(body)
             yield from _regex_parts(body, inside or is_many)

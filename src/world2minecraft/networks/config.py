@@ -70,15 +70,13 @@ class RunConfig:
     network: str
     data: tuple[DataSource, ...]
     size: str = "small"
-    backbone: str = (
-        ""  # A model of transformers for pictures, hf:ID; the network's own where empty.
-    )
+    # A model of transformers for pictures, hf:ID; the network's own where empty.
+    backbone: str = ""
     grid: str = "0.16"
     image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
     depth: str = "taught"  # To a depth branch; "given" shows it to the network too.
-    frames: int = (
-        0  # Of a scene, at most, in one sample; 0 is the network's own: ``DEFAULT_FRAMES``.
-    )
+    # Of a scene, at most, in one sample; 0 is the network's own: ``DEFAULT_FRAMES``.
+    frames: int = 0
     steps: int = 2000  # The benchmark's.
     batch: int = 4  # MonoScene's.
     learning_rate: float = 5e-4  # A guess for small networks from nothing; MonoScene's is 1e-4.

@@ -81,8 +81,8 @@ def quantize_weights(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndar
         ([[50, -127], [0, 0]], [0.01, 1.0])
     """
     others = tuple(n for n in range(values.ndim) if n != axis % values.ndim)
-    most = np.abs(values).max(axis=others)
-    scales = np.where(most > 0, most / np.float32(MOST), np.float32(1)).astype(np.float32)
+    largest = np.abs(values).max(axis=others)
+    scales = np.where(largest > 0, largest / np.float32(MOST), np.float32(1)).astype(np.float32)
     whole = np.rint(values / np.expand_dims(scales, others))
     return np.clip(whole, -MOST, MOST).astype(np.int8), scales
 

@@ -80,13 +80,13 @@ def align_frames(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice 
         return None, (
             f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
         )
-    least = steps.min(axis=0)
-    cells = np.round(steps - least).astype(int)
+    low = steps.min(axis=0)
+    cells = np.round(steps - low).astype(int)
     grids = [place[0] for place in places if place is not None]
     shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
     if np.prod(shape, dtype=float) > MAX_CELLS:
         return None, f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
-    return Lattice(grids, cells, shape, corners[0] + least * voxel_m), ""
+    return Lattice(grids, cells, shape, corners[0] + low * voxel_m), ""
 
 
 def _align_to_axes(

@@ -133,9 +133,11 @@ def check_folder(config: RunConfig, folder: Path) -> None:
     if same == config:
         return
     names = [name for name in vars(config) if getattr(same, name) != getattr(config, name)]
+    texts = [
+        [_describe_setting(getattr(one, name)) for one in (existing, config)] for name in names
+    ]
     differences = ", ".join(
-        f"{name} is {_describe_setting(getattr(existing, name))}, not {_describe_setting(getattr(config, name))}"
-        for name in names
+        f"{name} is {held}, not {wanted}" for name, (held, wanted) in zip(names, texts, strict=True)
     )
     raise ConflictError(
         folder, f"holds a run of other settings ({differences}); choose another --out"

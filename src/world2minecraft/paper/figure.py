@@ -53,9 +53,6 @@ HEADS = ("Reality", "Minecraft", "Prediction", "Construction")
 MATTER = "minecraft:white_concrete"  # Takes the light; its colour comes from the class.
 
 
-# What an agent saw on its walk: the views that it kept, or the same ones drawn again.
-
-
 def views_of_walk(run: Path, walk: Path, most: int) -> list[np.ndarray]:
     """Return what an agent saw, uint8 [H, W, 3] each, the first and the last among it.
 

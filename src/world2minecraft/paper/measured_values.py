@@ -1,4 +1,7 @@
-"""What stands in our rows of a table: figures of our pages, of the program, of the user."""
+"""The values of our rows of a table: figures of our pages, of the program, of the user.
+
+What the program itself knows, such as the number of classes, no page has to state again.
+"""
 
 import math
 from collections.abc import Callable
@@ -17,7 +20,6 @@ from world2minecraft.navigation.exporters.options import ExportOptions
 from world2minecraft.navigation.exporters.recipes import render_recipe
 from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable, Results, measured
 
-# Figures that the program itself knows, so that no page has to say them again.
 ROWS = 1151  # Of the paper's Combined, Next-View; a recipe is written for some number of rows.
 SHOWN = 3  # Blocks and words that a cell names.
 Rows = dict[str, Ours]

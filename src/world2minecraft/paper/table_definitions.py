@@ -1,4 +1,8 @@
-"""Tables, our figures and a user's results, from YAML. A user's file is checked like any input."""
+"""Read tables of the paper, our figures and a user's results from YAML.
+
+A ``PaperTable`` holds a table as printed, and what stands beside it. A user's file is checked like
+any input.
+"""
 
 import math
 from collections.abc import Mapping
@@ -15,9 +19,6 @@ from world2minecraft.core.files import read_bytes
 MAX_BYTES = 1 << 20
 MAX_CELL, MAX_TEXT = 80, 400  # Letters.
 _FIELDS = ("cells", "data", "command", "page", "line", "label")
-
-
-# A table of the paper as printed, and what stands beside it.
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,9 @@
-"""A table of the paper as text for the terminal, Markdown, LaTeX or JSON values."""
+"""Write a table of the paper with ours: text for the terminal, Markdown, LaTeX or JSON values.
+
+The table is a grid of text with marks in cells and a line for each mark below it: ``[1]`` marks
+what in the paper contradicts itself, ``[A]`` what ours was measured on and how, ``[a]`` what we
+lack, with the command that fills the cell.
+"""
 
 import textwrap
 from collections.abc import Iterator, Mapping
@@ -13,12 +18,6 @@ from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable
 CELL_WIDTH = 36  # Longer cells are broken into lines.
 PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.
 GAP = "  "  # Between columns.
-
-
-# A table and ours as one grid of text, with marks in cells and a line for each mark below it.
-#
-# ``[1]`` marks what in the paper contradicts itself, ``[A]`` what ours was measured on and how,
-# ``[a]`` what we lack, with the command that fills the cell.
 
 
 @dataclass

@@ -204,7 +204,7 @@ def test_doors_are_opened_on_the_way_and_iron_ones_are_not():
     assert open_door("minecraft:stone") == "minecraft:stone"
 
 
-def test_a_gap_of_one_block_lets_a_player_of_the_games_size_through_and_no_larger():
+def test_a_one_block_gap_admits_scale_one_and_no_larger():
     states = hall(9, 9, 7)
     states[4, 1:] = STONE
     states[4, 1:, 3] = 0

@@ -114,7 +114,7 @@ def test_a_second_run_goes_on_where_the_first_was_stopped(tmp_path):
         assert not note.exists()
 
 
-def test_a_note_of_another_plan_or_a_damaged_one_counts_for_nothing(tmp_path):
+def test_notes_of_other_plans_or_damaged_notes_are_ignored(tmp_path):
     note = tmp_path / "rcon.json"
     for held in ('{"server": "x", "plan": "y", "done": 90}', "{", "[]"):
         note.write_text(held)
@@ -146,7 +146,7 @@ def test_chunks_that_come_late_are_waited_for():
         assert console.blocks == expected(volume)
 
 
-def test_a_server_before_1_19_4_is_asked_another_way_whether_chunks_are_loaded():
+def test_chunk_loading_is_checked_on_servers_before_1_19_4():
     volume = random_volume(2)
     with Console(is_old=True) as console:
         build(console, volume)
@@ -226,7 +226,7 @@ def test_nobody_there_is_one_line():
         builder.run()
 
 
-def test_a_server_that_goes_away_for_good_is_told_after_some_tries():
+def test_a_lost_server_is_reported_after_some_retries():
     waits = []
 
     def wait(seconds):

@@ -38,7 +38,7 @@ def test_turned_millimetres_beyond_eight_metres_are_read():
     assert decode_depth(turned.astype(np.uint16), "nyu")[0, 0] == pytest.approx(9.5)
 
 
-def test_true_eighths_of_millimetres_are_told_apart():
+def test_true_eighths_of_millimetres_are_recognised():
     depth_m = np.random.default_rng(1).uniform(0.3, 8.1, (40, 50))
     raw = np.round(depth_m * 8000).astype(np.uint16)
     assert np.abs(decode_depth(raw, "nyu") - depth_m).max() < 1e-4

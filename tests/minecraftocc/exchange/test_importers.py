@@ -38,7 +38,7 @@ def back(folders, name):
     return found, found[found.keys()[0]]
 
 
-def test_formats_are_told_apart(folders):
+def test_formats_are_detected(folders):
     assert open_occupancy(folders / "nyu").format == "nyu"
     assert open_occupancy(folders / "nyu" / "NYUtrain").format == "nyu"
     assert open_occupancy(folders / "embodied").format == "embodied"
@@ -92,7 +92,7 @@ def test_masks_are_made_of_the_depth(made, folders):
     assert found.facts["hits"] == "first seen, by depth"
 
 
-def test_without_depth_the_masks_are_empty_and_that_is_said(folders, tmp_path):
+def test_without_depth_the_masks_are_empty_with_a_note(folders, tmp_path):
     shutil.copytree(folders / "nyu", tmp_path / "nyu")
     (tmp_path / "nyu" / "NYUtrain" / f"{KEY}.png").unlink()
     sample = open_occupancy(tmp_path / "nyu")[KEY]

@@ -220,7 +220,7 @@ def test_a_short_bin_has_its_head_alone(made, tmp_path):
     assert (tmp_path / "NYUtrain" / f"{KEY}.bin").stat().st_size == 76
 
 
-def test_wrong_asks_are_refused(made, tmp_path):
+def test_invalid_requests_are_refused(made, tmp_path):
     with pytest.raises(UnknownNameError, match="did you mean 'nyu'"):
         export_samples([made], "nyuu", tmp_path)
     with pytest.raises(UsageError, match="no sample to export in test"):

@@ -227,7 +227,7 @@ def test_a_scene_takes_its_frames_evenly(made, tmp_path):
     assert [path[-9:-4] for path in package["valid_img_paths"]] == ["00000", "00003"]
 
 
-def test_a_scene_that_the_official_operation_cannot_hold_is_named(made, tmp_path, monkeypatch):
+def test_a_scene_too_large_for_the_official_operation_is_named(made, tmp_path, monkeypatch):
     monkeypatch.setattr(
         "world2minecraft.minecraftocc.exporters.embodied.OFFICIAL_CELLS", (60, 60, 36)
     )

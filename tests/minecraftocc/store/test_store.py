@@ -93,7 +93,7 @@ def test_a_folder_with_a_data_set_is_left_alone(made):
         write_store(made, samples())
 
 
-def test_half_a_data_set_is_told_from_a_whole_one(tmp_path):
+def test_an_unfinished_data_set_is_recognised(tmp_path):
     def stopped():
         yield from samples(2)
         raise KeyboardInterrupt
@@ -224,7 +224,7 @@ def test_an_index_of_other_samples_is_found(copied, tmp_path):
         (lambda d: shutil.rmtree(d / "shards"), "cannot be read: No such file"),
     ],
 )
-def test_a_store_that_cannot_be_read_is_told_in_one_line(copied, change, text):
+def test_an_unreadable_store_is_reported_in_one_line(copied, change, text):
     change(copied)
     with pytest.raises(InputError, match=text):
         list(open_store(copied).samples())
@@ -247,7 +247,7 @@ def edit(path, **changes):
         ("key", "other-a-000001", "holds no sample other-a-000001"),
     ],
 )
-def test_rows_that_lie_are_refused(copied, column, value, text):
+def test_inconsistent_rows_are_refused(copied, column, value, text):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -261,7 +261,7 @@ def test_rows_that_lie_are_refused(copied, column, value, text):
         next(open_store(copied).samples())
 
 
-def test_an_index_without_a_column_or_with_too_many_rows_is_refused(copied, monkeypatch):
+def test_an_index_with_missing_columns_or_extra_rows_is_refused(copied, monkeypatch):
     import pyarrow.parquet as pq
 
     from world2minecraft.minecraftocc.store import index

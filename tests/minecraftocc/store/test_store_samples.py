@@ -168,7 +168,7 @@ def broken(**changes):
         ({"key": None, "camera": []}, "is no sample"),
     ],
 )
-def test_a_json_that_lies_is_told_in_one_line(changes, text):
+def test_an_inconsistent_json_is_reported_in_one_line(changes, text):
     with pytest.raises(DamagedFileError, match=text):
         unpack_sample(broken(**changes), TABLE, "here")
 
@@ -185,7 +185,7 @@ def test_fine_numbers_beyond_the_table_are_refused():
         unpack_sample(members, FineTable((AIR,)), "here")
 
 
-def test_arrays_that_say_they_are_huge_are_refused():
+def test_arrays_with_a_huge_header_are_refused():
     members = pack_sample(sample(1), TABLE, SampleFiles())
     huge = dict.fromkeys(("labels", "fine", "instance", "hits", "in_frustum", "free"))
     members["occ.npz"] = npz_bytes({name: np.zeros(10**6, np.uint8) for name in huge})
@@ -193,7 +193,7 @@ def test_arrays_that_say_they_are_huge_are_refused():
         unpack_sample(members, TABLE, "here")
 
 
-def test_a_picture_that_says_it_is_huge_is_not_decoded():
+def test_an_image_with_a_huge_header_is_not_decoded():
     header = struct.pack(">IIBBBBB", 60_000, 60_000, 16, 0, 0, 0, 0)
     chunk = b"IHDR" + header
     png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + chunk
@@ -215,7 +215,7 @@ def test_a_picture_of_another_kind_is_refused():
         (("jpg", 0), "a quality is 1 to 100, not 0"),
     ],
 )
-def test_choices_that_are_none(words, text):
+def test_unknown_choices_are_refused(words, text):
     with pytest.raises(UsageError, match=text):
         SampleFiles(*words)
 

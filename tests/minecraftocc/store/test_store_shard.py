@@ -70,7 +70,7 @@ def test_what_a_crash_of_the_machine_leaves_behind_is_cut_off(tmp_path, whole, t
         (tmp_path / "a.tar").unlink()
 
 
-def test_a_sample_whose_data_did_not_reach_the_disk_is_made_again(tmp_path, whole):
+def test_a_sample_that_did_not_reach_the_disk_is_made_again(tmp_path, whole):
     damaged = bytearray(whole[: ends()[2]])
     damaged[ends()[1] + 600] ^= 0xFF  # Within the second sample's picture.
     (tmp_path / "a.tar.part").write_bytes(damaged)
@@ -78,7 +78,7 @@ def test_a_sample_whose_data_did_not_reach_the_disk_is_made_again(tmp_path, whol
     assert (tmp_path / "a.tar").read_bytes() == whole
 
 
-def test_a_part_of_other_samples_is_written_anew(tmp_path, whole):
+def test_a_part_of_other_samples_is_rewritten(tmp_path, whole):
     with ShardWriter(tmp_path / "a.tar", ["x-a-000001"]) as shard:
         shard.append(pack_sample(sample(9), TABLE, SampleFiles()))
     assert write(tmp_path / "a.tar") == 0

@@ -213,7 +213,7 @@ def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
 
     monkeypatch.setattr(made_scenes, "_make_room", make)
     monkeypatch.setattr(made_scenes, "open_scene", lambda out: out)
-    monkeypatch.setattr(made_scenes, "Tourist", lambda scene: Guide())
+    monkeypatch.setattr(made_scenes, "TourPlanner", lambda scene: Guide())
     assert [one.name for one in made_scenes.make_scenes(tmp_path, 1, 0, 2)] == ["bed_01_s2"]
     assert [one.name for one in made_scenes.make_scenes(tmp_path, 0, 0)] == []
     assert made == [("bed", 2_001), ("bed", 1_002_001), ("bed", 2_002_001)]

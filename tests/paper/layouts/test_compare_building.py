@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.cli.compare.build import chosen_scenes, folder_names
+from world2minecraft.cli.compare.build import folder_names, select_scenes
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement
@@ -99,11 +99,11 @@ def test_a_run_has_its_world_already():
 
 def test_scenes_are_chosen_by_name_or_count():
     found = [scene(BED, name=f"Bedroom-{n}") for n in range(3)]
-    assert [one.name for one in chosen_scenes(found, [], None)] == ["Bedroom-0"]
-    assert len(chosen_scenes(found, [], 2)) == 2
-    assert [one.name for one in chosen_scenes(found, ["m-2"], None)] == ["Bedroom-2"]
+    assert [one.name for one in select_scenes(found, [], None)] == ["Bedroom-0"]
+    assert len(select_scenes(found, [], 2)) == 2
+    assert [one.name for one in select_scenes(found, ["m-2"], None)] == ["Bedroom-2"]
     with pytest.raises(UnknownNameError, match="no scene is named 'Bedrom-1'; did you mean"):
-        chosen_scenes(found, ["Bedrom-1"], None)
+        select_scenes(found, ["Bedrom-1"], None)
 
 
 def test_names_of_others_become_plain_folders():

@@ -101,7 +101,7 @@ def test_what_labels_mean_decides_what_is_kept(tmp_path):
 
 
 def test_the_oldest_go_when_too_much_is_kept(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept, "MOST_BYTES", 2_000)
+    monkeypatch.setattr(kept, "MAX_BYTES", 2_000)
     shares = np.random.default_rng(0).integers(0, 256, (4, 4, 12), dtype=np.uint8)
     for number in range(12):
         key = kept.key_of(np.full((2, 2, 3), number, np.uint8))

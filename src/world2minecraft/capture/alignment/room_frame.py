@@ -275,7 +275,8 @@ def _check_size(size: np.ndarray) -> None:
         if not least <= length <= maximum:
             raise ImplausibleRoomError(
                 f"the room would be {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m; {least:g} to "
-                f"{maximum:g} m {word} is plausible: check the depth unit and that poses are in metres"
+                f"{maximum:g} m {word} is plausible: check the depth unit and that poses are in "
+                "metres"
             )
 
 

@@ -325,8 +325,8 @@ def _check_video(path: AnyPath, analysis: VideoAnalysis) -> None:
     if analysis.stated_s > analysis.duration_s + 2.0 + 0.1 * analysis.stated_s:
         raise DamagedFileError(
             path,
-            f"is cut short: {analysis.duration_s:.1f} s of its {analysis.stated_s:.1f} s are there; "
-            "copy it again",
+            f"is cut short: {analysis.duration_s:.1f} s of its {analysis.stated_s:.1f} s are "
+            "there; copy it again",
         )
 
 
@@ -371,8 +371,8 @@ def _focal_35mm(metadata: dict[str, Any]) -> float | None:
 
 def _notes(analysis: VideoAnalysis, frames: tuple[FrameFiles, ...]) -> tuple[str, ...]:
     notes = [
-        f"{len(frames)} of the video's {len(analysis.times):,} pictures are taken: sharp ones, well "
-        f"apart ({analysis.duration_s:.0f} s, {analysis.size[0]}x{analysis.size[1]})"
+        f"{len(frames)} of the video's {len(analysis.times):,} pictures are taken: sharp "
+        f"ones, well apart ({analysis.duration_s:.0f} s, {analysis.size[0]}x{analysis.size[1]})"
     ]
     if analysis.quarter_turns:
         notes.append("the pictures are turned upright, as the video says")

@@ -82,8 +82,8 @@ def too_few_error(placed: int, given: int) -> CaptureError:
     """Return the error for photos of which only a few could be placed."""
     return CaptureError(
         PHOTOS,
-        f"only {placed} of {given} could be placed, too few to trust; {CAPTURE_ADVICE}, and stand back so "
-        "that furniture and corners are seen",
+        f"only {placed} of {given} could be placed, too few to trust; {CAPTURE_ADVICE}, "
+        "and stand back so that furniture and corners are seen",
     )
 
 

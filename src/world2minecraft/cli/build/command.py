@@ -106,7 +106,7 @@ def run(
         UsageError: nothing says where to build, or an option needs another.
     """
     check_targets(out, into, rcon, at, turns)
-    check_how(into, rcon, air, new_chunks)
+    check_destination(into, rcon, air, new_chunks)
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
@@ -177,7 +177,7 @@ def check_targets(
         )
 
 
-def check_how(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -> None:
+def check_destination(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -> None:
     """Check, before any work, the options that say how a world or a server is built into.
 
     Raises:

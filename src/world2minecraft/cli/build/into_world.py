@@ -68,10 +68,10 @@ def into_world(
     if done.step is None:
         print(f"{world}: all of it is there already; nothing was changed.")
         return
-    _say(world, put, at, done.blocks, done.entities, has_scale)
+    _print_summary(world, put, at, done.blocks, done.entities, has_scale)
 
 
-def _say(
+def _print_summary(
     world: Path,
     put: "BlockVolume",
     at: tuple[int, int, int],

@@ -35,7 +35,7 @@ def run(
     scene: Wanted = None,
     count: Count = None,
     layout_format: option.Format = "",
-    px_m: option.PxM = option.USUAL_PX_M,
+    px_m: option.PxM = option.DEFAULT_PX_M,
     task: option.Task = None,
     assets: option.Assets = None,
     blocks_per_metre: Scale = 4.0,
@@ -59,21 +59,21 @@ def run(
     chosen = Parameters(blocks_per_metre=blocks_per_metre)
     found = read_layouts_of(path, How(px_m, task, assets), layout_format)
     several = count is not None or len(scene or ()) > 1
-    wanted = chosen_scenes(found, scene or [], count)
+    wanted = select_scenes(found, scene or [], count)
     places = [out / name for name in folder_names(wanted)] if several else [out]
     print_compile_note()
     for one, place in zip(wanted, places, strict=True):
         with show_progress() as progress:
             built = build_scene(one, place, chosen, progress)
         print(f"{one.method}, {one.name}: {built.objects} of {len(one.objects)} objects, {place}")
-    option.say_skipped(wanted)
+    option.print_skipped(wanted)
     if len(found) > len(wanted):
         print(f"note: {len(found):,} scenes are there; --count N builds more, --scene NAME others")
     print(f"\nlook   {places[0] / 'preview.png'}")
     print(f"next: w2m compare judge {' '.join(map(str, places[:3]))} --agent gemini --out JUDGED")
 
 
-def chosen_scenes(
+def select_scenes(
     found: "list[ComparedScene]", names: list[str], count: int | None
 ) -> "list[ComparedScene]":
     """Return the scenes that are asked for, the first where nothing is.

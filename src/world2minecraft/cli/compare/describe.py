@@ -78,7 +78,7 @@ def run(
     more = ""
     if agent:
         chat = asked.open(agent, keep)
-        text = photo_words(scene, photos, chat)
+        text = describe_photos(scene, photos, chat)
         told = text
     else:
         known = true_scene(scene) if from_truth else read_layouts_of(scene)[0]
@@ -94,7 +94,7 @@ def run(
     print(f"  w2m compare layouts ITS_LAYOUT {scene}{more}")
 
 
-def photo_words(capture: Path, count: int, chat: object) -> str:
+def describe_photos(capture: Path, count: int, chat: object) -> str:
     """Return what a model says of photos spread over a capture."""
     from world2minecraft.paper.layouts.describing import capture_photos, describe_photos
 

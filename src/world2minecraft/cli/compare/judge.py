@@ -40,7 +40,7 @@ Wish = Annotated[
         "--wish", metavar="FILE", help="What the rooms were to be, as w2m compare describe says it."
     ),
 ]
-MOST_WISH_BYTES = 16 << 10
+MAX_WISH_BYTES = 16 << 10
 
 
 @option.with_model_options(option.ModelOptions(temperature=-1.0))
@@ -67,9 +67,9 @@ def run(
     from world2minecraft.paper.layouts.judge import means_of, prompt_sum
     from world2minecraft.paper.layouts.table import grade_table
 
-    told = read_bytes(wish, MOST_WISH_BYTES).decode("utf-8", "replace") if wish else ""
+    told = read_bytes(wish, MAX_WISH_BYTES).decode("utf-8", "replace") if wish else ""
     chat = asked.open(agent, out)
-    grades = graded(places, chat, out, told, repeats)
+    grades = grade_scenes(places, chat, out, told, repeats)
     write_json(
         out / "judged.json",
         {"model": chat.name, "prompt": prompt_sum(), "wish": told, "repeats": repeats,
@@ -85,7 +85,7 @@ def run(
     print(f"next: look at {out / 'pictures'}, which is all that {chat.name} has seen")
 
 
-def graded(
+def grade_scenes(
     places: list[Path], chat: "ChatModel", out: Path, wish: str, repeats: int
 ) -> "list[Grades]":
     """Return the grades of built rooms; their pictures are written to ``out/pictures``."""

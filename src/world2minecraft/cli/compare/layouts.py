@@ -41,7 +41,7 @@ def run(
     truth: Truth = None,
     scenes: Scenes = False,
     layout_format: option.Format = "",
-    px_m: option.PxM = option.USUAL_PX_M,
+    px_m: option.PxM = option.DEFAULT_PX_M,
     task: option.Task = None,
     assets: option.Assets = None,
     json_path: Json = None,
@@ -77,7 +77,7 @@ def run(
             for name, some in by_method(scored).items()}  # fmt: skip
     write = format_markdown if markdown else format_text
     print(write(layout_table(told)), write(other_table(told)), "\n".join(NOTES), sep="\n\n")
-    option.say_skipped(found)
+    option.print_skipped(found)
     if json_path is not None:
         write_json(json_path, told)
         print(f"figures  {json_path}")

@@ -9,8 +9,8 @@ import typer
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts import ComparedScene
 
-USUAL_PX_M = 3.5 / 256  # As compare.importers has it, which a help page need not import.
-MOST_TOLD = 5
+DEFAULT_PX_M = 3.5 / 256  # As compare.importers has it, which a help page need not import.
+MAX_LISTED = 5
 
 Format = Annotated[
     str,
@@ -45,10 +45,10 @@ def check_px(px_m: float) -> None:
         raise UsageError(f"--px-m is metres of a pixel, above 0 and under 1, not {px_m:g}")
 
 
-def say_skipped(scenes: "Sequence[ComparedScene]") -> None:
+def print_skipped(scenes: "Sequence[ComparedScene]") -> None:
     """Print which objects were left out, and why."""
     lines = [f"{scene.name}: {line}" for scene in scenes for line in scene.skipped]
-    for line in lines[:MOST_TOLD]:
+    for line in lines[:MAX_LISTED]:
         print(f"note: left out: {line}")
-    if len(lines) > MOST_TOLD:
-        print(f"note: ... and {len(lines) - MOST_TOLD:,} more")
+    if len(lines) > MAX_LISTED:
+        print(f"note: ... and {len(lines) - MAX_LISTED:,} more")

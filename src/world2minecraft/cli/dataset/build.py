@@ -63,14 +63,14 @@ def run(
     from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 
     option.check_seed(seed, hour)
-    given, recorded = option.given_named(tour, screenshots, at, fov)
-    scenes = option.scenes_named(houses, worlds, world, preset, blocks_per_metre, given)
+    given, recorded = option.read_given_poses(tour, screenshots, at, fov)
+    scenes = option.find_scenes(houses, worlds, world, preset, blocks_per_metre, given)
     if images is None and not preset:
         images = recorded or option.IMAGES_A_SCENE * len(scenes)
     side = option.cells_of(voxel)
     rule = RegionRule(region)
     recipe = Recipe(
-        camera=option.camera_named(camera, size, fov),
+        camera=option.parse_camera(camera, size, fov),
         region=rule if side is None else replace(rule, voxel_m=side),
         is_block_cells=side is None,
         files=SampleFiles(image_format, quality),
@@ -96,10 +96,10 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
     processes = usable_cores() if jobs is None else jobs
     with open_engine(engine, processes) as workers, show_progress() as progress:
         report = build_dataset(folder, plan, workers, progress)
-    _say(folder, report)
+    _print_summary(folder, report)
 
 
-def _say(folder: Path, report: "BuildReport") -> None:
+def _print_summary(folder: Path, report: "BuildReport") -> None:
     from world2minecraft.cli.progress import format_duration
     from world2minecraft.minecraftocc.building import TITLES
 

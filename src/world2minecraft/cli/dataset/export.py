@@ -69,10 +69,10 @@ def run(
         report = export_samples(
             samples, format, out, rule, split=split, limit=limit, progress=progress
         )
-    _say(report, format)
+    _print_summary(report, format)
 
 
-def _say(report: "ExportReport", format: str) -> None:
+def _print_summary(report: "ExportReport", format: str) -> None:
     before = f", {report.passed_over} were there already" if report.passed_over else ""
     print(f"{report.written} samples written to {report.out}{before}")
     for note in report.notes:

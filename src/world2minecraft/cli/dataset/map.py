@@ -14,7 +14,7 @@ w2m dataset map oak_planks tmeo_ultra:yigui_1x_2 what these blocks stand for
 w2m dataset map --map paper --json paper.json    the paper's map, for other programs
 w2m dataset map --map mine.yaml                  check a map of your own
 """
-SHOWN = 9
+MAX_SHOWN = 9
 
 Blocks = Annotated[
     list[str] | None, typer.Argument(metavar="[BLOCK]...", help="Blocks, such as oak_planks.")
@@ -83,9 +83,9 @@ def lines_of(rules: "BlockMap") -> list[str]:
         blocks = held.get(name, [])
         if not blocks:
             continue
-        more = f" and {len(blocks) - SHOWN} more" if len(blocks) > SHOWN else ""
+        more = f" and {len(blocks) - MAX_SHOWN} more" if len(blocks) > MAX_SHOWN else ""
         told = dict.fromkeys(rule.class_name for rule in rules.rules_of(name))
         to = "" if name in CLASS_NAMES else f" -> {', '.join(told)}"
-        lines.append(f"  {name}{to}: {', '.join(blocks[:SHOWN])}{more}")
+        lines.append(f"  {name}{to}: {', '.join(blocks[:MAX_SHOWN])}{more}")
     lines.append(f"  and {word_count(rules)} words in names of mods; --json FILE writes all of it")
     return lines

@@ -90,7 +90,7 @@ EngineName = Annotated[
 Jobs = Annotated[int | None, _option("--jobs", text="How many processes; one a core.")]
 
 
-def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
+def parse_camera(name: str, size: str, fov_deg: float | None) -> "Camera":
     """Return the camera that the options mean. Raises UsageError or UnknownNameError."""
     from world2minecraft.cli.render.options import camera_choice
     from world2minecraft.core.errors import UnknownNameError
@@ -108,7 +108,7 @@ def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
     return camera_choice(text, usual if fov_deg is None else fov_deg, None).camera(usual)
 
 
-def scenes_named(
+def find_scenes(
     houses: int | None,
     worlds: Path | None,
     world: list[Path] | None,
@@ -127,7 +127,7 @@ def scenes_named(
 
     places = list(world or [])
     if worlds is not None:
-        places += worlds_in(worlds)
+        places += find_worlds(worlds)
     if places and houses is not None:
         raise UsageError("--houses are generated; give them alone, without --worlds and --world")
     if places:
@@ -147,7 +147,7 @@ def scenes_named(
     return house_scenes(count or 0)
 
 
-def given_named(
+def read_given_poses(
     tour: Path | None, screenshots: Path | None, at: str, fov_deg: float | None
 ) -> "tuple[GivenViews | None, int]":
     """Return the views that were recorded, None where they are to be planned, and their number.
@@ -167,12 +167,12 @@ def given_named(
         from world2minecraft.minecraftocc.building.recorded_views import load_screenshot_views
 
         words = {} if fov_deg is None else {"vertical_fov_deg": fov_deg}
-        given = GivenViews(str(screenshots), True, said_at(at), **words)  # type: ignore[arg-type]
+        given = GivenViews(str(screenshots), True, parse_at(at), **words)  # type: ignore[arg-type]
         return given, len(load_screenshot_views(given))
     return None, 0
 
 
-def said_at(text: str) -> Literal["feet", "eye"]:
+def parse_at(text: str) -> Literal["feet", "eye"]:
     """Return what x, y, z of screenshots is. Raises UsageError: it is not said."""
     if text == "feet" or text == "eye":
         return text
@@ -182,7 +182,7 @@ def said_at(text: str) -> Literal["feet", "eye"]:
     )
 
 
-def worlds_in(folder: Path) -> list[Path]:
+def find_worlds(folder: Path) -> list[Path]:
     """Return what can be a scene in a folder, sorted. Raises InputError where nothing can."""
     if not folder.is_dir():
         raise InputError(folder, "is no folder of worlds")

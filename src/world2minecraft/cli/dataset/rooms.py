@@ -29,13 +29,13 @@ def run(
     Truth is the rooms' own, in cells of 8 cm by NYUv2's rule. Beside the block worlds of w2m
     dataset build it stands for real photos, of which there are few: see docs/training.md.
     """
-    from world2minecraft.cli.dataset.options import camera_named
+    from world2minecraft.cli.dataset.options import parse_camera
     from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples
     from world2minecraft.minecraftocc.store import write_store
 
-    plan = PhotoRooms(rooms, images, test_share, seed, camera_named("nyu", size, None))
+    plan = PhotoRooms(rooms, images, test_share, seed, parse_camera("nyu", size, None))
     print_compile_note()
     facts = {"rooms": rooms, "images": images, "test_share": test_share, "seed": seed}
     with show_progress() as progress:

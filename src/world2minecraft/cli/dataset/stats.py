@@ -80,12 +80,12 @@ def run(
         )
     print(statistics_text(statistics))
     print()
-    for place in _written(statistics, json_file, latex_file, plots):
+    for place in _write(statistics, json_file, latex_file, plots):
         print(f"  wrote  {place}")
     print(f"  next   w2m dataset quality {path}      how natural and how sharp its pictures are")
 
 
-def _written(
+def _write(
     statistics: "DatasetStatistics",
     json_file: Path | None,
     latex_file: Path | None,

@@ -15,9 +15,9 @@ from world2minecraft.cli.dataset.options import (
     Scale,
     Seed,
     Size,
-    camera_named,
     check_seed,
-    said_at,
+    parse_at,
+    parse_camera,
 )
 
 if TYPE_CHECKING:
@@ -95,15 +95,15 @@ def run(
     if screenshots is not None:
         _write_recorded(source, screenshots, at, poses, pattern, fov, out)
         return
-    wanted = camera_named(camera, size, fov)
-    views = _planned(source, count, seed, wanted, reachable)
+    wanted = parse_camera(camera, size, fov)
+    views = _plan(source, count, seed, wanted, reachable)
     write_views(out, views, source.volume().block_to_room, source.scene_id)
     for note in source.notes():
         print(f"note: {note}")
-    _say(views, count, out, world)
+    _print_summary(views, count, out, world)
 
 
-def _planned(
+def _plan(
     source: "SceneSource", count: int, seed: int, camera, reachable: bool
 ) -> "list[PlannedView]":
     from world2minecraft.cli.outcome import print_compile_note
@@ -137,7 +137,7 @@ def _write_recorded(
     from world2minecraft.minecraftocc.screenshots import read_screenshots
     from world2minecraft.minecraftocc.tours.pose_files import write_recorded_views
 
-    told = said_at(at)
+    told = parse_at(at)
     views = read_screenshots(
         folder, at=told, poses=poses, pattern=pattern, vertical_fov_deg=fov_deg or GAME_FOV_DEG
     )
@@ -148,7 +148,7 @@ def _write_recorded(
     print(f"  look   w2m dataset sheet {out} --world {source.path}      pictures of the same poses")
 
 
-def _say(views: "Sequence[PlannedView]", count: int, out: Path, world: Path) -> None:
+def _print_summary(views: "Sequence[PlannedView]", count: int, out: Path, world: Path) -> None:
     kinds = Counter(view.kind for view in views)
     told = ", ".join(f"{kinds[kind]} {kind}" for kind in ("axis", "diagonal", "free"))
     tours, rooms = len({view.tour_id for view in views}), len({view.room for view in views})

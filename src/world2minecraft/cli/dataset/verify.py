@@ -5,7 +5,7 @@ from world2minecraft.cli.dataset import options as option
 EXAMPLES = """\
 w2m dataset verify DATA      reads all shards and compares all sums
 """
-MOST_SHOWN = 20
+MAX_SHOWN = 20
 
 
 def run(folder: option.Folder) -> None:
@@ -20,7 +20,7 @@ def run(folder: option.Folder) -> None:
 
     with show_progress() as progress:
         verdict = verify_store(folder, progress)
-    for fault in verdict.faults[:MOST_SHOWN]:
+    for fault in verdict.faults[:MAX_SHOWN]:
         print(f"fault: {fault}")
     if verdict.faults:
         more = len(verdict.faults)

@@ -87,7 +87,7 @@ def run(
         raise InputError(said, "is not there; give a run's folder, weights, .onnx or predictions")
     found = open_occupancy(truth, labels=labels)
     part = _split_of(split, found.splits.values())
-    what = _Asked(
+    what = _Evaluation(
         said, found, part, limit, tuple(protocol or ()), order, classes, device, cache, seed
     )
     with show_progress() as progress:
@@ -111,7 +111,7 @@ def run(
         print("next: the same with --json scores.json, for every figure and interval")
 
 
-class _Asked:
+class _Evaluation:
     """What is to be scored, and how."""
 
     def __init__(

@@ -40,14 +40,14 @@ def run(
     print_compile_note()
     for one in scenes:
         with show_progress() as progress:
-            made = write_scannet_truth(one, folder_of(one, scene, out), progress)
-        print(told(made))
-    place = folder_of(scenes[0], scene, out) or scenes[0]
+            made = write_scannet_truth(one, output_folder(one, scene, out), progress)
+        print(summary_line(made))
+    place = output_folder(scenes[0], scene, out) or scenes[0]
     print(f"next: w2m reconstruct {scenes[0]} --out OUT")
     print(f"then: w2m evaluate reconstruction OUT {place}")
 
 
-def folder_of(one: Path, asked: Path, out: Path | None) -> Path | None:
+def output_folder(one: Path, asked: Path, out: Path | None) -> Path | None:
     """Return where the truth of a scene goes: of one that was named ``out``, else a folder in it.
 
     None is the scene's own folder.
@@ -55,7 +55,7 @@ def folder_of(one: Path, asked: Path, out: Path | None) -> Path | None:
     return out if out is None or one == asked else out / one.name
 
 
-def told(made: "TruthMade") -> str:
+def summary_line(made: "TruthMade") -> str:
     """Return the line that tells what a truth holds."""
     sides = " x ".join(f"{side:.1f}" for side in made.size_m)
     return (

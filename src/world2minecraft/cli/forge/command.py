@@ -106,7 +106,7 @@ def run(
         server.workspace.begin_with(first, dropped)
     if place is not None:
         print(f"note: your demo room is kept in {place.parent}")
-    _tell(server, editor)
+    _print_link(server, editor)
     server.run(lambda: None if no_browser else open_link(server.link))
 
 
@@ -133,7 +133,7 @@ def _walk(source: Path | None, no_browser: bool) -> None:
         window.close()
 
 
-def _tell(server: "ForgeServer", editor: "Editor | None") -> None:
+def _print_link(server: "ForgeServer", editor: "Editor | None") -> None:
     """Print what is to be known, and the link."""
     if server.is_open:
         print(

@@ -39,7 +39,7 @@ def run(
 
     number = class_id(kind) if kind else None
     every = [template(name) for name in TEMPLATES.names()]
-    found = [one for one in every if _meant(one, word, number)]
+    found = [one for one in every if _matches(one, word, number)]
     if as_markdown:
         print(templates_to_markdown(found), end="")
         return
@@ -52,7 +52,7 @@ def run(
     print(f"\n{len(found)} designs; * {matched} that objects are matched against.")
 
 
-def _meant(one: "Template", word: str, class_number: int | None) -> bool:
+def _matches(one: "Template", word: str, class_number: int | None) -> bool:
     text = f"{one.name} {one.title} {one.family}".lower()
     return word.lower() in text and class_number in (None, one.class_id)
 

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from world2minecraft.cli.render import options as option
-from world2minecraft.cli.render.look import Look, Looks, make_look
+from world2minecraft.cli.render.look import Look, Looks, take_pictures
 from world2minecraft.cli.render.output_files import (
     LINES_FILE,
     Target,
@@ -188,7 +188,7 @@ def _pictures(
         if exposure is None:  # One for all, so that pictures of one plan belong together.
             exposure = with_common_exposure(scene, options.light, shots).exposure
         scene = replace(scene, exposure=exposure)
-        pictures = make_look(scene, shots, look, options, step)
+        pictures = take_pictures(scene, shots, look, options, step)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume
 

@@ -142,7 +142,7 @@ class Look:
         return Looks(ModelSourceStack((packs, BuiltinModels(side_px))), side_px, packs)
 
 
-def make_look(
+def take_pictures(
     scene: "BlockScene",
     shots: "Sequence[Shot]",
     look: Look,
@@ -195,10 +195,10 @@ def _photos(
         except ValueError as error:
             raise UsageError(f"--photo cannot do this: {error}") from error
         step(look.photo_samples - told)
-        light = replace(light, exposure=check_exposure(picture.exposure))
+        light = replace(light, exposure=clamp_exposure(picture.exposure))
         yield picture
 
 
-def check_exposure(exposure: float) -> float:
+def clamp_exposure(exposure: float) -> float:
     """Return an exposure within what a light may have."""
     return min(max(exposure, 0.01), 100.0)

@@ -56,7 +56,7 @@ def run(
     changes = {name: value for name, value in given.items() if value is not None}
     if image:
         changes["image"] = options.image_size(image)
-    chosen = options.chosen_run(network, data or [], config, preset, changes)
+    chosen = options.run_config(network, data or [], config, preset, changes)
     options.check_extra()
     from world2minecraft.networks.data.run_data import CacheLocation
     from world2minecraft.networks.training import score_run, train_run
@@ -68,10 +68,10 @@ def run(
         scores = score_run(trained, chosen, device, progress)
     for line in trained.data.descriptions:
         print(line)
-    tell(out, chosen, trained.state, scores)
+    print_summary(out, chosen, trained.state, scores)
 
 
-def tell(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> None:
+def print_summary(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> None:
     """Say what came of a run and what to do next."""
     from world2minecraft.cli.progress import format_duration
 

@@ -54,7 +54,7 @@ Device = Annotated[str, _option("--device", text="auto, cpu or cuda.")]
 Cache = Annotated[str, _option("--cache", metavar="DIR|off", text="Where decoded frames are kept.")]
 
 
-def chosen_run(
+def run_config(
     network: str, data: list[str], config: Path | None, preset: str, changes: dict[str, Any]
 ) -> "RunConfig":
     """Return the run that the options mean. Raises UsageError, UnknownNameError or InputError."""

@@ -109,15 +109,15 @@ def run(
     )  # fmt: skip
     if not (scenes or rooms or houses):
         raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
-    built = _built(out, list(scenes or []), (rooms, houses), rule, workers)
+    built = _build(out, list(scenes or []), (rooms, houses), rule, workers)
     if annotations is not None:
         from world2minecraft.navigation.data.rewording import annotate_set
 
         annotate_set(out, annotations)
-    _say(out, built)
+    _print_summary(out, built)
 
 
-def _built(
+def _build(
     out: Path, scenes: list[Path], made: tuple[int, int], rule: "BuildRule", workers: int | None
 ) -> "BuiltSet":
     from world2minecraft.cli.outcome import print_compile_note
@@ -154,7 +154,7 @@ def _size(text: str) -> tuple[int, int]:
     return int(parts[0]), int(parts[1])
 
 
-def _say(out: Path, built: "BuiltSet") -> None:
+def _print_summary(out: Path, built: "BuiltSet") -> None:
     walks = sum(len(work.trajectories) for work in built.works)
     refused = sum((sum(work.refused.values()) for work in built.works), 0)
     print(f"\n{len(built.items):,} items of {walks:,} walks in {len(built.works)} scenes.")

@@ -103,7 +103,7 @@ def run(
         training = "baseline"
     facts = {"agent": answerer.name, "training": training, "style": style, "split": split}
     _evaluate(target, items, answerer, jobs, facts)
-    _say(target, items, chat)
+    _print_summary(target, items, chat)
 
 
 def _evaluate(
@@ -135,7 +135,7 @@ def _baseline(
     return LetterAnswerer(name, letters), known
 
 
-def _say(target: Path, items: "list[Item]", chat: Any) -> None:
+def _print_summary(target: Path, items: "list[Item]", chat: Any) -> None:
     from world2minecraft.navigation.running.tables import answers_table, format_text, read_result
 
     print()

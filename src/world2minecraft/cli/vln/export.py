@@ -69,10 +69,10 @@ def run(
     rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
     with show_progress() as progress:
         handoff = export_set(source, to, out, rule, progress=progress)
-    _say(handoff)
+    _print_summary(handoff)
 
 
-def _say(handoff: "ExportResult") -> None:
+def _print_summary(handoff: "ExportResult") -> None:
     for one in handoff.written:
         steps = f", {one.steps:,} steps" if one.steps else ""
         tokens = f", at most {one.tokens:,} tokens a row" if one.tokens else ""

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from world2minecraft.navigation.values import Episode, Move, Stance
 
 VIEW_COLUMNS, VIEW_ROWS = 64, 24
-ROWS_KEPT = 8
+MAX_ROWS = 8
 UPPER = "\u2580"  # The upper half of a cell; its lower half is the background.
 
 
-class LinesLive:
+class LineView:
     """A line a decision; an observer."""
 
     def __init__(self, stream: TextIO):
@@ -33,7 +33,7 @@ class LinesLive:
     ) -> None:
         """Say what was decided."""
         thought = f"   {decision.thought}" if decision.thought else ""
-        self._say(f"  {sight.step:>4}  {told_moves(decision, made)}{thought}")
+        self._say(f"  {sight.step:>4}  {moves_text(decision, made)}{thought}")
 
     def on_stance(
         self, stance: "Stance", step: int, decision: "Decision | None", move: "Move | None"
@@ -47,10 +47,10 @@ class LinesLive:
         self._say(f"  {end_text(walk)}")
 
     def _say(self, text: str) -> None:
-        print(safe(text), file=self._stream, flush=True)
+        print(plain_text(text), file=self._stream, flush=True)
 
 
-class ScreenLive(LinesLive):
+class ScreenView(LineView):
     """The view in half blocks, and the last decisions beside it; an observer."""
 
     def __init__(self, display: Any):
@@ -70,8 +70,8 @@ class ScreenLive(LinesLive):
         """Show the view and add a row."""
         if sight.colour.shape[0] > 1:
             self._view = half_blocks(sight.colour)
-        row = (str(sight.step), told_moves(decision, made), decision.thought)
-        self._rows = [*self._rows, row][-ROWS_KEPT:]
+        row = (str(sight.step), moves_text(decision, made), decision.thought)
+        self._rows = [*self._rows, row][-MAX_ROWS:]
         self._draw()
 
     def on_end(self, walk: "EpisodeWalk") -> None:
@@ -90,23 +90,23 @@ class ScreenLive(LinesLive):
         for name, ratio in (("step", 1), ("does", 4), ("thinks", 10)):
             table.add_column(name, ratio=ratio, overflow="fold")
         for row in self._rows:
-            table.add_row(*(Text(safe(cell)[:300]) for cell in row))
-        parts = [Text(safe(self._head), style="bold"), self._view, table, Text(self._foot)]
+            table.add_row(*(Text(plain_text(cell)[:300]) for cell in row))
+        parts = [Text(plain_text(self._head), style="bold"), self._view, table, Text(self._foot)]
         self._display.update(Group(*(part for part in parts if part is not None)), refresh=True)
 
 
 @contextmanager
-def live(stream: TextIO | None = None) -> Iterator[LinesLive]:
+def live_view(stream: TextIO | None = None) -> Iterator[LineView]:
     """Give an observer that shows walks on stderr or ``stream`` while the block runs."""
     target = sys.stderr if stream is None else stream
     if not target.isatty():
-        yield LinesLive(target)
+        yield LineView(target)
         return
     from rich.console import Console
     from rich.live import Live
 
     with Live(console=Console(file=target), auto_refresh=False) as display:
-        yield ScreenLive(display)
+        yield ScreenView(display)
 
 
 def half_blocks(colour: Any) -> Any:
@@ -126,7 +126,7 @@ def half_blocks(colour: Any) -> Any:
     return text
 
 
-def told_moves(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
+def moves_text(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
     """Return what a decision did, in a few words."""
     from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 
@@ -136,11 +136,11 @@ def told_moves(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str
     return " ".join(words)
 
 
-def safe(text: str) -> str:
+def plain_text(text: str) -> str:
     """Return a text in one line that no terminal takes for a command.
 
     Example:
-        >>> safe("go" + chr(27) + "[2J on")
+        >>> plain_text("go" + chr(27) + "[2J on")
         'go [2J on'
     """
     return "".join(mark if mark.isprintable() else " " for mark in text)

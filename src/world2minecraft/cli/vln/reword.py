@@ -68,13 +68,13 @@ def run(
         made = add_annotations(made, annotations)
     if rewrite:
         chat = asked.open(rewrite, path / REPLIES)
-        made, outcomes = _rewritten(made, chat, jobs)
+        made, outcomes = _reword(made, chat, jobs)
     made = select_instructions(made, ORDER[-1:] if plain else ORDER)
     write_set(path, made)
-    _say(path, made, outcomes, chat)
+    _print_summary(path, made, outcomes, chat)
 
 
-def _rewritten(
+def _reword(
     made: "NavigationSet", chat: "ChatModel", jobs: int
 ) -> "tuple[NavigationSet, Counter[str]]":
     from world2minecraft.cli.progress import show_progress
@@ -89,7 +89,7 @@ def _rewritten(
         return reword_set(made, ask, chat.name, jobs, progress)
 
 
-def _say(
+def _print_summary(
     path: Path, made: "NavigationSet", outcomes: Counter[str], chat: "ChatModel | None"
 ) -> None:
     sources = Counter(item.instruction.source for item in made.items)

@@ -117,7 +117,7 @@ def run(
     from world2minecraft.navigation.running.sentence_goals import GoalRequest
 
     folder = out or option.default_run_folder(agent)
-    _check_apart(folder, scene)
+    _check_out(folder, scene)
     chats: list[Any] = []
 
     def chat() -> Any:
@@ -127,13 +127,13 @@ def run(
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
     walker = make_agent(agent, chat, chunk=chunk, history=history, **how)
     wish = GoalRequest(instruction, goal, _stance(start), moves, max_steps)
-    with closing(_Grounds(server)) as grounds, _invited(walker, no_browser):
+    with closing(_Simulators(server)) as grounds, _human_page(walker, no_browser):
         episodes = _episodes(scene, wish, count, grounds)
         told = _walk(folder, episodes, grounds, walker, seed, video, chats)
-    _say(folder, told, episodes, video, chats)
+    _print_summary(folder, told, episodes, video, chats)
 
 
-def _check_apart(folder: Path, scene: Path) -> None:
+def _check_out(folder: Path, scene: Path) -> None:
     """Refuse to write what was walked over the very episodes that are walked."""
     from world2minecraft.core.errors import UsageError
     from world2minecraft.navigation.records import EPISODES
@@ -143,7 +143,7 @@ def _check_apart(folder: Path, scene: Path) -> None:
         raise UsageError(f"--out {folder} would be written over {source}; name another folder")
 
 
-class _Grounds:
+class _Simulators:
     """Opens each scene once; of a server that holds it where one is named."""
 
     def __init__(self, server: str) -> None:
@@ -185,7 +185,7 @@ class _Grounds:
         return self._grounds[key]
 
 
-def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "list[Episode]":
+def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Simulators) -> "list[Episode]":
     from dataclasses import replace
 
     from world2minecraft.core.errors import UsageError
@@ -206,11 +206,11 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
 
 
 def _walk(
-    folder: Path, episodes: "list[Episode]", grounds: _Grounds, walker: Any, seed: int,
+    folder: Path, episodes: "list[Episode]", grounds: _Simulators, walker: Any, seed: int,
     video: bool, chats: list[Any],
 ) -> dict[str, Any]:  # fmt: skip
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.vln.live_view import live
+    from world2minecraft.cli.vln.live_view import live_view
     from world2minecraft.navigation.records import write_episodes
     from world2minecraft.navigation.running.episode_evaluation import (
         evaluate_agent,
@@ -230,7 +230,7 @@ def _walk(
             films[:] = [Film(place / FILM_FILE, ground, ground.plans)]
         return [*found, *films]
 
-    with live() as shown:
+    with live_view() as shown:
         try:
             walks, beside = evaluate_agent(episodes, grounds, walker, observers=watching, seed=seed)
         except BaseException:
@@ -245,7 +245,7 @@ def _walk(
 
 
 @contextmanager
-def _invited(walker: Any, no_browser: bool) -> Iterator[None]:
+def _human_page(walker: Any, no_browser: bool) -> Iterator[None]:
     """Tell a person where to walk and open the page, which is there while the block runs."""
     from world2minecraft.cli.browser import open_link
 
@@ -272,7 +272,7 @@ def _place(episode: "Episode", episodes: "list[Episode]") -> str:
     return "." if len(episodes) == 1 else f"episodes/{episodes.index(episode):05d}"
 
 
-def _say(
+def _print_summary(
     folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
 ) -> None:
     from world2minecraft.navigation.running.tables import HEADS_NOTE, format_text, walks_table

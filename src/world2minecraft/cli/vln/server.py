@@ -41,10 +41,10 @@ def run(
     if not address:
         print("  next   w2m vln server localhost:25565")
         return
-    _look(address, name, version)
+    _check_server(address, name, version)
 
 
-def _look(address: str, name: str, version: str) -> None:
+def _check_server(address: str, name: str, version: str) -> None:
     from world2minecraft.navigation.server.player import join
 
     with join(address, name=name, version=version) as body:

@@ -62,7 +62,7 @@ def run(
     statistics, leaks = compute_statistics(items), find_leaks(items)
     print(statistics_text(statistics, leaks))
     rows = score(items, path if path.is_dir() else path.parent) if baselines else []
-    _say_baselines(rows)
+    _print_baselines(rows)
     if json_file is not None:
         write_json(json_file, statistics_json(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
@@ -74,7 +74,7 @@ def run(
     print(f"  next   w2m vln evaluate {path} --agent oracle")
 
 
-def _say_baselines(rows: "list[BaselineRow]") -> None:
+def _print_baselines(rows: "list[BaselineRow]") -> None:
     if rows:
         print(f"\nWithout understanding, on {_where(rows)} (95 % interval):")
     for row in rows:

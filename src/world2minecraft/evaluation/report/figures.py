@@ -1,4 +1,7 @@
-"""The figures of the report that need no truth: pure functions of a finished scene."""
+"""Figures of the report that need no truth: pure functions of a finished scene.
+
+What collides, lies outside, hangs in the air or got lost, and what was seen, filled and placed.
+"""
 
 from typing import Any
 
@@ -19,9 +22,6 @@ from world2minecraft.furniture.layout_checks import (
 from world2minecraft.geometry.planes import HorizontalPlane, find_horizontal_planes
 
 NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-# The figures of the layout: what collides, lies outside, hangs in the air or got lost.
 
 
 def layout_facts(scene: FinishedScene) -> dict[str, Any]:

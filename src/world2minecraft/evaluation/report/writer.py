@@ -1,4 +1,9 @@
-"""Everything of the report put together and written."""
+"""Write the report of a run: ``report.html``, ``report.json`` and its pictures.
+
+``write_report`` compares the world with the photos. A run without photos, from a plan or of
+several joined rooms, has no evidence to compare with: ``write_brief_report`` shows what was built,
+what is in it, and how it came about.
+"""
 
 from collections.abc import Sequence
 from importlib.resources import files
@@ -29,9 +34,6 @@ from world2minecraft.formats.scan import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.rendering.preview import plan_view, preview
 
-# The report of a run without photos: a plan's, or several rooms joined.
-# There is no evidence to compare with, so it shows what was built, what is in it, and how it came
-# about. ``report.html``, ``report.json`` and ``preview.png`` are written, as of any run.
 PLAN_PX = 720
 
 

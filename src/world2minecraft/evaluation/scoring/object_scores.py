@@ -1,4 +1,8 @@
-"""The physical sense of what was placed: collisions, bounds, and the classes that got lost."""
+"""Score the objects of a run: against those of the truth, and for physical sense.
+
+Objects are matched with the true ones: found where they are, as what they are, and turned. The
+layout is judged by collisions, bounds and the classes that got lost.
+"""
 
 import math
 from collections.abc import Sequence
@@ -17,8 +21,6 @@ from world2minecraft.evaluation.scoring.visibility import Reached
 from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_placements
 from world2minecraft.furniture.layout_checks import category_integrity, collisions, out_of_rooms
-
-# Objects of a run against those of the truth: found where they are, as what they are, turned.
 
 
 @dataclass(frozen=True, eq=False)

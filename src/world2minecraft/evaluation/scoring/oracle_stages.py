@@ -1,4 +1,10 @@
-"""Truth put in after the later stages: labels, instances with their boxes, placements."""
+"""Oracles of the stages: truth put in after fusion, labels, instances and templates.
+
+After fusion the geometry is true, with the votes and colours of the real pictures: each cell that a
+noise-free ray reached or crossed is occupied or free as the truth says, and each pixel of the 2D
+labels votes, right or wrong, for the cell in which its ray truly ends. So a labeller that is given
+this evidence shows what geometry alone still costs.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -34,10 +40,6 @@ from world2minecraft.furniture import template
 from world2minecraft.rendering.scene_tables import FACE_NORMALS
 from world2minecraft.rendering.voxel_camera import VoxelScene, cast_voxels, prepare_voxels
 
-# Truth put in after fusion: true geometry, with the votes and colours of the real pictures.
-# Each cell that a noise-free ray reached or crossed is occupied or free as the truth says. What the
-# cell is called, the 2D labels say, right or wrong: each pixel votes for the cell in which its ray
-# truly ends. So a labeller that is given this evidence shows what geometry alone still costs.
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
 
 OWN_CELLS = "cells"

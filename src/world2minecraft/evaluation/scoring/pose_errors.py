@@ -1,4 +1,7 @@
-"""How far the cameras' poses and the depths' scales are off, as stated and as corrected."""
+"""Measure errors of poses, depth scales and the room frame, as stated and as corrected.
+
+An error of the frame is told apart from errors of occupancy.
+"""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +16,6 @@ from world2minecraft.evaluation.scoring.truth import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame, common_move
 from world2minecraft.formats.scan import read_poses
 
-# How far an estimated room frame is off, told apart from errors of occupancy.
 STRAIGHT_DEG = 10.0  # A wall of the truth that runs along an axis of the estimated frame.
 
 

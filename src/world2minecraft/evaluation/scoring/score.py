@@ -41,7 +41,6 @@ from world2minecraft.formats.objects import read_objects
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.scene import Scene, read_scene
 
-# How much of the true room stands in the blocks of the world that was built.
 NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
 
 HOW = (

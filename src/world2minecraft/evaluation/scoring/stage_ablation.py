@@ -40,9 +40,6 @@ from world2minecraft.reconstruction.stages import FILE_STAGES
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 
 
-# The parameters that a run was made with, read back from its ``manifest.json``.
-
-
 def recorded_parameters(out: Path) -> Parameters:
     """Return the parameters of the run in ``out``; what it did not know of has its default.
 

@@ -14,7 +14,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.scoring.truth import Truth, read_truth
 
 COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
-LEAST_POSED = 3
+MIN_POSED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ def truth_of_run(out: Path, folder: Path) -> Truth:
         return known
     true = known.camera_to_truth or {}
     posed = [f for f in find_capture(place).frames if f.name in true]
-    if len(posed) < LEAST_POSED:
+    if len(posed) < MIN_POSED:
         raise DamagedFileError(folder / "truth.npz", "tells no poses of the photos that were used")
     stated = [np.asarray(frame.camera_to_world, np.float64) for frame in posed]
     common = common_move([true[frame.name] for frame in posed], stated)

@@ -137,8 +137,8 @@ def segment_pieces(
         scale: blocks per metre.
     """
     height, first = block_columns(blocks)
-    least = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
-    hangs = sheets & (height >= least - 1e-6)
+    min_height = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
+    hangs = sheets & (height >= min_height - 1e-6)
     hangs |= plates & (first - ground - 1 >= PLATE_M * scale - 1e-6)
     parts, count = connected_parts(inside, 2 * blocks.astype(np.int64) + hangs, hangs)
     return _merge_tall_neighbours(parts, count, max(2, round(TALL_M * scale)))

@@ -51,7 +51,7 @@ def detect_zones(building: np.ndarray, blocks_per_metre: float) -> Zones:
 
 
 def next_above(filled: np.ndarray) -> np.ndarray:
-    """Return the layer of the next filled block over each, int16; ``NO_BLOCK`` where there is none."""
+    """Return the layer of the next filled block over each, int16; ``NO_BLOCK`` for none."""
     layers = np.arange(filled.shape[1], dtype=np.int16)[None, :, None]
     at = np.where(filled, layers, NO_BLOCK)[:, ::-1]
     upward = np.minimum.accumulate(at, axis=1)[:, ::-1]
@@ -90,13 +90,13 @@ def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
 def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
     """Yield the layers that are floors, from below, with the columns one can stand on there."""
     stands = _standable(building, over, scale, roofed)
-    least = max(2, FLOOR_M2 * scale**2)
+    min_size = max(2, FLOOR_M2 * scale**2)
     below: list[tuple[int, np.ndarray]] = []
     for level in range(building.shape[1]):
         parts, count = label_components(stands[:, level], corners=False)
         sizes = np.bincount(parts.ravel(), minlength=count + 1)
         patch = np.zeros(parts.shape, bool)
-        for number in np.flatnonzero(sizes >= least).tolist():
+        for number in np.flatnonzero(sizes >= min_size).tolist():
             if number and not _is_furniture(parts == number, level, below, scale):
                 patch |= parts == number
         if patch.any():
@@ -146,21 +146,21 @@ def _add_storey(
 
 
 def _ceilings(
-    patch: np.ndarray, over: np.ndarray, level: int, scale: float, most: int
+    patch: np.ndarray, over: np.ndarray, level: int, scale: float, max_layer: int
 ) -> np.ndarray:
     """Return the layer of the ceiling over each column, from the nearest stretch of one, int."""
-    kept = np.zeros(patch.shape, bool)
-    least = max(3, PLATEAU_M2 * scale**2)
+    plateaus = np.zeros(patch.shape, bool)
+    min_size = max(3, PLATEAU_M2 * scale**2)
     for layer in np.unique(over[patch]).tolist():
         parts, count = label_components(patch & (over == layer))
         sizes = np.bincount(parts.ravel(), minlength=count + 1)
-        kept |= (sizes >= least)[parts] & (parts > 0)
-    if not kept.any():
-        kept = patch
-    nearest = ndimage.distance_transform_edt(~kept, return_distances=False, return_indices=True)
+        plateaus |= (sizes >= min_size)[parts] & (parts > 0)
+    if not plateaus.any():
+        plateaus = patch
+    nearest = ndimage.distance_transform_edt(~plateaus, return_distances=False, return_indices=True)
     x, z = np.asarray(nearest)
     tops = over[x, z].astype(np.int64)
-    return np.where(tops < NO_BLOCK, tops, min(most, level + 1 + round(2 * scale)))
+    return np.where(tops < NO_BLOCK, tops, min(max_layer, level + 1 + round(2 * scale)))
 
 
 def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

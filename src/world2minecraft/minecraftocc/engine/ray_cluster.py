@@ -64,11 +64,11 @@ class RayEngine:
         """
         ray = self._ray
         remote = ray.remote(num_cpus=1, max_retries=RETRIES)(_call_task)
-        most = QUEUED_PER_CPU * max(1, int(ray.cluster_resources().get("CPU", 1)))
+        max_pending = QUEUED_PER_CPU * max(1, int(ray.cluster_resources().get("CPU", 1)))
         pending: dict[Any, int] = {}
         numbers = iter(range(len(items)))
         while True:
-            while len(pending) < most and (number := next(numbers, None)) is not None:
+            while len(pending) < max_pending and (number := next(numbers, None)) is not None:
                 pending[remote.remote(task, items[number])] = number
             if not pending:
                 return

@@ -102,9 +102,9 @@ def _entries(
         keys = list(samples.keys(split))
         store = samples
         return ((key, lambda key=key: store[key]) for key in keys), len(keys)
-    kept = (sample for sample in samples if split in (None, sample.split))
+    chosen = (sample for sample in samples if split in (None, sample.split))
     total = len(samples) if split is None and hasattr(samples, "__len__") else 0  # type: ignore[arg-type]
-    return ((sample.key, lambda sample=sample: sample) for sample in kept), total
+    return ((sample.key, lambda sample=sample: sample) for sample in chosen), total
 
 
 def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:

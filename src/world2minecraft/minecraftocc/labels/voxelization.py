@@ -31,9 +31,8 @@ from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, TURN, SceneT
 
 MIN_THICKNESS_M = 0.004
 _ALIGNED = 1e-6  # Blocks: what an edge may lean and still count as straight.
-TOLERANCE_M = (
-    0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
-)
+# What a shape may reach into a cell without being there: rounding of 1/16 blocks.
+TOLERANCE_M = 0.001
 MIN_VOXEL_M = 0.01
 MAX_CELLS = 200_000_000  # A gigabyte of labels; a house of twelve rooms has three million.
 SLAB_CELLS = 4_000_000  # That are filled at a time.

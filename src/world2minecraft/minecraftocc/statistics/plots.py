@@ -72,11 +72,11 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:.0%}")
     axes.grid(axis="x", color=RULE)
-    beside = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
+    row_transform = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
     for row, n in enumerate(order):
         columns_at = {1.08: f"{ours[n]:.1%}", 1.18: format_count(statistics.class_voxels[n + 1])}
         for place, text in columns_at.items():
-            axes.text(place, row, text, transform=beside, ha="right", va="center")
+            axes.text(place, row, text, transform=row_transform, ha="right", va="center")
     return figure
 
 

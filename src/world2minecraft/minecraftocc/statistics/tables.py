@@ -206,7 +206,7 @@ def _detail_lines(statistics: DatasetStatistics) -> list[str]:
 
 def _class_lines(statistics: DatasetStatistics) -> list[str]:
     ours, theirs = class_shares(statistics.class_voxels), class_shares(NYU_TRAIN_VOXELS)
-    most = max([*ours, 1e-9])
+    largest = max([*ours, 1e-9])
     rows = [("class", "voxels", "share", "NYUv2 train")]
     rows += [
         (name, f"{count:,}", f"{share:.1%}", f"{nyu:.1%}")
@@ -214,7 +214,7 @@ def _class_lines(statistics: DatasetStatistics) -> list[str]:
             CLASS_NAMES[1:], statistics.class_voxels[1:], ours, theirs, strict=True
         )
     ]
-    bars = ["", *("#" * round(BAR * share / most) for share in ours)]
+    bars = ["", *("#" * round(BAR * share / largest) for share in ours)]
     return [f"{line}  {bar}".rstrip() for line, bar in zip(align_columns(rows), bars, strict=True)]
 
 

@@ -97,11 +97,11 @@ def write_card(folder: Path, meta: dict[str, Any]) -> None:
     files = "".join(
         f"      - split: {split}\n        path: {SHARDS}/{split}/*.tar\n" for split in counts
     )
-    split_counts = ", ".join(f"{count:,} {split}" for split, count in counts.items())
+    totals = ", ".join(f"{count:,} {split}" for split, count in counts.items())
     write_text(
         folder / CARD,
         f"---\nconfigs:\n  - config_name: default\n    data_files:\n{files}---\n"
-        f"# MinecraftOcc data set\n\n{split_counts} images of {len(meta['scenes'])} scenes, made by "
+        f"# MinecraftOcc data set\n\n{totals} images of {len(meta['scenes'])} scenes, made by "
         f"world2minecraft {meta['versions']['world2minecraft']}.\n\n"
         "Each sample: picture, depth (16-bit millimetres), occ.npz (labels and masks of its\n"
         "cells) and json (camera, poses, region). `w2m dataset verify` checks it.\n",

@@ -61,8 +61,8 @@ def rate_headings(
     yaws_deg = np.concatenate([turn + side for turn in (0, 90, 180, 270)])
     half_deg = np.degrees(np.arctan(rule.camera.width_px / 2 / rule.camera.fx_px))
     wanted = np.arange(HEADINGS) * (360 / HEADINGS)
-    apart = np.abs((yaws_deg[None] - wanted[:, None] + 180) % 360 - 180)
-    within = (apart <= half_deg).astype(float)
+    difference = np.abs((yaws_deg[None] - wanted[:, None] + 180) % 360 - 180)
+    within = (difference <= half_deg).astype(float)
     return columns @ (within / within.sum(axis=1, keepdims=True)).T
 
 
@@ -124,7 +124,7 @@ def smooth_noise(frames: int, spacing_m: float, rng: np.random.Generator) -> np.
 
 
 @njit
-def _best_sequence(rating, cost, most):
+def _best_sequence(rating, cost, max_turn):
     """Return the headings, int64 [N], with the highest sum of ratings less the cost of turns."""
     frames, count = rating.shape
     best, came = rating[0].copy(), np.zeros((frames, count), np.int64)
@@ -132,7 +132,7 @@ def _best_sequence(rating, cost, most):
         after = np.empty(count)
         for h in range(count):
             top, source = -np.inf, 0
-            for step in range(-most, most + 1):
+            for step in range(-max_turn, max_turn + 1):
                 before = (h - step) % count
                 value = best[before] - cost * abs(step) * (1 + abs(step))
                 if value > top:

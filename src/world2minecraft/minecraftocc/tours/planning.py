@@ -147,8 +147,8 @@ class RoomTour:
         labelled = bool(self.volume.semantic.any())
         good = np.flatnonzero(seen.is_good(self.volume.blocks_per_metre, labelled))
         ease = EASING_FACTOR**self.eased
-        apart = self.rule.apart_m * self.volume.blocks_per_metre * ease
-        good = good[self.taken.new(rows[good], apart, self.rule.apart_deg * ease)]
+        min_distance = self.rule.apart_m * self.volume.blocks_per_metre * ease
+        good = good[self.taken.new(rows[good], min_distance, self.rule.apart_deg * ease)]
         for found in self._parted(rows[good], min(MIN_FRAMES, wanted)):
             tour = found[:wanted]
             wanted -= len(tour)
@@ -188,7 +188,7 @@ class RoomTour:
         pose = GamePose(*(float(value) for value in row), at="eye")
         return pose.camera_to_room(self.volume.block_to_room)
 
-    def _parted(self, rows: np.ndarray, least: int) -> list[np.ndarray]:
+    def _parted(self, rows: np.ndarray, min_frames: int) -> list[np.ndarray]:
         """Return views in a row as tours without leaps, those of too few frames left out."""
         if not len(rows):
             return []
@@ -197,7 +197,7 @@ class RoomTour:
         )
         turn = np.abs((np.diff(rows[:, 3]) + 180) % 360 - 180)
         cuts = np.flatnonzero((step_m > GAP_M) | (turn > GAP_DEG)) + 1
-        return [part for part in np.split(rows, cuts) if len(part) >= least]
+        return [part for part in np.split(rows, cuts) if len(part) >= min_frames]
 
     def _times_s(self, tour: np.ndarray) -> np.ndarray:
         """Return when each frame is taken, as fast as one walks and turns."""

@@ -87,16 +87,16 @@ def find_rooms(
     blocked = np.pad((solid.kinds != 0) & ~things, ((0, 0), (0, above), (0, 0)))
     cells = np.floor(graph.feet - np.array(volume.corner) + [0, 1e-6, 0]).astype(np.int64)
     roof = _roofs(blocked)[tuple(cells.T)]
-    kept = _indoors(graph, blocked, cells, roof)
-    kept &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # However slim the body is.
+    usable = _indoors(graph, blocked, cells, roof)
+    usable &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # However slim the body is.
     if rule.start is not None and rule.reachable_only:
-        kept &= reachable(graph, graph.nearest(rule.start))
+        usable &= reachable(graph, graph.nearest(rule.start))
     number = _by_layouts(volume, graph, rule)
-    if not (kept & (number >= 0)).any():
-        number = _by_ceilings(graph, blocked, cells, roof, kept)
+    if not (usable & (number >= 0)).any():
+        number = _by_ceilings(graph, blocked, cells, roof, usable)
     rooms = []
-    for one in np.unique(number[kept & (number >= 0)]):
-        places = _main_floor(graph, np.flatnonzero(kept & (number == one)))
+    for one in np.unique(number[usable & (number >= 0)]):
+        places = _main_floor(graph, np.flatnonzero(usable & (number == one)))
         floor_m2 = len(places) * (graph.spacing / graph.blocks_per_metre) ** 2
         if floor_m2 >= MIN_ROOM_FLOOR_M2:
             seen = _contents(volume, cells[places], roof[places])
@@ -172,7 +172,7 @@ def _by_ceilings(
     blocked: np.ndarray,
     cells: np.ndarray,
     roof: np.ndarray,
-    kept: np.ndarray,
+    usable: np.ndarray,
 ) -> np.ndarray:
     """Return the room of each place by what hangs together under ceilings; -1 for none."""
     cell_m = 1 / graph.blocks_per_metre
@@ -182,7 +182,7 @@ def _by_ceilings(
     level[1, 1, :] = level[:, 1, 1] = True
     label = _label_parts(under, level)
     top = np.clip(roof - 1, 0, blocked.shape[1] - 1)
-    number = np.where(kept, label[cells[:, 0], top, cells[:, 2]], 0)
+    number = np.where(usable, label[cells[:, 0], top, cells[:, 2]], 0)
     areas = np.bincount(label.reshape(-1)) * cell_m**2
     large = [n for n in np.unique(number) if n and areas[n] >= MIN_ROOM_M2]
     result, count = np.full(len(graph), -1), 0
@@ -192,7 +192,7 @@ def _by_ceilings(
         cut, pieces = _cut_at_necks(label[:, layer] == one, cell_m)
         result[own] = cut[cells[own, 0], cells[own, 2]] + count
         count += pieces
-    return _assign_remaining(graph, result, kept)
+    return _assign_remaining(graph, result, usable)
 
 
 def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
@@ -217,11 +217,11 @@ def _label_parts(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
     return np.asarray(ndimage.label(mask, joined)[0])  # pyright: ignore[reportIndexIssue]
 
 
-def _assign_remaining(graph: WalkGraph, number: np.ndarray, kept: np.ndarray) -> np.ndarray:
+def _assign_remaining(graph: WalkGraph, number: np.ndarray, usable: np.ndarray) -> np.ndarray:
     """Return the rooms with places of none given to the room of the nearest place that has one."""
-    known, remaining = np.flatnonzero(number >= 0), np.flatnonzero(kept & (number < 0))
+    known, remaining = np.flatnonzero(number >= 0), np.flatnonzero(usable & (number < 0))
     if not len(known):
-        return np.where(kept, 0, -1)
+        return np.where(usable, 0, -1)
     if len(remaining):
         scaled = graph.feet * [1, _APART, 1]
         _, nearest = KDTree(scaled[known]).query(scaled[remaining])

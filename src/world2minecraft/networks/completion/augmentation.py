@@ -67,11 +67,11 @@ def _window(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]
 
 def _rows(sight: Sight, rows: np.ndarray, **changes: np.ndarray) -> Sight:
     """Return a sight with some rows of what is known of occupied cells."""
-    kept = {
+    selected = {
         name: None if (value := getattr(sight, name)) is None else value[rows]
         for name in ("hits", "colour", "offset", "votes", "hint")
     }
-    return replace(sight, **kept, **changes)
+    return replace(sight, **selected, **changes)
 
 
 def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
@@ -89,8 +89,8 @@ def _corrupt_input(sight: Sight, rng: np.random.Generator) -> Sight:
         odds[:, :, int(rng.integers(12, odds.shape[2])) :] = 0
     if rng.random() < NO_FREE:
         odds[odds < 0] = 0
-    kept = np.flatnonzero(flat[sight.at] > 0)
-    sight = _rows(sight, kept, log_odds=odds, at=sight.at[kept])
+    occupied = np.flatnonzero(flat[sight.at] > 0)
+    sight = _rows(sight, occupied, log_odds=odds, at=sight.at[occupied])
     if len(sight.at) and rng.random() < 0.3:
         return _add_specks(sight, rng)
     return sight

@@ -148,10 +148,10 @@ def crop_input(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> 
         target = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
         odds[target] = sight.log_odds[source]
     cells = np.stack(np.unravel_index(sight.at, old), axis=1) - start
-    kept = ((cells >= 0) & (cells < shape)).all(axis=1)
-    at = np.ravel_multi_index(tuple(cells[kept].T), shape).astype(np.int32)
+    inside = ((cells >= 0) & (cells < shape)).all(axis=1)
+    at = np.ravel_multi_index(tuple(cells[inside].T), shape).astype(np.int32)
     rows = {
-        name: None if (value := getattr(sight, name)) is None else value[kept]
+        name: None if (value := getattr(sight, name)) is None else value[inside]
         for name in ("hits", "colour", "offset", "votes", "hint")
     }
     bottom = sight.bottom_m

@@ -190,13 +190,13 @@ class FrameCollator:
 
     def __call__(self, samples: list[list[Frame]]) -> Batch:
         """Return the frames one upon the other."""
-        frames, *beside = (list(column) for column in zip(*samples, strict=True))
+        frames, *others_of_scenes = (list(column) for column in zip(*samples, strict=True))
         target = OccTarget(
             labels=_stack(frames, "labels").long(),
             in_frustum=_stack(frames, "in_frustum"),
             depth_m=_stack(frames, "depth_m") if self._depth != "none" else None,
         )
-        more = tuple(self._inputs(others) for others in beside)
+        more = tuple(self._inputs(others) for others in others_of_scenes)
         return Batch(self._inputs(frames), target, more)
 
     def _inputs(self, frames: list[Frame]) -> OccInput:

@@ -195,6 +195,6 @@ def _depth_between(depth_m: np.ndarray, down: np.ndarray, across: np.ndarray) ->
     values = np.stack([value for value, _ in corners])
     weights = np.stack([np.broadcast_to(weight, values.shape[1:]) for _, weight in corners])
     nearest = np.take_along_axis(values, weights.argmax(axis=0)[None], axis=0)[0]
-    least = values.min(axis=0)
-    one_surface = (least > 0) & (values.max(axis=0) <= least * (1 + SAME_SURFACE))
+    minimum = values.min(axis=0)
+    one_surface = (minimum > 0) & (values.max(axis=0) <= minimum * (1 + SAME_SURFACE))
     return np.where(one_surface, (values * weights).sum(axis=0), nearest).astype(np.float32)

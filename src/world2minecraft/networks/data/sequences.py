@@ -75,6 +75,6 @@ def views_grid(frame: Frame, voxel_m: float) -> bool:
     return bool(((at_m >= 0) & (at_m <= sides_m)).all())
 
 
-def sequence_length(seed: int, step: int, most: int) -> int:
-    """Return how many frames the samples of a step have, 1 to ``most``, each as likely."""
-    return 1 + int(np.random.default_rng([seed, 2**21, step]).integers(most))
+def sequence_length(seed: int, step: int, max_frames: int) -> int:
+    """Return how many frames the samples of a step have, 1 to ``max_frames``, each as likely."""
+    return 1 + int(np.random.default_rng([seed, 2**21, step]).integers(max_frames))

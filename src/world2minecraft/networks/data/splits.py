@@ -60,11 +60,11 @@ def split_rows(scenes: list[str], splits: list[str], val_share: float, name: str
     return Split(train, [row for row in pool if scenes[row] in held_out], test)
 
 
-def take_evenly(rows: list[int], most: int) -> list[int]:
+def take_evenly(rows: list[int], limit: int) -> list[int]:
     """Return at most so many of the rows, spread evenly."""
-    if len(rows) <= most:
+    if len(rows) <= limit:
         return rows
-    return [rows[n * len(rows) // most] for n in range(most)]
+    return [rows[n * len(rows) // limit] for n in range(limit)]
 
 
 def describe_counts(splits: Mapping[str, list[int]]) -> str:

@@ -29,8 +29,10 @@ class DilatedConv3d(nn.Conv3d):
         if max(self.dilation) == 1 or not (self.training and torch.is_grad_enabled()):
             return super().forward(input)
         sides, steps = input.shape[2:], self.dilation
-        kept = [kernel // 2 for kernel in self.kernel_size]
-        found = functional.conv3d(split_phases(input, steps), self.weight, self.bias, padding=kept)
+        padding = [kernel // 2 for kernel in self.kernel_size]
+        found = functional.conv3d(
+            split_phases(input, steps), self.weight, self.bias, padding=padding
+        )
         return merge_phases(found, steps, sides)
 
 
@@ -118,14 +120,20 @@ def _grouped(channels: int) -> GroupNorm:
     return GroupNorm(groups, channels)
 
 
-def conv2d(given: int, made: int, kind: Norm, *, kernel: int = 3, stride: int = 1) -> nn.Sequential:
+def conv2d(
+    in_channels: int, out_channels: int, kind: Norm, *, kernel: int = 3, stride: int = 1
+) -> nn.Sequential:
     """Return a convolution of pictures with its normalisation; nothing is cut off afterwards."""
-    conv = nn.Conv2d(given, made, kernel, stride, kernel // 2, bias=False)
-    return nn.Sequential(conv, norm2d(kind, made))
+    conv = nn.Conv2d(in_channels, out_channels, kernel, stride, kernel // 2, bias=False)
+    return nn.Sequential(conv, norm2d(kind, out_channels))
 
 
-def conv3d(given: int, made: int, kind: Norm, *, kernel: int = 3, dilation: int = 1) -> nn.Module:
+def conv3d(
+    in_channels: int, out_channels: int, kind: Norm, *, kernel: int = 3, dilation: int = 1
+) -> nn.Module:
     """Return a convolution of cells with its normalisation; nothing is cut off afterwards."""
     around = dilation * (kernel // 2)
-    conv = DilatedConv3d(given, made, kernel, padding=around, dilation=dilation, bias=False)
-    return nn.Sequential(conv, norm3d(kind, made))
+    conv = DilatedConv3d(
+        in_channels, out_channels, kernel, padding=around, dilation=dilation, bias=False
+    )
+    return nn.Sequential(conv, norm3d(kind, out_channels))

@@ -28,18 +28,18 @@ class DDRBlock(nn.Module):
 
     def __init__(self, channels: int, norm: Norm, *, dilation: int = 1, halve: bool = False):
         super().__init__()
-        inner, made = max(channels // 4, 1), channels * (2 if halve else 1)
+        inner, out_channels = max(channels // 4, 1), channels * (2 if halve else 1)
         self.reduce = conv3d(channels, inner, norm, kernel=1)
         self.along = nn.ModuleList(
             _axis_conv(axis, inner, norm, dilation, 2 if halve else 1) for axis in (2, 1, 0)
         )
-        self.expand = conv3d(inner, made, norm, kernel=1)
+        self.expand = conv3d(inner, out_channels, norm, kernel=1)
         self.halve = halve
         if halve:
             self.second = _PooledConv(inner, inner, norm, (False, True, False))
             self.third = _PooledConv(inner, inner, norm, (True, False, False))
             self.fourth = _PooledConv(inner, inner, norm, (True, False, False))
-            self.around = _PooledConv(channels, made, norm, (True, True, True))
+            self.around = _PooledConv(channels, out_channels, norm, (True, True, True))
 
     def forward(self, cells: Tensor) -> Tensor:
         """Return [B, C, X, Y, Z], or [B, 2 C, ...] with half the sides, rounded up."""
@@ -62,10 +62,10 @@ def ddr_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3)
 class Upsample3d(nn.Module):
     """Doubles the sides of a grid, or one less where that is what was halved before."""
 
-    def __init__(self, channels: int, made: int, norm: Norm):
+    def __init__(self, channels: int, out_channels: int, norm: Norm):
         super().__init__()
-        self.up = nn.ConvTranspose3d(channels, made, 3, stride=2, padding=1)
-        self.norm = norm3d(norm, made)
+        self.up = nn.ConvTranspose3d(channels, out_channels, 3, stride=2, padding=1)
+        self.norm = norm3d(norm, out_channels)
 
     def forward(self, cells: Tensor, sides: Sequence[int]) -> Tensor:
         """Return [B, C', ...] of these sides, each twice what came in or one less."""
@@ -76,11 +76,11 @@ class Upsample3d(nn.Module):
 class _PooledConv(nn.Module):
     """Means of two along some axes, the last cell of an odd side counting twice; then a kernel."""
 
-    def __init__(self, channels: int, made: int, norm: Norm, axes: tuple[bool, bool, bool]):
+    def __init__(self, channels: int, out_channels: int, norm: Norm, axes: tuple[bool, bool, bool]):
         super().__init__()
         self.axes = axes
         self.sides = tuple(2 if halved else 1 for halved in axes)
-        self.carry = conv3d(channels, made, norm, kernel=1)
+        self.carry = conv3d(channels, out_channels, norm, kernel=1)
 
     def forward(self, cells: Tensor) -> Tensor:
         odd = [

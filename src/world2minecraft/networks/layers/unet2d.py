@@ -38,11 +38,11 @@ class Encoder(nn.Module):
     def __init__(self, widths: BackboneWidths, norm: Norm):
         super().__init__()
         self.taps = widths.taps
-        made = (*widths.taps[:4], widths.inner)
-        given = (3, *made[:4])
+        out_channels = (*widths.taps[:4], widths.inner)
+        in_channels = (3, *out_channels[:4])
         self.stages = nn.ModuleList(
             _make_stage(before, after, count, norm)
-            for before, after, count in zip(given, made, widths.blocks, strict=True)
+            for before, after, count in zip(in_channels, out_channels, widths.blocks, strict=True)
         )
         wider = widths.inner != widths.taps[4]
         self.widen = conv2d(widths.inner, widths.taps[4], norm, kernel=1) if wider else None
@@ -62,28 +62,33 @@ class Decoder(nn.Module):
     """From the taps back up, giving maps of one width at the scales that are asked for."""
 
     def __init__(
-        self, taps: Sequence[int], channels: int, made: int, norm: Norm, scales: Sequence[int]
+        self,
+        taps: Sequence[int],
+        channels: int,
+        out_channels: int,
+        norm: Norm,
+        scales: Sequence[int],
     ):
         super().__init__()
         self.enter = nn.Conv2d(taps[4], channels, 1)
-        beside = (taps[3], taps[2], taps[1], taps[0], 3)
+        skip_channels = (taps[3], taps[2], taps[1], taps[0], 3)
         finest = min(scales)
         self.steps, self.give = nn.ModuleDict(), nn.ModuleDict()
-        for step, tap in enumerate(beside):
+        for step, tap in enumerate(skip_channels):
             scale = 16 >> step
             if scale < finest:
                 break
             wide, narrow = max(channels >> step, 4), max(channels >> (step + 1), 4)
             self.steps[str(scale)] = _UpBlock(wide + tap, narrow, norm)
             if scale in scales:
-                self.give[str(scale)] = nn.Conv2d(narrow, made, 1)
+                self.give[str(scale)] = nn.Conv2d(narrow, out_channels, 1)
 
     def forward(self, picture: Tensor, taps: Sequence[Tensor]) -> dict[int, Tensor]:
         """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)]."""
         values, found = self.enter(taps[4]), {}
-        beside = {"16": taps[3], "8": taps[2], "4": taps[1], "2": taps[0], "1": picture}
+        skips = {"16": taps[3], "8": taps[2], "4": taps[1], "2": taps[0], "1": picture}
         for name, step in self.steps.items():
-            values = step(values, beside[name])
+            values = step(values, skips[name])
             if name in self.give:
                 found[int(name)] = self.give[name](values)
         return dict(sorted(found.items()))
@@ -123,18 +128,21 @@ class ResidualBlock(nn.Module):
 
 
 class _UpBlock(nn.Module):
-    def __init__(self, given: int, made: int, norm: Norm):
+    def __init__(self, in_channels: int, out_channels: int, norm: Norm):
         super().__init__()
         self.path = nn.Sequential(
-            conv2d(given, made, norm), nn.LeakyReLU(), conv2d(made, made, norm), nn.LeakyReLU()
+            conv2d(in_channels, out_channels, norm),
+            nn.LeakyReLU(),
+            conv2d(out_channels, out_channels, norm),
+            nn.LeakyReLU(),
         )
 
-    def forward(self, values: Tensor, beside: Tensor) -> Tensor:
-        sides = [int(side) for side in beside.shape[2:]]
+    def forward(self, values: Tensor, skips: Tensor) -> Tensor:
+        sides = [int(side) for side in skips.shape[2:]]
         values = nn.functional.interpolate(values, sides, mode="bilinear", align_corners=False)
-        return self.path(torch.cat([values, beside], dim=1))
+        return self.path(torch.cat([values, skips], dim=1))
 
 
-def _make_stage(given: int, made: int, count: int, norm: Norm) -> nn.Sequential:
-    blocks = (ResidualBlock(made, norm) for _ in range(count))
-    return nn.Sequential(conv2d(given, made, norm, stride=2), nn.ReLU(), *blocks)
+def _make_stage(in_channels: int, out_channels: int, count: int, norm: Norm) -> nn.Sequential:
+    blocks = (ResidualBlock(out_channels, norm) for _ in range(count))
+    return nn.Sequential(conv2d(in_channels, out_channels, norm, stride=2), nn.ReLU(), *blocks)

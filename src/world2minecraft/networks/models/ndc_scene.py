@@ -36,19 +36,21 @@ class DepthVolume(nn.Module):
     """From a picture's maps to volumes at 1/32, 1/16, 1/8 and 1/4.
 
     Args:
-        given: channels of the coarsest map.
-        beside: channels of the maps at 1/16, 1/8 and 1/4.
+        in_channels: channels of the coarsest map.
+        map_channels: channels of the maps at 1/16, 1/8 and 1/4.
         channels: of the volumes at 1/32, 1/16, 1/8 and 1/4.
         bins: of depth at 1/4; an eighth of them at 1/32.
         norm: how layers are normalised.
     """
 
-    def __init__(self, given: int, beside: int, channels: Sequence[int], bins: int, norm: Norm):
+    def __init__(
+        self, in_channels: int, map_channels: int, channels: Sequence[int], bins: int, norm: Norm
+    ):
         super().__init__()
         self.first = bins // 2 ** len(STEPS)
-        self.start = nn.Conv2d(given, channels[0] * self.first, 1)
+        self.start = nn.Conv2d(in_channels, channels[0] * self.first, 1)
         self.steps = nn.ModuleList(
-            _UpsampleStep(wide, beside, narrow, norm) for wide, narrow in pairwise(channels)
+            _UpsampleStep(wide, map_channels, narrow, norm) for wide, narrow in pairwise(channels)
         )
 
     def forward(self, coarsest: Tensor, maps: Mapping[int, Tensor]) -> dict[int, Tensor]:
@@ -64,11 +66,14 @@ class DepthVolume(nn.Module):
 class VolumeToCells(nn.Module):
     """Reads the volumes of all scales at the cells of the world, and sums them."""
 
-    def __init__(self, channels: Sequence[int], made: int):
+    def __init__(self, channels: Sequence[int], out_channels: int):
         super().__init__()
         scales = (32, *STEPS)
         self.carry = nn.ModuleDict(
-            {str(s): nn.Conv1d(given, made, 1) for s, given in zip(scales, channels, strict=True)}
+            {
+                str(s): nn.Conv1d(in_channels, out_channels, 1)
+                for s, in_channels in zip(scales, channels, strict=True)
+            }
         )
 
     def forward(
@@ -87,11 +92,14 @@ class VolumeToCells(nn.Module):
 class _UpsampleStep(nn.Module):
     """Doubles a volume; each pixel then gives its feature to the depths that ask for it."""
 
-    def __init__(self, given: int, beside: int, made: int, norm: Norm):
+    def __init__(self, in_channels: int, map_channels: int, out_channels: int, norm: Norm):
         super().__init__()
-        self.up = Upsample3d(given, made, norm)
-        self.key, self.value = nn.Conv2d(beside, made, 1), nn.Conv2d(beside, made, 1)
-        self.refine = DDRBlock(made, norm)
+        self.up = Upsample3d(in_channels, out_channels, norm)
+        self.key, self.value = (
+            nn.Conv2d(map_channels, out_channels, 1),
+            nn.Conv2d(map_channels, out_channels, 1),
+        )
+        self.refine = DDRBlock(out_channels, norm)
 
     def forward(self, volume: Tensor, picture: Tensor) -> Tensor:
         sides = (2 * int(volume.shape[2]), int(picture.shape[2]), int(picture.shape[3]))
@@ -132,8 +140,8 @@ class NdcScene(nn.Module):
         super().__init__()
         chosen, norm = SIZE_CONFIGS[size], NORMS[size]
         self.picture = make_backbone(backbone, size, chosen.picture, STEPS)
-        given = WIDTHS[size].taps[4]
-        self.volume = DepthVolume(given, chosen.picture, chosen.volumes, chosen.bins, norm)
+        in_channels = WIDTHS[size].taps[4]
+        self.volume = DepthVolume(in_channels, chosen.picture, chosen.volumes, chosen.bins, norm)
         self.to_cells = VolumeToCells(chosen.volumes, chosen.channels)
         self.cells = UNet3D(chosen.channels, grid_shape, norm, reaches=chosen.reaches)
 

@@ -1,7 +1,8 @@
-"""A room in words: what methods that make layouts of text start from.
+"""Describe a room in words: the input of methods that make layouts of text.
 
 From a finished run, a truth or a layout the words are put together by rule, from rooms and boxes;
-from photos a model writes them. ``for_method`` puts them into the form that each method reads.
+from photos, spread evenly over a capture, a model writes them. ``for_method`` puts them into the
+form that each method reads.
 """
 
 from collections import Counter
@@ -27,7 +28,6 @@ from world2minecraft.paper.layouts.judge import QUALITY, prompt_text
 from world2minecraft.paper.layouts.values import ComparedScene
 from world2minecraft.rendering.output.images import colour_bytes
 
-# A few photos of a capture, spread evenly over it, as a model is shown them.
 LONGEST_PX = 1024
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")

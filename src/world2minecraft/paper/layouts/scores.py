@@ -1,4 +1,4 @@
-"""What of a scene lies outside its room, collides, or is missing: one rule for all methods.
+"""Score layouts: what lies outside its room, collides, or is missing, by one rule for all methods.
 
 An object is **out of bounds** where more than 1 % of its footprint lies more than 10 cm outside
 the floor, or its top is more than 10 cm over the ceiling. Two **collide** where they share more
@@ -9,6 +9,11 @@ cells, for cells of two things can never overlap.
 Beside these stand the rules of others, so that their figures can be met: ``reaching`` is the rule
 of LayoutGPT's own script (a corner of the turned box more than 10 cm outside the box around the
 room), ``overlapping`` are pairs that share any volume at all.
+
+Solid collisions look at designs instead of boxes: a chair pushed under a table is in its box and
+meets nothing. A thing of a layout is as solid as the design that stands for it (``designs``),
+turned as the layout says; what no design stands for is solid all through. So layouts of others are
+held to the rule that our own furniture is held to, with its 4 cm.
 """
 
 from collections.abc import Sequence
@@ -36,13 +41,6 @@ from world2minecraft.paper.layouts.values import ComparedScene
 from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
-
-
-# Collisions of what is solid: a chair pushed under a table is in its box and meets nothing.
-#
-# A thing of a layout is as solid as the design that stands for it (``designs``), turned as the
-# layout says; what no design stands for is solid all through. So layouts of others are held to the
-# rule that our own furniture is held to (``metrics.layout.collisions``), with its 4 cm.
 
 
 def solid_collisions(scene: ComparedScene) -> int:

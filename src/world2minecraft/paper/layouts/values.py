@@ -11,7 +11,7 @@ from world2minecraft.core.types import Layout, LayoutObject, Placement
 from world2minecraft.formats.layout import layout_from_json, layout_to_json
 
 SCENE_FILE = "compared.json"
-MOST_BYTES = 16 << 20
+MAX_BYTES = 16 << 20
 DECIMALS = 6  # Micrometres: finer than any margin, so that what is read again scores the same.
 
 
@@ -65,7 +65,7 @@ def read_scene(path: str | Path) -> ComparedScene:
     Raises:
         InputError: the file is missing. DamagedFileError: it is no scene.
     """
-    told = read_json(path, MOST_BYTES)
+    told = read_json(path, MAX_BYTES)
     try:
         return ComparedScene(
             name=str(told["name"]),

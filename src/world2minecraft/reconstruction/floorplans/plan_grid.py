@@ -1,7 +1,8 @@
-"""A plan becomes a grid: walls, floor, ceiling, openings and furniture, with its placements.
+"""Turn a plan into a grid: walls, floor, ceiling, openings and furniture, with its placements.
 
 Cells whose middle lies in a room's outline are its air; what touches them outside is wall. All
-that a plan says counts as observed; what is outside stays unseen.
+that a plan states counts as observed; what is outside stays unseen. A thing fills the cells of the
+template that stands for it. RoomPlan measures shapes alone, so colours are only plausible.
 """
 
 from collections.abc import Sequence
@@ -29,8 +30,7 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import (
 )
 from world2minecraft.reconstruction.floorplans.room_outlines import PlacedRoom, placed_rooms
 
-# Colours for what a plan names: RoomPlan measures shapes alone, so these are only plausible.
-# They part furniture from floor and walls, which one colour of wood for all would not.
+# They tell furniture from floor and walls, which one colour of wood for all would not.
 Colour = tuple[int, int, int]
 STRUCTURE: dict[int, Colour] = {
     int(SemanticClass.FLOOR): (188, 166, 134),
@@ -66,11 +66,9 @@ THINGS: dict[str, Colour] = {
     "rug": (146, 92, 84),
 }
 
-# The cells of a plan while they are painted, and the things that stand in them so far.
-MOST_CELLS = 400_000_000
+MAX_CELLS = 400_000_000
 PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.
 
-# Furniture of a plan, each in its box: the cells of the template that stands for it.
 PUSH = 2  # Cells by which a box that reaches into a wall is moved off it.
 
 REACH_M = 0.20  # How far a wall's cells may lie from the line of an opening in it.
@@ -97,7 +95,7 @@ class Canvas:
         high = np.max([[*r.outline_m.max(axis=0), r.floor_z_m + r.height_m] for r in rooms], axis=0)
         first = np.floor(low / voxel_m).astype(int) - PAD
         shape = np.ceil(high / voxel_m).astype(int) + PAD - first
-        if np.prod(shape, dtype=np.float64) > MOST_CELLS:
+        if np.prod(shape, dtype=np.float64) > MAX_CELLS:
             metres = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
             raise UsageError(
                 f"the plan is {metres} m large; give larger cells, such as --voxel 0.16"

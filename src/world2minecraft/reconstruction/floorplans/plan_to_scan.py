@@ -25,9 +25,9 @@ THINGS_M = (0.15, 1.6)  # Of the heights at which furniture is looked for.
 STEP_M = 0.04
 SAME_FIT = 0.6  # Of the walls that were seen, so much meets surface: they are the same room.
 LAID_FIT = 0.6
-LEAST_LEAD = 0.05  # Over the next best place; a square room fits in four ways.
+MIN_LEAD = 0.05  # Over the next best place; a square room fits in four ways.
 APART_M = 0.4  # Nearer places are one.
-MOST_TILT_DEG = 3.0
+MAX_TILT_DEG = 3.0
 
 
 class PlanMismatchError(ValueError):
@@ -105,7 +105,7 @@ def _same_session(plan: CapturedPlan, evidence: FusedEvidence) -> CapturedPlan |
     """Return the plan carried by the scan's own alignment; None where it would stand askew."""
     move = evidence.scan_to_room @ plan.plan_to_session
     tilt = np.degrees(np.arccos(np.clip(move[2, 2], -1, 1)))
-    if tilt > MOST_TILT_DEG:
+    if tilt > MAX_TILT_DEG:
         return None
     yaw = float(np.degrees(np.arctan2(move[1, 0], move[0, 0])))
     flat = rotation_about_z(yaw)
@@ -129,7 +129,7 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
         )
     rivals = [places[0]]
     for place in places[1:]:
-        if places[0][0] - place[0] < LEAST_LEAD and not any(_is_one(place, one) for one in rivals):
+        if places[0][0] - place[0] < MIN_LEAD and not any(_is_one(place, one) for one in rivals):
             rivals.append(place)
     laid = [moved_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
     if len(laid) == 1:
@@ -138,7 +138,7 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
     inner = [furniture_fit(one, evidence) for one in laid]
     order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
     first, second = order[:2]
-    if inner[first] - inner[second] < LEAST_LEAD:
+    if inner[first] - inner[second] < MIN_LEAD:
         raise PlanMismatchError(
             f"fits this scan in several ways ({rivals[first][0]:.0%} and {rivals[second][0]:.0%} "
             "of its walls meet walls, and the furniture does not tell): export scan and plan "

@@ -1,4 +1,8 @@
-"""A plan beside a scan, from file to file: its votes after fusion, its openings after labelling."""
+"""Add a plan to a scan, from file to file: its votes after fusion, its openings after labelling.
+
+Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
+Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,9 +29,6 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
     placed_rooms,
 )
 
-# What a plan says of a scan's cells, as votes; and openings that the scan did not show.
-# Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
-# Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
 EDGE_M = 0.02
 IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.
 LEVEL_M = 0.05

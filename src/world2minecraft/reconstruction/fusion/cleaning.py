@@ -15,7 +15,7 @@ from world2minecraft.core.parameters import parameter
 from world2minecraft.core.types import COMPLETED, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 
-MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
+MAX_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class CleanParameters:
     def __post_init__(self):
         if self.floater_cells < 0:
             raise UsageError(f"clean.floater_cells must be 0 or more, not {self.floater_cells}")
-        if not 0 <= self.hole_m <= MOST_HOLE_M:
-            raise UsageError(f"clean.hole_m must be 0 to {MOST_HOLE_M:g} m, not {self.hole_m:g}")
+        if not 0 <= self.hole_m <= MAX_HOLE_M:
+            raise UsageError(f"clean.hole_m must be 0 to {MAX_HOLE_M:g} m, not {self.hole_m:g}")
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:

@@ -14,7 +14,7 @@ from world2minecraft.core.types import GridEvidence
 from world2minecraft.reconstruction.fusion.parameters import FuseParameters
 
 EDGE = 0.02  # Probabilities are kept off 0 and 1, so that one sure view cannot veto all others.
-LEAST_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says nothing.
+MIN_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says nothing.
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ def grid_gains(
     gains = parameters.network_weight * np.log(occupied / (1 - occupied))
     votes = mean.astype(np.float32)
     votes[:, 0] = 0
-    votes[votes.sum(axis=1) < LEAST_VOTE] = 0
+    votes[votes.sum(axis=1) < MIN_VOTE] = 0
     if evidence.colour is None:
         colour = np.zeros((len(cells), 3))
     else:

@@ -13,7 +13,7 @@ from world2minecraft.core.types import Layout, Opening
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.homes.moved_run import Run
 
-LEAST_WIDTH_M, MOST_WIDTH_M = 0.45, 2.5
+MIN_WIDTH_M, MAX_WIDTH_M = 0.45, 2.5
 ASIDE_M = 0.3  # So far before and behind an opening one asks whether the room goes on.
 SAME_PLACE_M = 0.5  # Two findings of one door.
 HEADS_M = (1.9, 2.3)  # Of a passage, where no lintel was seen.
@@ -60,7 +60,7 @@ def _is_same(one: Doorway, other: Doorway) -> bool:
 def _of_opening(opening: Opening, layout: Layout) -> Doorway | None:
     width = float(np.linalg.norm(opening.end_m - opening.start_m))
     outward = _outward(opening, layout)
-    if opening.kind == "window" or not LEAST_WIDTH_M <= width <= MOST_WIDTH_M or outward is None:
+    if opening.kind == "window" or not MIN_WIDTH_M <= width <= MAX_WIDTH_M or outward is None:
         return None
     x, y = ((opening.start_m + opening.end_m) / 2).tolist()
     return Doorway((x, y), width, opening.head_m, outward, layout.floor_z_m)
@@ -89,7 +89,7 @@ def _passages(run: Run, layout: Layout) -> list[Doorway]:
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         side = end - start
         length = float(np.linalg.norm(side))
-        if length < LEAST_WIDTH_M or np.abs(side).min() > 0.05 * length:
+        if length < MIN_WIDTH_M or np.abs(side).min() > 0.05 * length:
             continue
         # Counter-clockwise: out is to the right of the way along an edge.
         outward = int(np.rint(np.arctan2(-side[0], side[1]) / (np.pi / 2))) % 4
@@ -104,7 +104,7 @@ def _passages(run: Run, layout: Layout) -> list[Doorway]:
         is_open = share.min(axis=1) >= OPEN_SHARE
         for first, last in _runs(is_open):
             width = (last - first) / count * length
-            if LEAST_WIDTH_M <= width <= MOST_WIDTH_M:
+            if MIN_WIDTH_M <= width <= MAX_WIDTH_M:
                 x, y = (start + (first + last) / 2 / count * side).tolist()
                 door = Doorway((x, y), width, USUAL_HEAD_M, outward, layout.floor_z_m, False)
                 found.append(door)
@@ -146,7 +146,7 @@ def _gaps(run: Run, layout: Layout) -> list[Doorway]:
             one = Doorway(
                 (middle[0], middle[1]), width, USUAL_HEAD_M, outward, layout.floor_z_m, False
             )
-            if width <= MOST_WIDTH_M:
+            if width <= MAX_WIDTH_M:
                 found.append(one)
     return found
 

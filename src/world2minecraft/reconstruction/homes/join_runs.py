@@ -32,7 +32,7 @@ from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_finished, check_writable
 from world2minecraft.reconstruction.stages import run_stage
 
-MOST_RUNS = 50
+MAX_RUNS = 50
 
 
 def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
@@ -41,8 +41,8 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
     Raises:
         InputError: a folder holds no finished run. UsageError: cells of different sizes.
     """
-    if not 2 <= len(folders) <= MOST_RUNS:
-        raise UsageError(f"give 2 to {MOST_RUNS} finished runs to join, not {len(folders)}")
+    if not 2 <= len(folders) <= MAX_RUNS:
+        raise UsageError(f"give 2 to {MAX_RUNS} finished runs to join, not {len(folders)}")
     runs: list[Run] = []
     for folder in folders:
         check_finished(folder)

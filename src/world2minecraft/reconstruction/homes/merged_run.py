@@ -17,8 +17,8 @@ from world2minecraft.reconstruction.homes.doors import Doorway, head_of, shifted
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
 from world2minecraft.reconstruction.homes.room_placement import Placed
 
-MOST_CELLS = 600_000_000
-MOST_OBJECTS = 65535
+MAX_CELLS = 600_000_000
+MAX_OBJECTS = 65535
 KEPT_SHARE = 0.5  # Of an object's cells: else it is what was seen through a door.
 FREE_SHARE = 0.5
 BACK_CELLS = 2  # The leaf of a door stands up to so far behind its wall's face.
@@ -91,7 +91,7 @@ class _Cells:
 
     def grid(self, instances: Sequence[ObjectInstance]) -> OccupancyGrid:
         """Return the grid; cells of objects that are gone belong to none."""
-        known = np.zeros(MOST_OBJECTS + 1, bool)
+        known = np.zeros(MAX_OBJECTS + 1, bool)
         known[[one.id for one in instances]] = True
         instance = self.arrays["instance"]
         instance[~known[instance]] = 0
@@ -106,15 +106,15 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
     ends = [first + run.grid.shape for first, run in zip(firsts, runs, strict=True)]
     first = np.min(firsts, axis=0)
     shape = tuple((np.max(ends, axis=0) - first).tolist())
-    if np.prod(shape, dtype=np.float64) > MOST_CELLS:
+    if np.prod(shape, dtype=np.float64) > MAX_CELLS:
         extent = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
         raise UsageError(
             f"together the rooms take {extent} m, too much for one grid; join fewer of them, or "
             "say with --at where they stand"
         )
     offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
-    if offsets[-1] > MOST_OBJECTS:
-        raise UsageError(f"together the rooms have over {MOST_OBJECTS:,} objects; join fewer")
+    if offsets[-1] > MAX_OBJECTS:
+        raise UsageError(f"together the rooms have over {MAX_OBJECTS:,} objects; join fewer")
     owner = _owners(runs, first, shape, voxel_m)
     arrays = {
         "labels": np.full(shape, UNKNOWN, np.uint8),

@@ -1,4 +1,9 @@
-"""All runs in their places: by hand where that was given, else by their doors."""
+"""Place the runs of a home: by hand where that was given, else by their doors.
+
+Two runs have a door in common where openings of about one width and height meet from both sides of
+a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one saw
+there must agree with what the other saw of the same place, and shows the place to the cell.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,15 +19,11 @@ from world2minecraft.geometry.morphology import dilate
 from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shifted_door
 from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved, moved_layout
 
-# Where one room may stand beside others: its doors against theirs.
-# Two runs have a door in common where openings of about one width and height meet from both sides
-# of a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one
-# saw there must agree with what the other saw of the same place, and tells the place to the cell.
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Between two rooms: the wall's face in each.
 ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # How far a door's place may be off.
 OVERLAP_M2 = 0.25  # Of floor that both would have: outlines are off by a cell.
-LEAST_COMMON = 150  # Solid cells of one that the other knows, before their agreement counts.
+MIN_COMMON = 150  # Solid cells of one that the other knows, before their agreement counts.
 # Right places of three generated houses, scanned room by room, agree by 0.99, wrong ones by 0.45 to
 # 0.87: what is below counts against a place.
 AGREE_WEIGHT, AGREE_NEUTRAL = 4.0, 0.75
@@ -33,7 +34,7 @@ MORE_DOORS = 0.3  # What each further door that meets adds.
 UNSURE_COST = 0.1
 
 SURE_BY = 0.15  # A place is taken where it fits better than any other by so much.
-MOST_SHOWN = 4
+MAX_SHOWN = 4
 MET_M = 0.5  # Doors nearer than that meet.
 ALIKE = 0.85  # Two scans of one room agree by so much.
 HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the other.
@@ -146,7 +147,7 @@ def _refined(turned: Known, move: Move, outward: int, there: Known, wall: tuple[
         cells = np.array(move.cells) + along * aside + across * ahead
         tried = Move(move.quarter_turns, tuple(cells.tolist()))
         common, agreed = agreement(_shifted(turned, tried), there, wall)
-        if common >= LEAST_COMMON and agreed > most + 1e-9:
+        if common >= MIN_COMMON and agreed > most + 1e-9:
             best, most = tried, agreed
     return best
 
@@ -172,7 +173,7 @@ def _score(
     for other, there, _ in others:
         is_next = other.name == beside
         common, agreed = agreement(here, there, _wall_of(theirs, voxel_m) if is_next else None)
-        counts = common >= LEAST_COMMON
+        counts = common >= MIN_COMMON
         if overlap_m2(layouts, other.layouts) > OVERLAP_M2 and not (counts and agreed > AGREEING):
             return None
         if counts:
@@ -318,7 +319,7 @@ def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float
         )
     name = open_ones[0].name
     found = options[name]
-    ways = " or ".join(f"--at {stated(name, fit.move, voxel_m)}" for fit in found[:MOST_SHOWN])
+    ways = " or ".join(f"--at {stated(name, fit.move, voxel_m)}" for fit in found[:MAX_SHOWN])
     return f"{name} fits in {len(found)} places about as well; choose one: {ways}"
 
 

@@ -21,7 +21,7 @@ from world2minecraft.reconstruction.layout.surface_cells import Surface
 
 Kind = Literal["window", "door", "doorway"]
 BEND_M = 0.32  # Bends are wider than this to both sides.
-MOST_BEND_M = 0.1
+MAX_BEND_M = 0.1
 STRAIGHT_M = 0.03  # A wall that bends by less is straight.
 BAR_M = 0.02  # The bars of a window lie before its glass.
 STEP_M = 0.012  # What hangs on a wall and what is let into it has an edge; a bend has none.
@@ -69,7 +69,7 @@ def _bend(surface: Surface, relief: Relief) -> np.ndarray:
     """
     gap_m = np.where(relief.seen, relief.gap_m, 0.0)
     bend = ndimage.median_filter(gap_m, 2 * surface.cells_of(BEND_M) + 1, mode="nearest")
-    return np.clip(bend, -MOST_BEND_M, MOST_BEND_M)
+    return np.clip(bend, -MAX_BEND_M, MAX_BEND_M)
 
 
 class _Face:

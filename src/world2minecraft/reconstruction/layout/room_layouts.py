@@ -1,7 +1,8 @@
-"""The rooms of a place as layouts: outline of the floor, height of the walls, openings.
+"""Find the rooms of a place as layouts: outline of the floor, height of the walls, openings.
 
 Seen from above, walls part the free space of a storey into rooms; they go on over doorways, whose
-lintels were seen, and behind what stands before them.
+lintels were seen, and behind what stands before them. An outline has few straight corners, on the
+planes of its walls.
 """
 
 from itertools import pairwise
@@ -18,7 +19,6 @@ from world2minecraft.reconstruction.layout.storeys import find_storeys
 from world2minecraft.reconstruction.layout.structure import Structure, Wall, structure_of
 from world2minecraft.reconstruction.layout.surface_cells import Surface, surface_of, turned
 
-# The outline of a room's floor: few straight corners, on the planes of its walls.
 MERGE_M = 0.09  # Lines nearer than a cell and a bit are one wall.
 NEAR_WALL_M = 0.35  # A region ends at a wall this near; else it ends where it was seen to.
 INSIDE_SHARE = 0.5

@@ -1,4 +1,9 @@
-"""The structure of one storey: floor, ceiling and walls, and what is cut into the walls."""
+"""Find the structure of one storey: floor, ceiling and walls, and what is cut into the walls.
+
+Floor and ceiling are the two large level planes of a room. The floor's top is z = 0 by the room
+frame, so its cells are the layer under it. Noise lifts some floor points into the layer above: that
+**spill** is carried down, the one case in which a labeller empties an observed cell.
+"""
 
 from dataclasses import dataclass
 
@@ -11,12 +16,6 @@ from world2minecraft.reconstruction.layout.plane_residuals import Relief
 from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
-
-# Floor and ceiling: the two large level planes of a room.
-#
-# The floor's top is z = 0 by the room frame, so its cells are the layer under it. Noise lifts some
-# floor points into the layer above: that **spill** is carried down, the one case in which a
-# labeller empties an observed cell.
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,9 @@
-"""Depth as evidence: each pixel with depth is a point of the surface, with colour and label.
+"""Turn depth into evidence: each pixel with depth is a point of the surface, with colour and label.
 
 Where colour and depth are two cameras, a depth point takes the colour and the label of the pixel
-that it projects to; a point that the colour camera does not see has the nearest edge pixel's.
+that it projects to; a point that the colour camera does not see has the nearest edge pixel's. For
+normals depth is averaged in squares of pixels; a square's normal is that of the plane through the
+means of its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,9 +18,6 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
 from world2minecraft.geometry.unprojection import pixel_rays, project, unproject_depth
 
-# Which way the surface at each pixel of a depth image faces.
-# Depth is averaged in squares of pixels; a square's normal is that of the plane through the means
-# of its neighbours, as far as the surface goes on without a jump. Squares at jumps have none.
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.
 JUMP_SHARE = 0.04  # Of the depth: neighbouring squares of one surface differ by less.

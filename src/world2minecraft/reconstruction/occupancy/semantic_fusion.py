@@ -1,8 +1,14 @@
-"""Voters: networks that say which class each point of a view's depth belongs to.
+"""Fuse semantics into depth evidence: networks vote for the class of each point of a view.
 
 A segmenter votes by the pixel that shows the point, a monocular occupancy network by the cell of
-its grid that holds it. A vote is shared among classes by their probabilities; what a network takes
-for nothing that we know is not voted for.
+its grid that holds it. A vote is shared among classes by their probabilities; classes that the
+program does not know get no vote. Segmenters are found by name in ``SEGMENTERS``: ``hf:MODEL`` is
+any of the transformers library (``hf_segmenter.py``), and packages add families under the entry
+point group ``world2minecraft.segmenter``.
+
+Predictions are cached in the user's folder by the content of the picture, the state of the network
+and the meaning of its labels, so that whatever changes one of them is predicted again. The oldest
+go when the cache is full.
 """
 
 import hashlib
@@ -25,11 +31,8 @@ from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_cl
 from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
 
-# What networks said of pictures, kept in the user's cache: asked again, it costs nothing.
-# A file is found by the content of the picture, the state of the network and the meaning of its
-# labels, so that whatever changes one of them is asked anew. The oldest go when too much is kept.
 FOLDER = "semantics"
-MOST_BYTES = 1 << 30  # Some 5,000 pictures.
+MAX_BYTES = 1 << 30  # Some 5,000 pictures.
 VERSION = b"1"  # Of what is kept: another makes all that is there unknown.
 
 SEGMENTERS = Registry(
@@ -72,16 +75,10 @@ def _forget_oldest(place: Path) -> None:
     files = [(path.stat().st_mtime, str(path), path) for path in place.glob("*/*.npz")]
     total = sum(path.stat().st_size for _, _, path in files)
     for _, _, path in sorted(files):
-        if total <= MOST_BYTES:
+        if total <= MAX_BYTES:
             return
         total -= path.stat().st_size
         path.unlink(missing_ok=True)
-
-
-# Networks that say what each pixel shows, by name; others join through an entry point.
-#
-# ``hf:MODEL`` is any of the transformers library (``hf_semantics.py``). Packages add families under
-# the group ``world2minecraft.segmenter``.
 
 
 class Segmenter(Protocol):

@@ -1,4 +1,7 @@
-"""Any capture as an aligned scan, whatever it lacks."""
+"""Open any capture as an aligned scan; poses, depth and scale that it lacks are computed first.
+
+What is computed lies in ``OUT/capture`` and is taken from there the next time.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -32,12 +35,11 @@ from world2minecraft.reconstruction.opening.scale import normalised, scaled_by_d
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
 
-# From pictures to a capture with poses, depth and scale in ``OUT/capture``.
 FOLDER = "capture"
 STAMP = "prepared.json"
 UNNAMED_CAPTURE = "photos"  # What steps that know no path call the capture.
 UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
-LEAST_PHOTOS = 3
+MIN_PHOTOS = 3
 Told = dict[str, Any]
 
 # Names of folders that say nothing of their scene.
@@ -135,10 +137,10 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     if is_one_photo(found.source):
         return prepare_photo(judged, folder, chosen, UNIT)
     photos = photos_of_capture(judged)
-    if len(photos) < LEAST_PHOTOS:
+    if len(photos) < MIN_PHOTOS:
         raise CaptureError(
             found.folder,
-            f"has {len(photos)} usable photos and no depth; at least {LEAST_PHOTOS} that overlap "
+            f"has {len(photos)} usable photos and no depth; at least {MIN_PHOTOS} that overlap "
             "are needed, 40 or more from all sides show a room",
         )
     finder = check_poses if judged.posed else find_poses

@@ -24,7 +24,7 @@ from world2minecraft.geometry.unprojection import project
 from world2minecraft.reconstruction.opening.photo_views import posed_frame
 from world2minecraft.reconstruction.parameters import Parameters
 
-LEAST_RATIOS = 50
+MIN_RATIOS = 50
 LOOKED_AT = 24  # Frames whose depth is held against the points.
 HANDY_DEPTH = 2.5
 FRAME_SIGMA = 0.02  # What a sensor's depth is off as a whole.
@@ -49,7 +49,7 @@ def scaled_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[Spars
         ratios.append(found)
         middles += [float(np.median(found))] * (len(found) > 0)
     every = np.concatenate(ratios) if ratios else np.zeros(0)
-    if len(every) < LEAST_RATIOS:
+    if len(every) < MIN_RATIOS:
         raise CaptureError(
             judged.capture.folder,
             "the points found in the colour images hardly meet any depth; do the two show the "

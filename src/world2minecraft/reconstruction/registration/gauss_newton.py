@@ -1,8 +1,13 @@
-"""One joint step of all frames: point to plane, robust, with priors that hold the gauge.
+"""One Gauss-Newton step of all frames: point to plane, robust, with priors that hold the gauge.
 
 Unknown are seven numbers a frame (turn, shift, log of the depth's scale) and one offset a surfel.
 The offsets are eliminated; conjugate gradients solve the rest without a matrix, so that time and
 memory grow with the patches alone.
+
+Observation i is a patch of frame ``frame[i]`` on surfel ``surfel[i]``. Its residual is
+``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of the
+frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes up the
+weighted mean of its observations, so every sum is that of differences from the mean.
 """
 
 from dataclasses import dataclass
@@ -11,11 +16,6 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 
-# The sums of the joint solve, one pass over the observations each.
-# Every observation i is a patch of frame ``frame[i]`` on surfel ``surfel[i]``. Its residual is
-# ``r = n . (p - c)`` and its row ``J = ((p - eye) x n, n, n . (p - eye))``: what a small turn of
-# the frame about its eye, a shift and a stretch of its depth do to r. A surfel's own offset takes
-# up the weighted mean of its observations, so every sum is that of differences from the mean.
 UNKNOWNS = 7
 
 REWEIGHTINGS = 4

@@ -1,10 +1,11 @@
-"""``refine``: poses and depth scales of all frames at once, from what they see in common.
+"""Refine poses and depth scales of all frames at once, from what they see in common.
 
 In: a scan whose poses are off by some millimetres and tenths of a degree, and whose depth may be
 stretched by some per cent, each frame its own way. Out: a change for each frame. Patches of all
-frames are grouped into surfels, and all frames are moved until the patches of a surfel meet; then
-they are grouped again, more finely. How far poses and scales are off is learned on the way. A part
-of the surface takes no part and judges: where it does not fit better afterwards, nothing is moved.
+frames are grouped into surfels, and all frames are moved until the patches of a surfel meet (one
+joint Gauss-Newton step); then they are grouped again, more finely. How far poses and scales are
+off is learned on the way. A part of the surface takes no part and judges: where it does not fit
+better afterwards, nothing is moved.
 """
 
 from collections.abc import Iterable
@@ -36,7 +37,7 @@ FIRST_CELLS = 2.0  # The first pass's cells are wider by this, for the same reas
 SAME_WAY = 0.9  # Cosine of 26 degrees between a patch and its surfel.
 FIRST_BEND_M = 0.003  # What the depth of patches is off for other reasons than their pixels' noise.
 INDEPENDENT = 30  # Regions of an image whose depth bends by itself; patches there err together.
-LEAST_NOISE_M = 0.002
+MIN_NOISE_M = 0.002
 SIGMAS_LEAST = np.array([1e-4, 3e-4, 1e-4])  # Radians, metres, log; less would freeze a frame.
 SIGMAS_MOST = np.array([0.03, 0.05, 0.15])
 GROUPS = (slice(0, 3), slice(3, 6), slice(6, 7))
@@ -47,13 +48,10 @@ HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak f
 MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
 CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
 CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
-MOST_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
-LEAST_EACH = 200
-LEAST_JUDGES = 50
+MAX_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
+MIN_PATCHES_PER_FRAME = 200
+MIN_JUDGES = 50
 DECIMALS = 9
-
-
-# Rounds of registration: who sees the same surface, then one joint step of all frames.
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +92,7 @@ def run_passes(
         gap_m = GAPS_M[min(number, len(GAPS_M) - 1)]
         width_m = WIDTHS_M[min(number, len(WIDTHS_M) - 1)]
         cell_m = chosen.cell_m * (FIRST_CELLS if number == 0 else 1.0)
-        noise_m = max(LEAST_NOISE_M, state.bend_m * together)
+        noise_m = max(MIN_NOISE_M, state.bend_m * together)
         seen = observe(state.surface, speaks, cell_m, gap_m, noise_m)
         prior = np.repeat(state.sigmas, (3, 3, 1))
         state = _stepped(state, solve(seen, state.total, prior, width_m))
@@ -213,7 +211,7 @@ def register(
         progress: told of the stage ``register``.
     """
     total = len(scan.views) + 1
-    most_each = max(LEAST_EACH, MOST_PATCHES // max(1, len(scan.views)))
+    most_each = max(MIN_PATCHES_PER_FRAME, MAX_PATCHES // max(1, len(scan.views)))
     surface = collect_oriented_points(_told(depth_views(scan), total, progress), most_each)
     found = register_surface(surface, scan.scan_to_room, parameters or RegisterParameters())
     progress(STAGE, total, total)
@@ -279,7 +277,7 @@ def _misfit_m(
     judges = surface.subset(held)
     surfels = surfels_of(judges, chosen.cell_m, JUDGED_GAP_M)
     index = shared(judges, surfels, np.ones(len(judges.points_m), bool))
-    if len(index) < LEAST_JUDGES:
+    if len(index) < MIN_JUDGES:
         return None
     owner = surfels.owner[index]
     off = judges.points_m[index] - surfels.centers_m[owner]

@@ -1,4 +1,8 @@
-"""Stage 6: each object becomes furniture of the library, in its place, or stays its own cells."""
+"""Stage 6: each object becomes furniture of the library, in its place, or stays its own cells.
+
+Of an object that was cut into runs, crumbs are left over: those that a template's surface hides are
+dropped, and those that belong together become one.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -31,8 +35,6 @@ from world2minecraft.reconstruction.retrieval.variants import (
     offers_of,
 )
 
-# What a cut leaves over: crumbs that a template's surface hides, and crumbs that belong together.
-# In: the cells of each crumb and of the runs that match, all of one object.
 FEWEST = 4  # Cells; a smaller crumb is noise of the run beside it.
 Box = tuple[np.ndarray, np.ndarray]
 

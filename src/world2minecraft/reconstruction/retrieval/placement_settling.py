@@ -1,8 +1,10 @@
-"""Placements settled: each within its room, no two of them solid in the same place.
+"""Settle placements: each within its room, no two of them solid in the same place.
 
-In: the placements as they were matched. Where the solid parts of two meet, the least change parts
-them: one is moved by up to a quarter of a metre, or trimmed, or built from its own cells, which
-never meet those of another.
+A scan's surface is thick and its walls are found to a centimetre or two, so boxes reach into walls
+by a cell: they are trimmed at the walls, or moved off them. Boxes that overlap by a cell or two
+give way: what stands on a thing begins at its top. Where the solid parts of two still meet, the
+least change parts them: one is moved by up to a quarter of a metre, or trimmed, or built from its
+own cells, which never meet those of another.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,15 +21,13 @@ from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.furniture.solids import OWN_CELLS, box_m, depth_m, own_cells, solids_m
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import largest_rectangle
 
-# Placements kept within the room they stand in: trimmed at its walls, or moved off them.
-# In: placements and the rooms' outlines, the walls' inner faces. A scan's surface is thick and its
-# walls are found to a centimetre or two, so boxes reach into walls by a cell.
+# Within rooms.
 STEP_M = 0.04  # How finely a slanted wall is followed.
 LOST_M = 0.6  # What lies farther outside was seen through an opening or in a mirror.
-MOST_STAYS = 0.7  # Of each side of what is cut; else it is moved as a whole.
+MIN_REMAINING_SHARE = 0.7  # Of each side of what is cut; else it is moved as a whole.
 HAIR_M = 1e-6
 
-# Placements that overlap by a cell or two give way: what stands on a thing begins at its top.
+# Overlaps.
 DEEPEST_CELLS = 2  # A scan's noise and the cells that two things share; more is a real overlap.
 TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair under its table is no overlap.
 
@@ -128,7 +128,7 @@ def _within_span(box: np.ndarray, axis: int, low: float, high: float, least: flo
 def _within_outline(box: np.ndarray, polygon: np.ndarray, least: np.ndarray) -> np.ndarray | None:
     """Return a box cut to a polygon where most of it stays, else moved, else as small as may be."""
     first = _largest_within(box[:, :2], polygon)
-    wanted = np.maximum(least[:2], MOST_STAYS * np.ptp(box, axis=0)[:2])
+    wanted = np.maximum(least[:2], MIN_REMAINING_SHARE * np.ptp(box, axis=0)[:2])
     if first is not None and (np.ptp(first, axis=0) >= wanted - HAIR_M).all():
         return np.column_stack([first, box[:, 2]])
     moved = _moved_within(box, polygon)

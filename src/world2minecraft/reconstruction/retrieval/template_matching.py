@@ -1,4 +1,8 @@
-"""The paper's argmax over templates and turns, with sizes, parameters and shifts beside them."""
+"""Match templates: the paper's argmax over templates and turns, with sizes, parameters and shifts.
+
+A ``Trial`` is one way to put one template, and its score: the paper's IoU and what breaks ties. The
+first, coarse trials are every template of a class, turned and sized by the object's box.
+"""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -13,12 +17,10 @@ from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
 
-# One way to put one template, and its score: the paper's IoU and what breaks ties.
 PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
 Cells = tuple[int, int, int]
 Values = tuple[tuple[str, float], ...]
 
-# The first, coarse trials: every template of a class, turned and sized by the object's box.
 HIDDEN_CELLS = 1  # How far a scan's noise may eat into both sides of an object at once.
 CLEAR_M = 0.3  # What hangs on a wall leaves at least this much free under it.
 

@@ -1,10 +1,11 @@
-"""The labeller that learned: a small 3D network names what was seen and completes what is near.
+"""Label by a learned network: a small 3D network names what was seen and completes what is near.
 
 The network (``weights/completion.onnx``) was trained on virtual scans of generated rooms. Evidence
 wins: an observed cell stays occupied and is named among the eleven classes, an observed free cell
 stays free. Unseen cells are filled only where the network is sure and a surface of the same class
 was seen near by; they are marked as completed. Planes of floors and walls are pulled straight as
-by the other labellers, whose geometric labels are one of the network's inputs.
+by the other labellers, whose geometric labels are one of the network's inputs. Large grids are run
+in tiles.
 """
 
 from dataclasses import dataclass, replace
@@ -34,7 +35,6 @@ from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
 from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
 from world2minecraft.reconstruction.semantics.votes import geometric_prior
 
-# The completion network as it is run: ONNX in, chances out, a large grid in tiles.
 WEIGHTS = Path(__file__).parents[2] / "weights" / "completion.onnx"
 LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # Other cells look like other things.
 MULTIPLE = 8  # Of the sides that the network takes.
@@ -43,7 +43,7 @@ MAX_BYTES = 64 << 20
 THREADS = 2
 HALF = 0.5
 
-LEAST_CHANCE = 1e-4
+MIN_CHANCE = 1e-4
 FIRST_THING = int(SemanticClass.CHAIR)
 
 
@@ -223,7 +223,7 @@ class CompletionLabeller:
         voted = piece_votes(hint, chance, self.parameters.agreed_share)
         cells = base.occupied
         share = voted.reshape(CLASS_COUNT, -1)[1:, origin[cells]]
-        share = share / np.maximum(share.sum(axis=0), LEAST_CHANCE)
+        share = share / np.maximum(share.sum(axis=0), MIN_CHANCE)
         said = share + self._from_hint(hint.reshape(-1)[origin[cells]])
         counts = votes.reshape(-1, CLASS_COUNT)[origin[cells], 1:].astype(np.float32).T
         has = counts.any(axis=0)
@@ -298,7 +298,7 @@ def piece_votes(hint: np.ndarray, chance: np.ndarray, agreed_share: float) -> np
         inside = parts > 0
         owner = parts[inside]
         of_cells = chance[1:, inside]
-        of_cells = of_cells / np.maximum(of_cells.sum(axis=0), LEAST_CHANCE)
+        of_cells = of_cells / np.maximum(of_cells.sum(axis=0), MIN_CHANCE)
         sums = np.stack([np.bincount(owner, row, count + 1) for row in of_cells])
         mean = sums / np.maximum(np.bincount(owner, minlength=count + 1), 1)
         agreed = mean.max(axis=0) >= agreed_share

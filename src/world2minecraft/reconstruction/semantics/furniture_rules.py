@@ -1,4 +1,8 @@
-"""Objects among what is no structure: cut at plates, then told apart piece by piece."""
+"""Label furniture by rules: objects are cut at horizontal surfaces and classified piece by piece.
+
+The rules ask for size, height, shape and colour of a surface and of what stands around it; the
+first that fits decides.
+"""
 
 from dataclasses import dataclass
 
@@ -108,9 +112,6 @@ def _is_board(surface: Surface, plate: Plate, parameters: PlateParameters) -> bo
     first, last = (surface.layers_below(height) for height in parameters.shelf_m)
     over = project_to_plan(surface.occupied[:, :, first:last])
     return bool(over[plate.footprint].mean() >= parameters.shelf_share)
-
-
-# What a plate and a piece are: rules of size, height, shape and colour, the first that fits.
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,16 +40,18 @@ def test_up_is_told_where_the_format_says_another(name, axis):
     samples = sample_surface(mesh_of(ROOMS[name], turn))
     # A hall is higher than wide, and what stands in it stands at its walls: the format decides.
     for usual in ("z", "y") if name != "hall" else (axis.strip("-"),):
-        stance = find_orientation(samples, usual, False, None)
-        np.testing.assert_allclose(stance.turn @ AXES[axis], [0, 0, 1], atol=1e-9)
-        assert stance.told == f"up is taken to be {axis} (guessed)"
+        orientation = find_orientation(samples, usual, False, None)
+        np.testing.assert_allclose(orientation.turn @ AXES[axis], [0, 0, 1], atol=1e-9)
+        assert orientation.description == f"up is taken to be {axis} (guessed)"
 
 
 def test_up_of_a_cloud_is_told_too():
     points, _, _ = room_quads().points(apart_m=0.05, noise_m=0.005)
     turn = rotation_to_up(np.array(AXES["y"])).T
     samples = sample_surface(PointCloud((points @ turn.T).astype(np.float32)))
-    assert find_orientation(samples, "z", False, None).told == "up is taken to be y (guessed)"
+    assert (
+        find_orientation(samples, "z", False, None).description == "up is taken to be y (guessed)"
+    )
 
 
 def test_a_world_whose_y_points_down_is_turned_over():
@@ -57,22 +59,24 @@ def test_a_world_whose_y_points_down_is_turned_over():
         np.array(AXES["-y"])
     ).T  # That of a first camera, as many trackers leave it.
     samples = sample_surface(mesh_of(room_quads(), turn))
-    assert find_orientation(samples, "z", False, None).told == "up is taken to be -y (guessed)"
+    assert (
+        find_orientation(samples, "z", False, None).description == "up is taken to be -y (guessed)"
+    )
 
 
 def test_a_room_that_leans_is_set_upright():
     axis = np.array([0.3, 0.2, 0.95])
     axis /= np.linalg.norm(axis)
     samples = sample_surface(mesh_of(room_quads(), rotation_to_up(axis).T))
-    stance = find_orientation(samples, "z", False, None)
-    np.testing.assert_allclose(stance.turn @ axis, [0, 0, 1], atol=1e-3)
-    assert "21 degrees off z" in stance.told
+    orientation = find_orientation(samples, "z", False, None)
+    np.testing.assert_allclose(orientation.turn @ axis, [0, 0, 1], atol=1e-3)
+    assert "21 degrees off z" in orientation.description
 
 
 def test_what_is_stated_or_told_wins():
     samples = sample_surface(mesh_of(room_quads(), np.eye(3)))
-    assert find_orientation(samples, "y", True, None).told == "up is y, as the file says"
-    assert find_orientation(samples, "y", True, "-x").told == "up is -x, as told"
+    assert find_orientation(samples, "y", True, None).description == "up is y, as the file says"
+    assert find_orientation(samples, "y", True, "-x").description == "up is -x, as told"
 
 
 @pytest.mark.parametrize("unit, metres", [("m", 1), ("cm", 0.01), ("mm", 0.001), ("foot", 0.3048)])

@@ -65,15 +65,15 @@ def render_surfels(
 
 
 @njit
-def _transform_surfels(points, normals, radii, pose, lens, shape, runs):
+def _transform_surfels(points, normals, radii, pose, pinhole, shape, runs):
     """Return the discs that a camera may see, in its frame, and which point each is of.
 
     float64 [D, 8]: place, normal, radius (grown where it is smaller than a pixel), and radius.
     """
-    most = 0
+    capacity = 0
     for r in range(len(runs)):
-        most += runs[r, 1] - runs[r, 0]
-    discs, owner, count = np.empty((most, 8), np.float32), np.empty(most, np.int32), 0
+        capacity += runs[r, 1] - runs[r, 0]
+    discs, owner, count = np.empty((capacity, 8), np.float32), np.empty(capacity, np.int32), 0
     for r in range(len(runs)):
         for i in range(runs[r, 0], runs[r, 1]):
             disc = discs[count]
@@ -86,10 +86,10 @@ def _transform_surfels(points, normals, radii, pose, lens, shape, runs):
             z = disc[2]
             if z < NEAR_M:
                 continue
-            disc[6] = max(radii[i], MIN_RADIUS_PX * z / min(lens[0], lens[1]))
+            disc[6] = max(radii[i], MIN_RADIUS_PX * z / min(pinhole.fx, pinhole.fy))
             disc[7] = radii[i]
-            u, v = disc[0] / z * lens[0] + lens[2], disc[1] / z * lens[1] + lens[3]
-            across, down = disc[6] / z * lens[0], disc[6] / z * lens[1]
+            u, v = disc[0] / z * pinhole.fx + pinhole.cx, disc[1] / z * pinhole.fy + pinhole.cy
+            across, down = disc[6] / z * pinhole.fx, disc[6] / z * pinhole.fy
             if -across < u < shape[1] + across and -down < v < shape[0] + down:
                 owner[count] = i
                 count += 1
@@ -97,12 +97,12 @@ def _transform_surfels(points, normals, radii, pose, lens, shape, runs):
 
 
 @njit
-def _window(disc, lens, shape):
+def _window(disc, pinhole, shape):
     """Return the pixels u0, u1, v0, v1 (ends not included) around a disc."""
     z, radius = disc[2], disc[6]
-    u, v = disc[0] / z * lens[0] + lens[2], disc[1] / z * lens[1] + lens[3]
-    u0, u1 = _span(u, radius / z * lens[0], shape[1])
-    v0, v1 = _span(v, radius / z * lens[1], shape[0])
+    u, v = disc[0] / z * pinhole.fx + pinhole.cx, disc[1] / z * pinhole.fy + pinhole.cy
+    u0, u1 = _span(u, radius / z * pinhole.fx, shape[1])
+    v0, v1 = _span(v, radius / z * pinhole.fy, shape[0])
     return u0, u1, v0, v1
 
 
@@ -130,36 +130,36 @@ def _intersect_disc(disc, x, y):
 
 
 @njit
-def _depth_pass(discs, lens, nearest):
+def _depth_pass(discs, pinhole, nearest):
     """Find the least depth of the discs at each pixel."""
     for i in range(len(discs)):
-        u0, u1, v0, v1 = _window(discs[i], lens, nearest.shape)
+        u0, u1, v0, v1 = _window(discs[i], pinhole, nearest.shape)
         for v in range(v0, v1):
-            y = (v + 0.5 - lens[3]) / lens[1]
+            y = (v + 0.5 - pinhole.cy) / pinhole.fy
             for u in range(u0, u1):
                 if discs[i, 2] - discs[i, 6] > nearest[v, u]:
                     continue
-                z, share = _intersect_disc(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
+                z, share = _intersect_disc(discs[i], (u + 0.5 - pinhole.cx) / pinhole.fx, y)
                 if share <= 1.0 and NEAR_M <= z < nearest[v, u]:
                     nearest[v, u] = z
 
 
 @njit
-def _blend_pass(discs, owner, lens, nearest, colour, labels, sums, picture_labels):
+def _blend_pass(discs, owner, pinhole, nearest, colour, labels, sums, picture_labels):
     """Add up depth, colour and weight of the discs near each pixel's nearest one.
 
     The label is that of the disc whose middle the ray meets best; its weight is in ``sums[4]``.
     """
     for i in range(len(discs)):
-        u0, u1, v0, v1 = _window(discs[i], lens, nearest.shape)
+        u0, u1, v0, v1 = _window(discs[i], pinhole, nearest.shape)
         band = max(BLEND_M, discs[i, 7])
         own, own_label = owner[i] % len(colour), labels[owner[i] % len(labels)]
         for v in range(v0, v1):
-            y = (v + 0.5 - lens[3]) / lens[1]
+            y = (v + 0.5 - pinhole.cy) / pinhole.fy
             for u in range(u0, u1):
                 if discs[i, 2] - discs[i, 6] > nearest[v, u] + band:
                     continue
-                z, share = _intersect_disc(discs[i], (u + 0.5 - lens[2]) / lens[0], y)
+                z, share = _intersect_disc(discs[i], (u + 0.5 - pinhole.cx) / pinhole.fx, y)
                 if share > 1.0 or z < NEAR_M or z > nearest[v, u] + band:
                     continue
                 weight = (1.0 - share) * (1.0 - share) + 1e-3

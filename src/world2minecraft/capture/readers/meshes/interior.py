@@ -36,7 +36,7 @@ MAX_HINT_DISTANCE_M = 1.0  # So far may the named place be from the space that i
 
 @dataclass(frozen=True, eq=False)
 class SurfaceGrid:
-    """Cells ``occupied`` bool [X, Y, Z] of side ``cell_m`` from ``origin_m``: which hold surface."""
+    """Voxels that hold surface: ``occupied`` bool [X, Y, Z], ``cell_m`` wide from ``origin_m``."""
 
     occupied: np.ndarray
     origin_m: np.ndarray

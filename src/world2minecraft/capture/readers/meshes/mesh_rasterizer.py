@@ -6,6 +6,8 @@ nothing is clipped, corners behind the camera do no harm, and neighbours leave n
 of a triangle are visible.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import Mesh
@@ -15,6 +17,34 @@ from world2minecraft.core.types import Camera
 NEAR_M = 0.01
 NO_FACE = -1
 GREY = 178  # What has no colour of its own.
+
+
+class Pinhole(NamedTuple):
+    """Focal lengths and principal point in pixels, as the kernels take them."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+
+class FaceColours(NamedTuple):
+    """Colours of a mesh; arrays are empty where it has none.
+
+    ``vertex`` uint8 [V, 3], ``uv`` float32 [V, 2], ``image`` int16 [F], the texture of each face.
+    """
+
+    vertex: np.ndarray
+    uv: np.ndarray
+    image: np.ndarray
+
+
+class Textures(NamedTuple):
+    """``pixels`` uint8 [T, 3] of all textures, where each one starts, and its width and height."""
+
+    pixels: np.ndarray
+    starts: np.ndarray
+    sizes: np.ndarray
 
 
 def render_mesh(
@@ -35,8 +65,8 @@ def render_mesh(
     depth, face = _draw_mesh(mesh, camera, world_to_camera, runs)
     colour = np.zeros((*depth.shape, 3), np.uint8)
     pose = np.ascontiguousarray(world_to_camera, np.float64)
-    looks, pictures = _mesh_colours(mesh)
-    _shade(mesh.vertices, mesh.faces, pose, pinhole_of(camera), face, looks, pictures, colour)
+    colours, textures = _mesh_colours(mesh)
+    _shade(mesh.vertices, mesh.faces, pose, pinhole_of(camera), face, colours, textures, colour)
     labels = np.full(depth.shape, 255, np.uint8)
     if mesh.labels is not None:
         labels[face != NO_FACE] = mesh.labels[face[face != NO_FACE]]
@@ -48,9 +78,9 @@ def render_face_ids(mesh: Mesh, camera: Camera, world_to_camera: np.ndarray) -> 
     return _draw_mesh(mesh, camera, world_to_camera, None)[1]
 
 
-def pinhole_of(camera: Camera) -> tuple[float, float, float, float]:
-    """Return focal lengths and principal point as kernels take them."""
-    return camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px
+def pinhole_of(camera: Camera) -> Pinhole:
+    """Return focal lengths and principal point of a camera without distortion."""
+    return Pinhole(camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)
 
 
 def _draw_mesh(
@@ -65,30 +95,30 @@ def _draw_mesh(
     return depth, face
 
 
-def _mesh_colours(mesh: Mesh) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
-    """Return colours, uv and pictures of faces, and the pictures' pixels, starts and sizes."""
+def _mesh_colours(mesh: Mesh) -> tuple[FaceColours, Textures]:
+    """Return the colours and textures of a mesh as the kernels take them."""
     colour = np.zeros((0, 3), np.uint8) if mesh.colour is None else mesh.colour
     uv = np.zeros((0, 2), np.float32) if mesh.uv is None else mesh.uv
     image = np.zeros(0, np.int16) if mesh.face_image is None else mesh.face_image
     starts = np.concatenate([[0], np.cumsum(mesh.image_sizes.prod(axis=1))]).astype(np.int64)
-    return (colour, uv, image), (mesh.pixels, starts, mesh.image_sizes)
+    return FaceColours(colour, uv, image), Textures(mesh.pixels, starts, mesh.image_sizes)
 
 
 @njit
 def _transform_corners(vertices, face, pose, triangle):
     """Carry a triangle's corners to the camera's frame; return the largest z."""
-    most = -np.inf
+    max_z = -np.inf
     for k in range(3):
         place = vertices[face[k]]
         for a in range(3):
             moved = pose[a, 0] * place[0] + pose[a, 1] * place[1] + pose[a, 2] * place[2]
             triangle[k, a] = moved + pose[a, 3]
-        most = max(most, triangle[k, 2])
-    return most
+        max_z = max(max_z, triangle[k, 2])
+    return max_z
 
 
 @njit
-def _pixel_bounds(triangle, lens, width, height):
+def _pixel_bounds(triangle, pinhole, width, height):
     """Return the pixels u0, u1, v0, v1 (ends not included) that a triangle may cover."""
     low_u, high_u, low_v, high_v = np.inf, -np.inf, np.inf, -np.inf
     for k in range(3):
@@ -105,7 +135,7 @@ def _pixel_bounds(triangle, lens, width, height):
                 z = NEAR_M
             if z < NEAR_M:
                 continue
-            u, v = x / z * lens[0] + lens[2], y / z * lens[1] + lens[3]
+            u, v = x / z * pinhole.fx + pinhole.cx, y / z * pinhole.fy + pinhole.cy
             low_u, high_u = min(low_u, u), max(high_u, u)
             low_v, high_v = min(low_v, v), max(high_v, v)
     if not (high_u > 0 and high_v > 0 and low_u < width and low_v < height):
@@ -136,19 +166,19 @@ def _edge_functions(triangle, edges):
 
 
 @njit
-def _draw(vertices, faces, pose, lens, runs, depth, seen):
-    """Put each triangle of the runs into ``depth`` and ``seen`` where it is the nearest."""
+def _draw(vertices, faces, pose, pinhole, runs, depth, face_ids):
+    """Put each triangle of the runs into ``depth`` and ``face_ids`` where it is the nearest."""
     edges, triangle = np.empty((3, 3)), np.empty((3, 3))
     for r in range(len(runs)):
         for f in range(runs[r, 0], runs[r, 1]):
             if _transform_corners(vertices, faces[f], pose, triangle) >= NEAR_M:
-                _draw_triangle(f, triangle, edges, lens, depth, seen)
+                _draw_triangle(f, triangle, edges, pinhole, depth, face_ids)
 
 
 @njit
-def _draw_triangle(f, triangle, edges, lens, depth, seen):
+def _draw_triangle(f, triangle, edges, pinhole, depth, face_ids):
     height, width = depth.shape
-    u0, u1, v0, v1 = _pixel_bounds(triangle, lens, width, height)
+    u0, u1, v0, v1 = _pixel_bounds(triangle, pinhole, width, height)
     if u0 >= u1 or v0 >= v1:
         return
     volume = _edge_functions(triangle, edges)
@@ -156,9 +186,9 @@ def _draw_triangle(f, triangle, edges, lens, depth, seen):
         return
     sign = 1.0 if volume > 0 else -1.0
     for v in range(v0, v1):
-        y = (v + 0.5 - lens[3]) / lens[1]
+        y = (v + 0.5 - pinhole.cy) / pinhole.fy
         for u in range(u0, u1):
-            x = (u + 0.5 - lens[2]) / lens[0]
+            x = (u + 0.5 - pinhole.cx) / pinhole.fx
             a = sign * (edges[0, 0] * x + edges[0, 1] * y + edges[0, 2])
             b = sign * (edges[1, 0] * x + edges[1, 1] * y + edges[1, 2])
             c = sign * (edges[2, 0] * x + edges[2, 1] * y + edges[2, 2])
@@ -168,25 +198,25 @@ def _draw_triangle(f, triangle, edges, lens, depth, seen):
             z = sign * volume / total
             if NEAR_M <= z < depth[v, u]:
                 depth[v, u] = z
-                seen[v, u] = f
+                face_ids[v, u] = f
 
 
 @njit
-def _shade(vertices, faces, pose, lens, seen, looks, pictures, picture):
+def _shade(vertices, faces, pose, pinhole, face_ids, colours, textures, picture):
     """Give each pixel the colour of its place on the face that it sees."""
-    colour, uv, face_image = looks
-    pixels, starts, sizes = pictures
+    colour, uv, face_image = colours.vertex, colours.uv, colours.image
+    pixels, starts, sizes = textures.pixels, textures.starts, textures.sizes
     edges, triangle = np.empty((3, 3)), np.empty((3, 3))
     share = np.empty(3)
-    for v in range(seen.shape[0]):
-        for u in range(seen.shape[1]):
-            f = seen[v, u]
+    for v in range(face_ids.shape[0]):
+        for u in range(face_ids.shape[1]):
+            f = face_ids[v, u]
             if f < 0:
                 continue
             face = faces[f]
             _transform_corners(vertices, face, pose, triangle)
             _edge_functions(triangle, edges)
-            x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
+            x, y = (u + 0.5 - pinhole.cx) / pinhole.fx, (v + 0.5 - pinhole.cy) / pinhole.fy
             for k in range(3):
                 share[k] = edges[k, 0] * x + edges[k, 1] * y + edges[k, 2]
             share /= share.sum()

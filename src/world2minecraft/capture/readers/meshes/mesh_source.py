@@ -271,29 +271,28 @@ def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> 
 def estimate_world_frame(
     place: AnyPath, loaded: LoadedGeometry, options: ScanOptions
 ) -> tuple[np.ndarray, str]:
-    """Return the 4x4 from the solid's own frame to metres with z up, and what to tell of it."""
+    """Return the 4x4 from the file's frame to metres with z up, and a note on size and unit."""
     samples = sample_surface(loaded.geometry)
     if not len(samples.points):
         raise CaptureError(place, "holds no surface at all: its triangles have no area")
-    stance = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
-    upright = samples.points @ stance.turn.T
+    orientation = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
+    upright = samples.points @ orientation.turn.T
     low, high = np.quantile(upright, [0.002, 0.998], axis=0)
     unit_m, unit_note = find_unit(high - low, loaded.unit_m, options.unit)
     size = (high - low) * unit_m
     if (size < MIN_SIDES_M).any() or (size > MAX_SIDE_M).any():
         raise CaptureError(
             place,
-            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_note}; {stance.told}), "
+            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m "
+            f"({unit_note}; {orientation.description}), "
             f"which is no room but an object or a landscape; {UNIT_ADVICE}",
         )
     file_to_world = np.eye(4)
-    file_to_world[:3, :3] = stance.turn * unit_m
+    file_to_world[:3, :3] = orientation.turn * unit_m
     middle = (low + high) / 2 * unit_m
     file_to_world[:3, 3] = -np.array([middle[0], middle[1], low[2] * unit_m])
-    size_note = (
-        f"{size[0]:.1f} x {size[1]:.1f} m and {size[2]:.1f} m high; {unit_note}; {stance.told}"
-    )
-    return file_to_world, size_note
+    size_note = f"{size[0]:.1f} x {size[1]:.1f} m and {size[2]:.1f} m high"
+    return file_to_world, f"{size_note}; {unit_note}; {orientation.description}"
 
 
 def _choose_poses(

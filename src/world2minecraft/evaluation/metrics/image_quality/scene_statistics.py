@@ -1,6 +1,11 @@
-"""Asymmetric generalised Gaussians: the four numbers that describe a set of coefficients.
+"""Natural scene statistics, the common ground of NIQE, PIQE and BRISQUE.
 
-Moment matching after Lasmar, Stitou and Berthoumieu (2009), as NIQE and BRISQUE use it.
+``to_grey`` makes grey of colour as OpenCV does, to the last bit. ``normalise`` gives the
+mean-subtracted, contrast-normalised coefficients: the local mean and deviation are weighted by a
+7x7 Gaussian of sigma 7/6; in photographs what is left is close to a normal distribution, and
+distortions move it away (Mittal et al., 2013, eq. 1). An asymmetric generalised Gaussian describes
+a set of coefficients by four numbers, by moment matching after Lasmar, Stitou and Berthoumieu
+(2009).
 """
 
 from typing import Literal, NamedTuple
@@ -11,13 +16,9 @@ from scipy.special import gamma
 
 from world2minecraft.core.types import checks
 
-# Colour to grey as OpenCV does it, to the last bit, so that figures can be compared.
 BITS = 15
 WEIGHTS = (9798, 19235, 3735)  # Red, green, blue of ITU-R BT.601, of 2**15: OpenCV's integers.
 
-# Mean-subtracted, contrast-normalised coefficients: a picture freed of brightness and contrast.
-# The local mean and deviation are weighted by a 7x7 Gaussian of sigma 7/6; in photographs what is
-# left is close to a normal distribution, and distortions move it away (Mittal et al., 2013, eq. 1).
 RADIUS_PX = 3
 SIGMA_PX = 7 / 6
 STEADY = 1.0  # Added to the deviation, so that flat parts divide by no zero.

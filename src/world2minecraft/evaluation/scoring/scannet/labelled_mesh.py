@@ -32,7 +32,7 @@ from world2minecraft.core.types import LayoutObject
 LABELLED = "_vh_clean_2.labels.ply"
 NYU40_NUMBERS = 40
 MAX_OBJECTS = 65_535
-LEAST_SIDE_M = 0.01  # A picture that is scanned as a plane still has a box.
+MIN_SIDE_M = 0.01  # A picture that is scanned as a plane still has a box.
 # Parts of walls, though they are called objs: a run tells them as openings, not as objects.
 OPENINGS = ("door", "doorframe", "doorway", "window")
 
@@ -189,7 +189,7 @@ def _objects(
         if most not in OBJECT_CLASSES:
             continue
         low, high = places_m[own].min(axis=0), places_m[own].max(axis=0)
-        size = np.maximum(high - low, LEAST_SIDE_M)
+        size = np.maximum(high - low, MIN_SIDE_M)
         objects.append(LayoutObject(most, (low + high) / 2, size, 0.0, name))
         instance[own] = len(objects)
     return instance, tuple(objects)

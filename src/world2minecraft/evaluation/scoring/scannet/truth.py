@@ -1,4 +1,15 @@
-"""A ScanNet scene becomes ``truth.npz`` and ``truth.json``."""
+"""Make ``truth.npz`` and ``truth.json`` of a ScanNet scene.
+
+The labelled surface becomes fine voxels, each with the class and the object of most of it: a
+triangle is cut into pieces smaller than a voxel, and the middle of each, half a voxel deep in the
+matter, says which voxel it fills. So a wall whose face lies between two voxels fills the one behind
+it, as a solid wall does. Which way the matter lies is known by the order of a triangle's corners;
+the floor, whose matter lies below, shows whether a file counts them the other way round.
+
+Free is what the cameras saw through. A ray counts where the mesh and the depth image agree on where
+it ends: where the sensor saw nothing (a screen, a window), or the mesh has a hole, nobody knows
+what the ray passed.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -32,20 +43,12 @@ from world2minecraft.evaluation.scoring.visibility import (
 )
 from world2minecraft.procgen.virtual_scan import object_to_json
 
-# A labelled surface as fine voxels, each with the class and the object of most of it.
-# A triangle is cut into pieces smaller than a voxel. The middle of each, half a voxel deep in the
-# matter, says which voxel it fills: so a wall whose face lies between two voxels fills the one
-# behind it, as a solid wall does. Which way the matter lies, the order of a triangle's corners
-# tells; the floor, whose matter lies below, tells whether a file counts them the other way round.
 PIECE = 0.75  # Of a voxel: the longest side of a piece.
 MARGIN = 2  # Free voxels around it all.
 CHUNK_M2 = 4.0  # Of surface at a time, some 200,000 pieces.
-MOST_VALUES = 1 << 16
+MAX_VALUES = 1 << 16
 
-# Which fine voxels a scene's cameras saw through: what is free, and not merely not surface.
-# A ray counts where the mesh and the depth image agree on where it ends. Where the sensor saw
-# nothing (a screen, a window), or the mesh has a hole, nobody knows what the ray passed.
-MOST_FRAMES = 200  # Evenly spread over the recording: seven a second of a walk of half a minute.
+MAX_FRAMES = 200  # Evenly spread over the recording: seven a second of a walk of half a minute.
 APART_M, APART_SHARE = 0.08, 0.05  # A cell, or what such sensors err by at 2 m and beyond.
 
 RECORDINGS = ("scannet_sens", "scannet_folder")
@@ -106,8 +109,8 @@ class _Votes:
         self.counts: list[np.ndarray] = []
 
     def add(self, at: np.ndarray, values: np.ndarray) -> None:
-        """Count values [N], under ``MOST_VALUES``, of the voxels with flat indices [N]."""
-        keys, counts = np.unique(at * MOST_VALUES + values, return_counts=True)
+        """Count values [N], under ``MAX_VALUES``, of the voxels with flat indices [N]."""
+        keys, counts = np.unique(at * MAX_VALUES + values, return_counts=True)
         self.keys.append(keys)
         self.counts.append(counts)
 
@@ -118,7 +121,7 @@ class _Votes:
         """
         keys, group = np.unique(np.concatenate(self.keys), return_inverse=True)
         counts = np.bincount(group, np.concatenate(self.counts)).astype(np.int64)
-        at, values = keys // MOST_VALUES, keys % MOST_VALUES
+        at, values = keys // MAX_VALUES, keys % MAX_VALUES
         order = np.lexsort((-values, counts, at))
         last = np.flatnonzero(np.append(np.diff(at[order]) > 0, True))
         return at[order][last], values[order][last]
@@ -173,7 +176,7 @@ def seen_free(truth: Truth, progress: Progress = silent) -> np.ndarray:
     usable = [f for f in judged.frames if f.depth_path and f.camera_to_world is not None]
     if not usable:
         raise CaptureError(truth.capture, "has no depth images with poses: give the scene's .sens")
-    frames = {frame.name: frame for frame in evenly_spaced(usable, MOST_FRAMES)}
+    frames = {frame.name: frame for frame in evenly_spaced(usable, MAX_FRAMES)}
     scan_to_truth = invert_rigid(truth.truth_to_scan)
     used = [_used(frame, scan_to_truth) for frame in frames.values()]
     agreed = _agreed(frames, judged.encoding, progress)

@@ -15,7 +15,7 @@ from world2minecraft.core.registry import Registry
 from world2minecraft.paper.layouts.importers.reading import READ_ERRORS, why
 from world2minecraft.paper.layouts.values import ComparedScene
 
-MOST_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
+MAX_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
 PX_M = 3.5 / 256  # See layoutgpt.py.
 HOME = "world2minecraft.paper.layouts.importers"
 FORMATS = Registry(
@@ -59,7 +59,7 @@ def read_layouts_of(path: Path, how: How | None = None, name: str = "") -> list[
     """
     if not path.exists():
         raise InputError(path, "is not there")
-    told = None if path.is_dir() else read_json(path, MOST_BYTES)
+    told = None if path.is_dir() else read_json(path, MAX_BYTES)
     for one in [name] if name else FORMATS.names():
         found = FORMATS.load(one)
         if name or found.is_mine(path, told):

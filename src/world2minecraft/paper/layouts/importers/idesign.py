@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.paper.layouts.importers.reading import (
-    MOST_OBJECTS,
+    MAX_OBJECTS,
     READ_ERRORS,
     Box,
     checked_count,
@@ -44,7 +44,7 @@ class Format:
     @staticmethod
     def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
         """Return its one scene. Raises ValueError, KeyError, TypeError."""
-        entries = checked_count(told, MOST_OBJECTS, "entries")
+        entries = checked_count(told, MAX_OBJECTS, "entries")
         shell = {one["new_object_id"]: one for one in entries if one["new_object_id"] in SHELL}
         objects, unplaced, skipped = [], [], []
         for one in entries:

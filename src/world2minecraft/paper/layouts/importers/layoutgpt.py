@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.paper.layouts.importers.reading import (
-    MOST_OBJECTS,
-    MOST_SCENES,
+    MAX_OBJECTS,
+    MAX_SCENES,
     READ_ERRORS,
     Box,
     checked_count,
@@ -42,7 +42,7 @@ _SIDE = r"\s*([0-9]+(?:\.[0-9]+)?)\s*(px|m)?\b"
 _SIZE = re.compile(rf"max\s+length{_SIDE}\s*,\s*max\s+width{_SIDE}", re.I)
 SHORTER_PX = 256  # Of a room that is normalised, its shorter side;
 SLACK = 0.005  # in metres it is 1, told by two decimals.
-MOST_M = 40.0  # Of a room; what has no more pixels was not normalised.
+MAX_ROOM_M = 40.0  # Of a room; what has no more pixels was not normalised.
 
 
 class Format:
@@ -57,7 +57,7 @@ class Format:
     @staticmethod
     def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
         """Return the scene of each record. Raises ValueError, KeyError, TypeError."""
-        records = checked_count([told] if isinstance(told, dict) else told, MOST_SCENES, "records")
+        records = checked_count([told] if isinstance(told, dict) else told, MAX_SCENES, "records")
         return [_scene(record, number, how.px_m) for number, record in enumerate(records)]
 
 
@@ -71,7 +71,7 @@ def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
     unit_m = _unit_m(found, px_m)
     length_m, width_m = float(found[1]) * unit_m, float(found[3]) * unit_m
     objects, skipped = [], []
-    for item in checked_count(record["object_list"], MOST_OBJECTS, "objects"):
+    for item in checked_count(record["object_list"], MAX_OBJECTS, "objects"):
         try:
             objects.append(_object(item, unit_m, width_m))
         except READ_ERRORS as error:
@@ -88,7 +88,7 @@ def _unit_m(found: re.Match[str], px_m: float) -> float:
     shorter, longer = sorted(float(found[group]) for group in (1, 3))
     if "m" in (found[2], found[4]):
         return SHORTER_PX * px_m if abs(shorter - 1) <= SLACK else 1.0
-    return px_m if longer > MOST_M else 1.0
+    return px_m if longer > MAX_ROOM_M else 1.0
 
 
 def _no_room(record: dict[str, Any], count: int) -> str:

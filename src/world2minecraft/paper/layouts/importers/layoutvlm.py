@@ -22,8 +22,8 @@ from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.paper.layouts.importers.reading import (
     FARTHEST_M,
-    MOST_CORNERS,
-    MOST_OBJECTS,
+    MAX_CORNERS,
+    MAX_OBJECTS,
     READ_ERRORS,
     USUAL_HEIGHT_M,
     Box,
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
 METHOD = "LayoutVLM"
 LAYOUT_FILE = "layout.json"
-MOST_TASK_BYTES, MOST_ASSET_BYTES = 64 << 20, 1 << 20
-MOST_BESIDE = 200  # Files beside a layout that are looked at.
+MAX_TASK_BYTES, MAX_ASSET_BYTES = 64 << 20, 1 << 20
+MAX_ADJACENT_FILES = 200  # Files beside a layout that are looked at.
 
 
 class Format:
@@ -63,8 +63,8 @@ class Format:
         """Return its one scene. Raises InputError, ValueError, KeyError, TypeError."""
         place = path / LAYOUT_FILE if path.is_dir() else path
         told = read_json(place) if told is None else told
-        if len(told) > MOST_OBJECTS:
-            raise ValueError(f"has {len(told):,} objects; at most {MOST_OBJECTS:,} are read")
+        if len(told) > MAX_OBJECTS:
+            raise ValueError(f"has {len(told):,} objects; at most {MAX_OBJECTS:,} are read")
         task = _task(place, how.task)
         assets = dict(_assets(task, how.assets))
         objects, skipped = [], []
@@ -87,11 +87,11 @@ FORMAT = Format()
 def _task(place: Path, stated: Path | None) -> dict[str, Any]:
     """Return the scene file: the stated one, or the only one beside the layout."""
     if stated is not None:
-        told = read_json(stated, MOST_TASK_BYTES)
+        told = read_json(stated, MAX_TASK_BYTES)
         if not _is_task(told):
             raise InputError(stated, "is no scene file of LayoutVLM: it has no boundary")
         return told
-    beside = sorted(place.parent.glob("*.json"))[:MOST_BESIDE]
+    beside = sorted(place.parent.glob("*.json"))[:MAX_ADJACENT_FILES]
     found = [told for one in beside if one != place and _is_task(told := _try(one))]
     if len(found) != 1:
         raise InputError(
@@ -102,7 +102,7 @@ def _task(place: Path, stated: Path | None) -> dict[str, Any]:
 
 def _try(path: Path) -> Any:
     try:
-        return read_json(path, MOST_TASK_BYTES)
+        return read_json(path, MAX_TASK_BYTES)
     except InputError:
         return None
 
@@ -112,7 +112,7 @@ def _is_task(told: Any) -> bool:
 
 
 def _room(boundary: dict[str, Any]) -> Layout:
-    corners = checked_count(boundary["floor_vertices"], MOST_CORNERS, "floor_vertices")
+    corners = checked_count(boundary["floor_vertices"], MAX_CORNERS, "floor_vertices")
     points = np.array([[number(value, "a corner") for value in one[:2]] for one in corners])
     if points.ndim != 2 or points.shape[1] != 2 or np.abs(points).max() > FARTHEST_M:
         raise ValueError("floor_vertices must be corners [x, y, z] in metres")
@@ -137,8 +137,8 @@ def _assets(task: dict[str, Any], folder: Path | None) -> Iterator[tuple[str, di
 def _names(task: dict[str, Any], folder: Path | None) -> list[tuple[str, str]]:
     """Return, for each asset of a scene file, the name that LayoutVLM gives it, and its own."""
     assets = task.get("assets", {})
-    if not isinstance(assets, dict) or len(assets) > MOST_OBJECTS:
-        raise ValueError(f"assets must be an object of at most {MOST_OBJECTS:,} names")
+    if not isinstance(assets, dict) or len(assets) > MAX_OBJECTS:
+        raise ValueError(f"assets must be an object of at most {MAX_OBJECTS:,} names")
     groups: dict[str, list[str]] = {}
     for key in assets:
         groups.setdefault(_model(key), []).append(key)
@@ -171,7 +171,7 @@ def _data(key: str, stated: dict[str, Any], folder: Path | None) -> dict[str, An
     for root in (folder, folder / "test_asset_dir"):
         place = root / model / "data.json"
         if place.is_file():
-            return {**read_json(place, MOST_ASSET_BYTES), **stated}
+            return {**read_json(place, MAX_ASSET_BYTES), **stated}
     return stated
 
 

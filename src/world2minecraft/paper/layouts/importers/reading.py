@@ -13,10 +13,10 @@ from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticCla
 from world2minecraft.core.types import Layout, LayoutObject
 
 FARTHEST_M = 1000.0  # From a room's corner; farther is a slip of units.
-MOST_SCENES = 100_000
-MOST_OBJECTS = 1000  # Of a scene: pairs of them are looked at.
-MOST_CORNERS = 1000
-MOST_NAME = 80
+MAX_SCENES = 100_000
+MAX_OBJECTS = 1000  # Of a scene: pairs of them are looked at.
+MAX_CORNERS = 1000
+MAX_NAME_CHARACTERS = 80
 USUAL_HEIGHT_M = 2.6  # Of a room that does not say.
 READ_ERRORS = (KeyError, TypeError, ValueError, AttributeError, IndexError)  # Of wrong contents.
 _UNIT = re.compile(r"\s*(px|m|met(?:er|re)s?|degrees?|deg|°)?\s*;?\s*$")
@@ -71,7 +71,7 @@ def clean_name(value: Any) -> str:
     """Return a name that can be shown; ``object`` for none."""
     text = value if isinstance(value, str) else ""
     shown = "".join(letter for letter in text if letter.isprintable()).strip()
-    return shown[:MOST_NAME] or "object"
+    return shown[:MAX_NAME_CHARACTERS] or "object"
 
 
 def class_of(name: str) -> int:

@@ -18,7 +18,7 @@ from world2minecraft.formats.layout import read_rooms
 from world2minecraft.formats.objects import read_placements
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture.layout_checks import collisions
-from world2minecraft.paper.layouts.importers.reading import MOST_OBJECTS
+from world2minecraft.paper.layouts.importers.reading import MAX_OBJECTS
 from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ class Format:
             raise InputError(path, "is no folder of a run")
         grid, scan_to_room = read_room(path / "room.npz")
         placed = read_placements(path / "placements.json")
-        if len(placed) > MOST_OBJECTS:
-            raise ValueError(f"has {len(placed):,} placements; at most {MOST_OBJECTS:,} are read")
+        if len(placed) > MAX_OBJECTS:
+            raise ValueError(f"has {len(placed):,} placements; at most {MAX_OBJECTS:,} are read")
         rooms = read_rooms(path, grid)
         if how.truth is not None:
             found = tuple(opening for room in rooms for opening in room.openings)

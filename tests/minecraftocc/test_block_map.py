@@ -80,12 +80,12 @@ def test_the_papers_examples_are_of_its_classes(name, block):
         ("minecraft:light", "empty", "empty"),
     ],
 )
-def test_names_tell_classes(block, nyu, paper):
+def test_names_decide_classes(block, nyu, paper):
     assert NYU.classes_of(block) == (nyu,)
     assert PAPER.classes_of(block) == (paper,)
 
 
-def test_properties_and_full_shapes_tell_kinds():
+def test_properties_and_full_shapes_decide_kinds():
     assert NYU.meaning("minecraft:white_concrete") == "surface"
     assert NYU.meaning("mod:strange_thing") == NYU.meaning("minecraft:bricks") == "surface"
     assert NYU.meaning("minecraft:oak_slab[type=bottom,waterlogged=false]") == "slab"
@@ -164,7 +164,7 @@ def test_two_storeys_have_a_ceiling_and_a_floor_each():
     assert classify(made.volume(), NYU).semantic[5, 5, 5] == 2  # One walks on a thin slab.
 
 
-def test_the_papers_map_knows_rooms_behind_glass_that_it_calls_empty():
+def test_the_papers_map_finds_rooms_behind_glass():
     told = classify(cottage().volume(), PAPER).semantic
     assert (told[2:10, 1, 2:8] == 2).all() and (told[2:10, 5, 2:8] == 1).all()
     assert not told[4:6, 3, 1].any() and told[8, 2, 8] == 3
@@ -181,7 +181,7 @@ def test_a_terrace_is_floor_and_a_garden_wall_is_wall():
     assert (told[22, 3, 1:9] == 3).all()
 
 
-def test_what_hangs_high_is_no_seat():
+def test_hanging_blocks_are_no_seats():
     made = cottage()
     made.put((5, 4, 6), STAIR)
     assert CLASS_NAMES[classify(made.volume(), NYU).semantic[5, 4, 6]] == "objs"
@@ -199,7 +199,7 @@ def test_what_hangs_high_is_no_seat():
         ([(np.s_[0, 0:9, 0:4], "red_wool")], "objs"),
     ],
 )  # fmt: skip
-def test_furniture_built_of_blocks_is_told_by_its_measures(blocks, name):
+def test_furniture_of_blocks_is_classified_by_its_measures(blocks, name):
     """At four blocks a metre, in a room of 5 x 4.5 x 2.5 m; placed at its wall x = 0."""
     made = Blocks(24, 14, 22)
     made.put(np.s_[1:23, 1:13, 1:21], "minecraft:white_concrete")
@@ -280,7 +280,7 @@ def test_an_empty_volume_stays_empty():
     assert not classify(Blocks(3, 3, 3).volume(), NYU).semantic.any()
 
 
-def test_next_above_is_what_a_loop_finds():
+def test_next_above_matches_a_loop():
     filled = np.random.default_rng(3).random((4, 9, 5)) < 0.3
     found = next_above(filled)
     for x, y, z in np.ndindex(filled.shape):
@@ -288,7 +288,7 @@ def test_next_above_is_what_a_loop_finds():
         assert found[x, y, z] == (over[0] if over else NO_BLOCK)
 
 
-def test_columns_are_what_a_loop_finds():
+def test_block_columns_match_a_loop():
     blocks = np.random.default_rng(4).integers(0, 2, (3, 8, 4))
     found, first = block_columns(blocks)
     for x, y, z in np.ndindex(blocks.shape):
@@ -300,7 +300,7 @@ def test_columns_are_what_a_loop_finds():
         assert (found[x, y, z], first[x, y, z]) == (high - low + 1, low)
 
 
-def test_joined_parts_are_what_a_walk_finds():
+def test_connected_parts_match_a_graph_walk():
     rng = np.random.default_rng(5)
     held, blocks = rng.random((5, 4, 5)) < 0.6, rng.integers(0, 2, (5, 4, 5))
     alone = rng.random(held.shape) < 0.2
@@ -340,7 +340,7 @@ def test_the_papers_map_applies_to_our_own_fine_classes():
     assert told == [0, None, 2, 3, None, 10]
 
 
-def test_remapping_changes_what_the_map_tells_and_nothing_else():
+def test_remapping_changes_only_what_the_map_decides():
     labels = np.array([[0, 11, 5, 11], [11, 2, 10, 255]], np.uint8)
     fine = np.array([[0, 1, 2, 3], [4, 5, 6, 0]], np.uint16)
     found = remap_labels(labels, fine, FINE, PAPER)
@@ -374,7 +374,7 @@ rules: {warm: [{class: floor, where: [floor]}, thing]}
 """
 
 
-def test_a_map_of_ones_own_comes_before_the_one_it_extends(tmp_path):
+def test_a_map_overrides_the_map_it_extends(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(MINE)
     mine = load_block_map(path)
@@ -420,7 +420,7 @@ BAD = {
 
 
 @pytest.mark.parametrize(("text", "told"), BAD.items(), ids=range(len(BAD)))
-def test_a_bad_file_is_told_in_one_line(tmp_path, text, told):
+def test_a_bad_map_is_reported_in_one_line(tmp_path, text, told):
     path = tmp_path / "bad.yaml"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
@@ -428,7 +428,7 @@ def test_a_bad_file_is_told_in_one_line(tmp_path, text, told):
     assert str(caught.value) == f"{path}: {told}"
 
 
-def test_files_that_are_no_yaml_too_large_or_full_of_aliases_are_refused(tmp_path):
+def test_invalid_large_or_aliased_yaml_is_refused(tmp_path):
     path = tmp_path / "bad.yaml"
     path.write_text("a: [1\n")
     with pytest.raises(InputError, match="is not YAML"):

@@ -91,9 +91,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(whole, store, cache, tmp_path, s
         assert (tmp_path / "run" / name).read_bytes() == (whole / name).read_bytes(), name
 
 
-def test_a_run_that_ends_between_its_last_checkpoint_and_its_last_files(
-    whole, store, cache, tmp_path
-):
+def test_a_run_killed_before_its_last_files_is_completed(whole, store, cache, tmp_path):
     """Such a run counted as finished, and lacked last.safetensors and run.json for good."""
 
     def kill(stage, done, total, note=""):
@@ -126,7 +124,7 @@ def test_a_loss_that_is_no_number_ends_a_run(store, cache, tmp_path, monkeypatch
     load_weights(tmp_path / "run" / "weights.safetensors", toy_network.Toy())
 
 
-def test_what_lies_in_a_run_s_folder_and_is_not_of_it_is_told(whole, store, cache, tmp_path):
+def test_foreign_files_in_a_run_folder_are_reported(whole, store, cache, tmp_path):
     shutil.copytree(whole, tmp_path / "run")
     (tmp_path / "run/metrics.csv").write_text("step;name;value\n1;train_loss;2.0\n")
     with pytest.raises(DamagedFileError, match=r"metrics.csv: holds no rows .*; remove it"):
@@ -188,7 +186,7 @@ def test_bfloat16_learns_too(store, cache, tmp_path):
     assert json.loads((tmp_path / "run/run.json").read_text())["precision"] == "bf16"
 
 
-def test_the_last_step_s_weights_are_scored_apart_from_the_best(store, cache, tmp_path):
+def test_last_weights_are_scored_separately_from_the_best(store, cache, tmp_path):
     config = toy_config(store, steps=9, validate_every=3, learning_rate=0.3)
     found = trained(config, tmp_path / "run", cache)
     best, last = (training.score_run(found, config, "cpu", last=which) for which in (False, True))

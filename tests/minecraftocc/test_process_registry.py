@@ -58,7 +58,7 @@ def test_a_straggler_is_waited_for(tmp_path, straggler):
     assert time.monotonic() - began >= 0.4
 
 
-def test_one_that_does_not_end_is_told_in_one_line(tmp_path, straggler):
+def test_a_process_that_does_not_end_is_reported(tmp_path, straggler):
     with pytest.raises(ConflictError) as caught:
         wait_for_others(tmp_path, patience_s=0.1)
     assert str(caught.value) == (
@@ -66,7 +66,7 @@ def test_one_that_does_not_end_is_told_in_one_line(tmp_path, straggler):
     )
 
 
-def test_many_are_at_work_at_once_and_then_nobody(tmp_path, straggler):
+def test_several_processes_register_at_once(tmp_path, straggler):
     with register_process(tmp_path), register_process(tmp_path):
         pass
     straggler.kill()
@@ -74,7 +74,7 @@ def test_many_are_at_work_at_once_and_then_nobody(tmp_path, straggler):
     wait_for_others(tmp_path, patience_s=0)
 
 
-def test_a_worker_whose_parent_is_gone_does_nothing(tmp_path, monkeypatch):
+def test_a_worker_without_a_parent_does_nothing(tmp_path, monkeypatch):
     class Gone:
         def is_alive(self):
             return False
@@ -88,11 +88,11 @@ def test_a_worker_whose_parent_is_gone_does_nothing(tmp_path, monkeypatch):
     assert not (tmp_path / "mark").exists()
 
 
-def test_a_task_of_the_crew_can_be_sent():
+def test_a_registered_task_can_be_pickled():
     assert pickle.loads(pickle.dumps(written)) is written
     assert written.__doc__ == "Write a file."
 
 
-def test_a_folder_that_is_gone_is_told(tmp_path):
+def test_a_missing_folder_is_reported(tmp_path):
     with pytest.raises(OutputError, match=r"\.crew: cannot be written: No such file"):
         wait_for_others(tmp_path / "none")

@@ -70,7 +70,7 @@ def test_a_class_for_each_cell_is_read(tmp_path):
     assert grid.voxel_m == 0.05 and grid.origin_m.tolist() == pytest.approx([0.5, 0, -0.25])
 
 
-def test_a_shape_leaves_room_and_cells_before_zero_move_the_origin(tmp_path):
+def test_shape_pads_the_grid_and_negative_cells_move_the_origin(tmp_path):
     grid, _ = read_any_occ(put(tmp_path, {"voxels": CELLS_OF, "shape": [9, 9, 9]}))
     assert grid.shape == (9, 9, 9)
     moved = [[x - 2, y, z, c] for x, y, z, c in CELLS_OF]

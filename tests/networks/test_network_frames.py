@@ -45,7 +45,7 @@ def agreement(frame, voxel_m):
 
 @pytest.mark.parametrize("size", [(160, 120), (80, 60), (120, 120), (160, 60)])
 @pytest.mark.parametrize("camera", [LARGE, WIDE])
-def test_cells_fall_on_the_pixels_that_see_them_after_crop_and_resampling(size, camera):
+def test_cells_project_to_their_pixels_after_crop_and_resize(size, camera):
     frame = make_frame(sample(camera=camera), FrameRule(FINE, *size))
     assert frame.image.shape == (size[1], size[0], 3)
     assert agreement(frame, 0.08) > 0.95
@@ -77,7 +77,7 @@ def test_a_picture_of_the_same_size_is_the_same():
     np.testing.assert_allclose(frame.intrinsics, SAMPLE.camera.matrix)
 
 
-def test_coarse_cells_follow_the_published_rule_and_masks_any_of_their_cells():
+def test_coarse_labels_and_masks_follow_the_published_rule():
     frame, occ = make_frame(SAMPLE, FrameRule(COARSE, 40, 30)), SAMPLE.occ
     np.testing.assert_array_equal(frame.labels, downsample_labels(occ.labels, 2))
     for i, j, k in ((3, 4, 5), (0, 0, 0), (29, 29, 17), (15, 20, 1)):
@@ -137,7 +137,7 @@ def test_jitter_keeps_the_size_and_its_seed(strength, seed):
     np.testing.assert_array_equal(one, again)
 
 
-def test_jitter_of_nothing_changes_nothing_and_of_more_within_its_bounds():
+def test_jitter_stays_within_its_bounds():
     rng = np.random.default_rng(0)
     assert jitter_colour(FRAME.image, 0.0, rng) is FRAME.image
     grey = np.full((4, 4, 3), 100, np.uint8)
@@ -146,7 +146,7 @@ def test_jitter_of_nothing_changes_nothing_and_of_more_within_its_bounds():
     assert len({v[0, 0, 0] for v in values}) > 20
 
 
-def test_augmentation_flips_about_as_often_as_said():
+def test_augmentation_flips_about_as_often_as_set():
     flips = [
         augment_frame(FRAME, 0.08, 0.25, 0.0, np.random.default_rng(n)).labels is not FRAME.labels
         for n in range(200)

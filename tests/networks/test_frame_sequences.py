@@ -85,7 +85,7 @@ def test_frames_of_a_sample_are_mirrored_together(frames):
     np.testing.assert_array_equal(one.image, same.image)
 
 
-def test_those_that_look_into_the_box_come_first(frames):
+def test_frames_that_view_the_grid_come_first(frames):
     rows = [row for row, scene in enumerate(frames.scenes) if scene == "room_0"]
     away = look_at(np.array([2.0, -9.0, 1.4]), np.array([2.0, -12.0, 1.4]))
 

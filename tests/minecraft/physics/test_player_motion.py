@@ -73,7 +73,7 @@ def test_left_is_left_of_forward():
     assert x > 1 and abs(z) < 1e-9  # Looking south, east is to the left.
 
 
-def test_what_is_up_to_0_6_high_is_a_step_and_what_is_higher_is_not():
+def test_steps_up_to_0_6_are_climbed_and_higher_ones_not():
     for height, gets_up in ((0.5, True), (0.6, True), (0.61, False)):
         world = BoxWorld([[-9, -1, -9, 9, 0, 9], [-1, 0, 1, 1, height, 9]])
         assert (run(world, STANDING, 40, forward=True)[-1].position[1] == height) == gets_up

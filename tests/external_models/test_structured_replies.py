@@ -4,7 +4,7 @@ import json
 
 import pytest
 from tests.external_models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
-from tests.external_models.test_chat import HELLO, model_at
+from tests.external_models.test_chat_client import HELLO, model_at
 
 from world2minecraft.external_models.chat_transport import RefusedQuestionError
 from world2minecraft.external_models.structured_replies import (
@@ -65,7 +65,7 @@ def test_a_refused_rung_is_left_for_good_and_costs_no_repair():
     assert first.tries[0].problem.startswith("refused: ")
 
 
-def test_a_question_that_is_refused_whatever_its_form_lowers_nothing():
+def test_a_question_refused_in_every_format_lowers_no_rung():
     with scripted([NO_SCHEMA] * 3 + [GREEN]) as server:
         model = model_at(server)
         with pytest.raises(RefusedQuestionError):

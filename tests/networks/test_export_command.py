@@ -34,7 +34,7 @@ def test_a_run_becomes_a_file_that_predicts(run, capsys):
     np.testing.assert_allclose(found.sum(axis=-1), 1, atol=1e-4)
 
 
-def test_weights_stored_small_are_told_with_what_they_move(run, capsys):
+def test_compressed_weights_report_how_far_logits_move(run, capsys):
     out = run / "small.onnx"
     assert cli.run(["export", str(run), "--out", str(out), "--weights", "int8"]) == 0
     said = capsys.readouterr().out

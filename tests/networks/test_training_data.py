@@ -59,7 +59,7 @@ def test_cached_frames_are_the_frames(tmp_path):
     assert stored == cache_bytes(4, RULE)
 
 
-def test_a_filled_cache_reads_no_sample_and_another_size_is_another_cache(tmp_path):
+def test_a_filled_cache_reads_no_sample_and_depends_on_size(tmp_path):
     source, told = toy_set(placed(tmp_path), 3), []
     open_cached_frames(source, RULE, tmp_path / "c", lambda *step: told.append(step))
     assert told[-1][:3] == ("frames", 3, 3)
@@ -70,7 +70,7 @@ def test_a_filled_cache_reads_no_sample_and_another_size_is_another_cache(tmp_pa
     assert len([one for one in (tmp_path / "c").iterdir() if one.is_dir()]) == 2
 
 
-def test_a_cache_that_was_stopped_is_filled_anew(tmp_path):
+def test_an_interrupted_cache_is_refilled(tmp_path):
     source = toy_set(placed(tmp_path), 3)
 
     def stop(stage, done, total, note=""):
@@ -104,7 +104,7 @@ def test_a_split_that_cannot_be_says_why():
     assert take_evenly(list(range(10)), 3) == [0, 3, 6]
 
 
-def test_each_frame_is_drawn_once_before_any_again_whatever_the_mix():
+def test_each_frame_is_drawn_once_before_any_repeats():
     sizes, weights = [5, 12], [3.0, 1.0]
     draws = plan_draws(sizes, weights, 4000, 7)
     for number, size in enumerate(sizes):
@@ -169,7 +169,7 @@ def test_worker_processes_make_the_same_batches(store, tmp_path):
         assert torch.equal(one.inputs.image, other.inputs.image)
 
 
-def test_the_first_set_is_the_target_and_test_frames_train_nowhere(store, tmp_path):
+def test_the_first_set_is_the_target_and_no_test_frame_trains(store, tmp_path):
     other = write_toy_store(tmp_path / "other", count=6, scenes=3)
     config = toy_config(store)
     sources = (DataSource(str(store)), DataSource(str(other), 3.0))

@@ -76,7 +76,7 @@ class KnowsAll:
 
 
 @pytest.mark.parametrize("grid", ["0.08", "0.16"])
-def test_who_knows_all_scores_full_and_is_told_where_frames_were_taken(grid, found, monkeypatch):
+def test_a_perfect_memory_scores_full_and_gets_the_poses(grid, found, monkeypatch):
     config = toy_config("d", grid=grid)
     keys = [key for key in found.splits if found[key].scene_id == "room_1"]
     KnowsAll.truth, _ = assemble_truth(found, keys, config)

@@ -104,7 +104,7 @@ def test_a_schematic_of_mcschematic_is_read(tmp_path):
     assert (found.states > 0).sum() == len(blocks)
 
 
-def test_what_hangs_in_a_file_of_worldedit_names_a_block_beside_it(tmp_path):
+def test_hanging_entities_of_worldedit_name_their_block(tmp_path):
     # Copied from 1200 70 -300 by a player at 1203 71 -295: version 3 counts from him. The
     # painting is 4 blocks wide, so that it names a block beside the one of its middle.
     names = dict(zip(("TileX", "TileY", "TileZ"), (1202, 71, -299), strict=True))

@@ -141,7 +141,7 @@ def test_a_camera_may_look_straight_down():
     assert label_region(down).kind in ("axis", "diagonal")
 
 
-def test_errors_teach():
+def test_errors_say_what_to_do():
     with pytest.raises(UnknownNameError, match=r"no kind of region is named 'papers'; did you"):
         RegionRule("papers")
     with pytest.raises(UsageError, match=r"three sides of a cell or more, not \(0, 1, 1\)"):

@@ -39,7 +39,7 @@ def test_no_picture_is_over_the_cap_nor_made_larger(width, height, most):
         assert small.shape[0] * small.shape[1] > 0.8 * most
 
 
-def test_a_small_file_stays_as_it_is_and_a_large_one_becomes_a_jpeg():
+def test_small_pictures_are_unchanged_and_large_ones_become_jpeg():
     own = png(30, 20)
     assert downscale_picture(own, 784) is own
     small = downscale_picture(png(300, 200), 15_000)

@@ -193,7 +193,7 @@ def test_a_recorded_reply_is_not_asked_for_again(tmp_path):
         replayed.ask((Turn("user", ("Goodbye",)),))
 
 
-def test_failures_are_replayed_but_asked_again_by_a_run_that_goes_on(tmp_path):
+def test_failures_are_replayed_but_retried_on_resume(tmp_path):
     path = tmp_path / "replies.jsonl"
     with scripted([NO_SCHEMA, MEGABYTE, Answer(503, b"")]) as server:
         model = model_at(server, store=ReplyStore(path), attempts=1)
@@ -278,7 +278,7 @@ def test_failed_calls_count_but_cost_nothing():
             model_at(server, ledger=ledger).ask(HELLO)
 
 
-def test_an_attempt_without_a_reply_counts_by_the_most_that_it_may_have_cost():
+def test_an_attempt_without_reply_costs_its_maximum():
     """A server that is late, or says what is no reply, has worked, and is paid."""
     price = Price(0.0, 100.0)  # 1,024 tokens of reply: at most 10.24 cents an attempt.
     ledger = Ledger(price, max_usd=0.25)
@@ -297,7 +297,7 @@ def test_an_attempt_without_a_reply_counts_by_the_most_that_it_may_have_cost():
     assert ledger.usd == pytest.approx(0.1024)
 
 
-def test_thoughts_that_a_server_counts_in_the_total_alone_are_paid():
+def test_reasoning_tokens_counted_only_in_the_total_are_paid():
     told = completion("fine", prompt_tokens=21, completion_tokens=2)
     told["usage"]["total_tokens"] = 83  # Gemini's: 60 tokens of thought.
     with scripted([Answer(body=json.dumps(told).encode())]) as server:
@@ -305,7 +305,7 @@ def test_thoughts_that_a_server_counts_in_the_total_alone_are_paid():
     assert (reply.prompt_tokens, reply.completion_tokens, reply.is_estimated) == (21, 62, False)
 
 
-def test_a_key_that_a_server_says_back_is_in_no_error_and_no_record(tmp_path, monkeypatch):
+def test_an_echoed_key_is_in_no_error_and_no_record(tmp_path, monkeypatch):
     monkeypatch.setenv("MY_KEY", "sesame-4711")
     store = ReplyStore(tmp_path / "replies.jsonl")
     echo = b"what is Bearer sesame-4711?"

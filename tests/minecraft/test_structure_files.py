@@ -299,7 +299,7 @@ def test_a_damaged_pack_is_refused_by_name(change, reason, tmp_path):
     assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
 
 
-def test_a_pack_whose_pieces_together_ask_for_too_much_is_refused(tmp_path, monkeypatch):
+def test_a_pack_of_pieces_too_large_together_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "pack.zip"
     write_structure_pack(random_volume((130, 3, 3), 4, (0, 60, 9)), path)
     limit = 3 * (48 * 3 * 3) - 1
@@ -408,7 +408,7 @@ def test_a_damaged_structure_is_refused_by_name(tree, reason, tmp_path):
     assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
 
 
-def test_a_list_of_many_empty_blocks_is_refused_before_it_is_held(tmp_path):
+def test_a_list_of_many_empty_blocks_is_refused_unread(tmp_path):
     data = write_nbt(tree_with(blocks=[{}]))
     at = data.index(b"blocks") + len(b"blocks") + 1
     many = data[:at] + (5_000_000).to_bytes(4, "big") + bytes(5_000_000) + data[at + 5 :]

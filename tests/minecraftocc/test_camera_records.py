@@ -89,7 +89,7 @@ def test_the_slips_are_what_the_record_says():
     assert "world to camera" in paper["conventions"]["E"]
 
 
-def test_errors_teach():
+def test_errors_say_what_to_do():
     with pytest.raises(UsageError, match="undistort the picture first"):
         camera_record(Camera(9, 9, 5.0, 5.0, 4.0, 4.0, (0.1, 0, 0, 0, 0)), np.eye(4), ROOM)
     with pytest.raises(UsageError, match="make it without paper_compat"):

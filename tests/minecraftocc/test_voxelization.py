@@ -110,7 +110,7 @@ def test_quarter_turns_of_a_world_turn_its_cells():
     assert np.array_equal(np.rot90(here, 2), there)
 
 
-def test_errors_teach(monkeypatch):
+def test_errors_say_what_to_do(monkeypatch):
     volume = room_of_things()
     with pytest.raises(UsageError, match=r"a cell is 0.01 m or more, not 0.001"):
         voxelize_scene(volume, voxel_m=0.001)

@@ -82,14 +82,14 @@ GOLDEN = {
 
 
 @pytest.mark.parametrize("text", GOLDEN)
-def test_what_is_wrong_is_said(text):
+def test_invalid_settings_are_reported(text):
     kind, message = GOLDEN[text]
     with pytest.raises(kind) as caught:
         parse_config(text, "run.yaml")
     assert str(caught.value) == message
 
 
-def test_no_yaml_is_told_on_one_line():
+def test_invalid_yaml_is_reported_in_one_line():
     with pytest.raises(DamagedFileError, match="is no YAML") as caught:
         parse_config("a: [", "run.yaml")
     assert "\n" not in str(caught.value)

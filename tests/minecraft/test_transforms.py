@@ -141,7 +141,7 @@ def test_four_turns_are_the_identity_and_turns_add_up():
         assert turn_state(state, -1) == turn_state(state, 3)
 
 
-def test_mirroring_twice_is_the_identity_and_both_mirrors_are_a_half_turn():
+def test_two_mirrors_are_identity_or_half_turn():
     for state in every_state():
         mirrored = mirror_state(state, "x")
         assert mirror_state(mirrored, "x") == state
@@ -155,7 +155,7 @@ def test_a_mirror_undoes_the_sense_of_a_turn():
         assert first == turn_state(mirror_state(state, "x"), -1)
 
 
-def test_turning_and_mirroring_stay_among_the_states_of_the_block():
+def test_turned_and_mirrored_states_are_valid_states():
     known = set(every_state())
     for change in (
         lambda state: turn_state(state, 1),

@@ -41,19 +41,19 @@ def test_an_error_comes_out_as_it_is(jobs):
     assert str(caught.value) == "DATA: the disk is full"
 
 
-def test_an_error_that_cannot_be_sent_is_told():
+def test_an_error_that_cannot_be_pickled_is_reported():
     with open_engine("pool", 2) as engine, pytest.raises(WorkerError, match="Local: odd"):
         list(engine.run(tasks.fail_strangely, [1], print))
 
 
-def test_a_killed_worker_is_replaced_and_told(tmp_path):
+def test_a_killed_worker_is_replaced_and_reported(tmp_path):
     with open_engine("pool", 2) as engine:
         found = dict(engine.run(tasks.die_once, [tmp_path / "mark"], lambda _: None))
     assert found == {0: "went on"}
     assert engine.notes == ["A worker ended by signal 9; another went on where it was."]
 
 
-def test_an_item_that_kills_every_worker_is_told_in_one_line():
+def test_an_item_that_kills_every_worker_is_reported():
     with open_engine("pool", 2) as engine, pytest.raises(WorkerError) as caught:
         list(engine.run(tasks.die, [1], print))
     assert str(caught.value) == (
@@ -98,7 +98,7 @@ def is_alive(pid):
     return not (state.exists() and state.read_text().split()[2] == "Z")
 
 
-def test_wrong_words():
+def test_invalid_engine_options():
     with pytest.raises(UnknownNameError, match="did you mean 'pool'"):
         open_engine("poll", 2)
     with pytest.raises(UsageError, match="jobs may be 1 to 1024, not 0"):

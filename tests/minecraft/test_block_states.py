@@ -78,7 +78,7 @@ def test_completing_twice_changes_nothing():
         assert default in states_of(name)
 
 
-def test_a_block_or_value_that_the_game_does_not_have_is_told_with_the_nearest():
+def test_unknown_blocks_and_values_suggest_the_nearest():
     assert check_state(parse_state("oak_slab[type=top]"))
     for text, message in {
         "oak_stair": "no block is named 'minecraft:oak_stair'; did you mean 'minecraft:oak_stairs'",

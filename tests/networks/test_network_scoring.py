@@ -199,7 +199,7 @@ def test_onnx_files_and_saved_predictions_from_the_command_line(store, tmp_path,
     assert scores["protocols"]["embodied"]["micro"]["iou"] == 1
 
 
-def test_one_frame_s_file_is_scored_against_one_bin_and_folders_of_them(tmp_path, capsys):
+def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
     """SSCNet's own layout: any folder of .bin and depth, its split in its name, no pictures."""
     folder = tmp_path / "NYUCADtest"
     folder.mkdir()
@@ -230,6 +230,6 @@ def test_one_frame_s_file_is_scored_against_one_bin_and_folders_of_them(tmp_path
         (["evaluate", "occupancy", "gone", "."], 3, "gone: is not there"),
     ],
 )
-def test_what_is_wrong_on_the_command_line_is_said(words, code, text, capsys):
+def test_command_line_mistakes_are_reported(words, code, text, capsys):
     assert w2m(words) == code
     assert text in capsys.readouterr().err

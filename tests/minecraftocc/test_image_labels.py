@@ -88,7 +88,7 @@ def test_masks_are_laws(world, kind):
         assert np.array_equal(np.sum(parts, axis=0) == 1, occ.in_frustum)
 
 
-def test_a_turned_region_has_samples_of_the_scene_and_of_its_hits(world):
+def test_a_rotated_region_samples_labels_and_hits(world):
     volume, scene, voxels = world
     (pose,) = poses_in(volume, 1, 3)
     depth_m = render_volume(scene, CAMERA, pose, outputs=()).depth_m
@@ -151,7 +151,7 @@ def test_depth_of_another_size_is_refused(world):
         )
 
 
-def test_the_image_of_a_samples_labels_is_that_of_the_cells_its_pixels_see(world):
+def test_projected_labels_are_those_of_the_cells_seen(world):
     volume, scene, voxels = world
     (pose,) = poses_in(volume, 1, 7)
     picture = render_volume(scene, CAMERA, pose)

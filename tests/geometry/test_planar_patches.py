@@ -65,7 +65,7 @@ def test_holes_and_steps_give_none():
     assert len(extract_patches(np.full((240, 320), 9.0, np.float32), CAMERA).points_m) == 0
 
 
-def test_a_surface_is_gathered_in_the_scan_s_frame_and_chosen_from():
+def test_oriented_points_are_in_the_scan_frame_and_subsettable():
     pose = np.eye(4)
     pose[:3, 3] = [1, 2, 3]
     depth = np.full((240, 320), 2.0, np.float32)

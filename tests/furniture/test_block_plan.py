@@ -48,7 +48,7 @@ def test_stairs_are_high_at_the_side_that_is_said(side):
     assert all(abs((box[axis] + box[axis + 3]) / 2 - edge) < 0.5 for box in high)
 
 
-def test_what_is_laid_later_takes_the_place_of_what_was_laid_before():
+def test_later_blocks_replace_earlier_ones():
     plan = _plan()
     plan.put("cloth", range(2), range(3), 0)
     plan.slab("top", 0, 0, 0)
@@ -78,7 +78,7 @@ def test_a_plate_of_cloth_is_whole_or_a_carpet():
     assert [block.state for block in plan.blocks] == ["minecraft:red_carpet", "minecraft:red_wool"]
 
 
-def test_legs_are_fences_of_wood_and_whole_blocks_of_what_has_none():
+def test_legs_are_fences_or_whole_blocks_by_material():
     plan = _plan()
     lay_legs(plan, "top", plan.corners, 2)
     assert {block.state for block in plan.blocks} == {"minecraft:oak_fence"}

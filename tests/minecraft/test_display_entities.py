@@ -115,7 +115,7 @@ def test_worlds_keep_displays_in_their_entity_regions(tmp_path):
     assert [float(v) for v in stored["Pos"]] == [3.25, 65.5, -2.0]
 
 
-def test_a_data_pack_summons_each_display_once_however_often_it_runs():
+def test_a_data_pack_run_again_summons_each_display_once():
     volume = furnished()
     files = datapack_files(volume, game_version(), "room")
     (path,) = [name for name in files if name.endswith("functions/build/part_0.mcfunction")]

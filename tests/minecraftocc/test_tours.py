@@ -152,7 +152,7 @@ def test_no_two_views_are_nearly_the_same(volume, views):
 
 
 @pytest.mark.parametrize("seed", [11, 2])
-def test_the_rooms_of_a_house_are_told_apart(seed):
+def test_the_rooms_of_a_house_are_separated(seed):
     house = generate_world(seed, rooms=5, storeys=1)
     volume = house.volume
     graph = walk_graph(volume)
