@@ -23,7 +23,7 @@ from world2minecraft.capture.stereo.plane_sweep import depth_range
 from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, DepthMap, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.geometry.unprojection import pixel_rays
@@ -56,7 +56,7 @@ def depth_maps(
     photos: PhotoStream,
     scene: SparseScene,
     parameters: StereoParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     guide=None,
 ) -> Iterator[DepthMap]:
     """Yield the depth maps of a scene's photos at half their size; see ``world2minecraft.capture.stereo``.
@@ -65,7 +65,7 @@ def depth_maps(
     hold here too. ``guide`` does not.
     """
     half_px = max(camera.width_px for camera in scene.cameras) // 2
-    small = prepare_stereo_photos(photos, scene, half_px, silent)
+    small = prepare_stereo_photos(photos, scene, half_px, no_progress)
     all_m = np.concatenate([photo.guide_m for photo in small])
     stand_in = [p.guide_m if len(p.guide_m) > FEW_POINTS else all_m for p in small]
     depths_m = np.array([np.percentile(known, DEPTH_PERCENTILES) for known in stand_in])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.archives import AnyPath
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.report import write_brief_report, write_report
 from world2minecraft.evaluation.report.jit_warmup import pictures_compiled_meanwhile
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
@@ -24,7 +24,7 @@ def run_capture(
     chosen: Parameters,
     start: str | None = None,
     labels: Path | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> dict[str, Any]:
     """Run the pipeline and write its report; return what ``report.json`` holds.
 
@@ -42,7 +42,7 @@ def run_capture(
 
 
 def run_plan(
-    place: AnyPath, out: Path, chosen: Parameters, progress: Progress = silent, name: str = ""
+    place: AnyPath, out: Path, chosen: Parameters, progress: Progress = no_progress, name: str = ""
 ) -> PlanWorld:
     """Build a plan's world, with a brief report.
 

@@ -50,7 +50,7 @@ def texts(volume):
     return np.array(volume.palette, object)[volume.states]
 
 
-def test_mends_are_done_listed_taken_back_and_done_again(out, capsys):
+def test_repairs_are_made_listed_undone_and_redone(out, capsys):
     before = texts(read_built(out / "build"))
     assert clean(out, "--dry-run") == 0
     assert capsys.readouterr().out == (

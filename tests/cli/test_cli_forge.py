@@ -44,7 +44,7 @@ def forge(*words):
 
 
 @POSIX
-def test_a_room_is_served_until_ctrl_c_and_opens_again_as_it_was_left(labels):
+def test_a_room_is_served_until_ctrl_c_and_keeps_its_edits(labels):
     paint = {"op": "set_cells", "cells": [[41, 3]], "class_id": 8}
     for rev in (0, 1):
         with forge(labels, "--port", 0) as (process, link, _):
@@ -71,7 +71,7 @@ def test_without_a_room_there_is_a_start_page(tmp_path, monkeypatch):
         assert browser.get(link.partition("?")[0] + "api/scene").status_code == 404
 
 
-def test_a_server_for_others_warns_and_wants_the_link_all_the_same(labels):
+def test_a_server_for_others_warns_and_requires_the_link(labels):
     words = (labels, "--port", 0, "--host", "0.0.0.0", "--allow-host", "den.lan")
     with forge(*words) as (_, link, said):
         assert said.startswith("warning: whoever reaches 0.0.0.0 and has the link can edit")

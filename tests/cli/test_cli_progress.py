@@ -31,7 +31,7 @@ def test_a_stage_is_two_lines():
     assert stream.getvalue() == "fuse ...\nfuse done in 20.0 s\n"
 
 
-def test_a_long_stage_says_how_far_it_is_and_how_long_it_will_take():
+def test_a_long_stage_prints_its_progress_and_time_left():
     stream, now = io.StringIO(), [0.0]
     lines = progress.LineProgress(stream, clock=lambda: now[0])
     for done in range(0, 2001, 100):

@@ -23,7 +23,7 @@ def small_pictures(monkeypatch):
     monkeypatch.setattr(trials, "scan_room", small)
 
 
-def test_a_seed_becomes_a_capture_with_its_truth_and_the_next_steps(tmp_path, capsys):
+def test_a_seed_becomes_a_capture_with_its_truth(tmp_path, capsys):
     out = tmp_path / "cap"
     words = [
         "--seed",

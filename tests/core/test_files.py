@@ -228,21 +228,24 @@ def test_an_encrypted_member_is_refused(tmp_path):
 
 
 def test_yaml_aliases_are_refused():
-    assert files.plain_yaml("a: [1, x]\nb: {c: 0.5}\n") == {"a": [1, "x"], "b": {"c": 0.5}}
+    assert files.load_plain_yaml("a: [1, x]\nb: {c: 0.5}\n") == {"a": [1, "x"], "b": {"c": 0.5}}
     with pytest.raises(ValueError, match=r"^aliases \(\*name\) are not read$"):
-        files.plain_yaml("a: &a [x, x]\nb: [*a, *a]\n")
+        files.load_plain_yaml("a: &a [x, x]\nb: [*a, *a]\n")
 
 
 @pytest.mark.parametrize("text", ["a: [1\n", "[" * 5000, "a: !!python/object:os.system x"])
 def test_what_is_no_yaml_is_told_in_one_line(text):
     with pytest.raises(ValueError, match=r"\A[^\n]+\Z"):
-        files.plain_yaml(text)
+        files.load_plain_yaml(text)
 
 
 def test_json_rows_have_line_numbers_and_errors_name_them():
     source = Path("rows.jsonl")
-    assert files.json_rows('{"a": 1}\n\n{"b": 2}\n', source) == [(1, {"a": 1}), (3, {"b": 2})]
+    assert files.parse_json_lines('{"a": 1}\n\n{"b": 2}\n', source) == [
+        (1, {"a": 1}),
+        (3, {"b": 2}),
+    ]
     for text, told in (("{}\n{", "line 2 is no JSON"), ("[1]", "line 1 is no JSON object")):
         with pytest.raises(DamagedFileError) as caught:
-            files.json_rows(text, source)
+            files.parse_json_lines(text, source)
         assert str(caught.value) == f"rows.jsonl: {told}"

@@ -12,7 +12,7 @@ HOLD = """
 import sys
 from pathlib import Path
 from world2minecraft.core.locks import Lock
-Lock(Path(sys.argv[1])).take()
+Lock(Path(sys.argv[1])).acquire()
 print("held", flush=True)
 sys.stdin.read()
 """
@@ -31,7 +31,7 @@ def other(tmp_path):
 
 def test_who_has_it_is_told_in_one_line(tmp_path, other):
     with pytest.raises(ConflictError) as caught:
-        Lock(tmp_path / "lock", "built").take()
+        Lock(tmp_path / "lock", "built").acquire()
     assert str(caught.value) == f"{tmp_path}: is being built by process {other.pid}"
 
 
@@ -39,13 +39,13 @@ def test_a_killed_process_holds_nothing(tmp_path, other):
     other.kill()
     other.wait()
     lock = Lock(tmp_path / "lock")
-    lock.take()
-    lock.let_go()
+    lock.acquire()
+    lock.release()
 
 
 def test_a_removed_lock_leaves_no_file_and_can_be_taken_again(tmp_path):
     for _ in range(2):
         lock = Lock(tmp_path / "lock")
-        lock.take()
+        lock.acquire()
         lock.remove()
         assert not list(tmp_path.iterdir())

@@ -239,10 +239,10 @@ def test_a_full_disk_is_one_line_and_the_same_command_goes_on(made, plan, tmp_pa
 
 def test_a_second_run_on_the_same_folder_is_refused(plan, tmp_path):
     lock = Lock(tmp_path / ".lock", "built")
-    lock.take()
+    lock.acquire()
     with pytest.raises(ConflictError, match="is being built by process"):
         build(tmp_path, plan)
-    lock.let_go()
+    lock.release()
 
 
 PARENT = """

@@ -150,7 +150,7 @@ class Scripted:
         return Answer(letter if outcome == "answered" else "", outcome, {})
 
 
-def test_shares_are_by_task_and_composition_and_parts_sum_to_combined():
+def test_accuracy_by_task_and_composition_sums_to_combined():
     items = some_items()
     found = evaluate(items, Scripted(lambda item: item.answer if item.step != 3 else ""))
     table = accuracy(found)

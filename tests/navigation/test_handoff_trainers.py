@@ -313,7 +313,7 @@ def test_a_folder_of_something_else_is_left_alone(folder, tmp_path):
 
 
 @pytest.mark.parametrize("format", ["llamafactory", "easyr1", "trl", "vlnce", "r2r"])
-def test_an_export_that_fails_leaves_nothing_so_that_it_can_be_tried_again(format, tmp_path):
+def test_a_failed_export_leaves_nothing_and_can_be_repeated(format, tmp_path):
     """A folder that a slip of the path had marked was refused to every other choice."""
     with pytest.raises(InputError):
         export_set(tmp_path / "no_set", format, tmp_path / "out")

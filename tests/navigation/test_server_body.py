@@ -250,7 +250,7 @@ def test_labels_of_other_blocks_are_refused(honest, flat_path, tmp_path):
         ("localhost", {"version": "newest"}, "a version is like 1.20.1, not 'newest'"),
     ],
 )  # fmt: skip
-def test_wrong_words_are_told_before_anything_starts(address, options, text):
+def test_wrong_options_are_refused_before_anything_starts(address, options, text):
     with pytest.raises(UsageError) as caught:
         join(address, **options)
     assert str(caught.value) == text

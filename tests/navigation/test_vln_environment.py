@@ -186,7 +186,7 @@ def test_a_longer_list_of_episodes_begins_with_the_shorter(flat):
         ({"episodes": []}, UsageError, "none of 0 episodes is of the scene 'flat'; they are of"),
     ],
 )
-def test_options_that_cannot_be_are_told(flat, options, kind, message):
+def test_impossible_options_are_refused(flat, options, kind, message):
     with pytest.raises(kind, match=message):
         VlnEnv(flat, **options)
 

@@ -179,7 +179,7 @@ def test_the_oracle_comes_to_every_thing_from_everywhere(flat, move_set):
     assert np.mean(shares) >= (0.8 if move_set == "block" else 0.95)
 
 
-def test_the_oracle_says_the_way_again_from_any_of_its_places(flat):
+def test_the_expert_path_is_the_same_from_any_of_its_places(flat):
     goals = flat.goals_at(flat.landmark("piano"))
     way = plan_expert_path(flat, flat.start, goals)
     assert way is not None and way == plan_expert_path(flat, flat.start, goals)

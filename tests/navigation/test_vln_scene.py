@@ -68,7 +68,7 @@ def test_goals_are_before_the_thing_and_in_its_room(flat):
     assert max(np.hypot(max(0, 3 - x, x - 6), max(0, 7 - z)) for x, _, z in goals) <= 2.0
 
 
-def test_the_field_is_dijkstra_over_all_places_that_see_each_other(flat):
+def test_distance_field_is_dijkstra_over_visible_places(flat):
     goals = flat.goals_at(flat.landmark("upright piano"))
     graph, lattice = flat.corner_graph, build_lattice(flat.corner_graph)
     low = np.flatnonzero(graph.feet[:, 1] == 65)
@@ -92,7 +92,7 @@ def test_distances_between_places_join_the_field(flat):
 
 
 @given(x=st.floats(-1, 20), y=st.sampled_from([64.0, 65.0, 65.25, 66.0]), z=st.floats(-1, 11))
-def test_the_table_of_the_floor_finds_what_a_look_at_all_places_does(flat, x, y, z):
+def test_floor_table_lookup_agrees_with_brute_force(flat, x, y, z):
     field = flat.corner_distances_m(flat.goals_at(flat.landmark("table")))
     apart = flat.corner_graph.feet - [x, y, z]
     level = np.abs(apart[:, 1]) <= LEVEL_SIZES * flat.scale

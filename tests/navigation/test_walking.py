@@ -94,7 +94,7 @@ def test_the_views_of_a_longer_walk_before_are_not_kept(tmp_path):
     assert len(read_trace(tmp_path / "trace.jsonl")) == 3
 
 
-def test_an_episode_that_cannot_be_walked_is_told_before_the_first_is(tmp_path):
+def test_an_unreachable_episode_is_refused_before_the_first_walk(tmp_path):
     class Walled(OpenField):
         def distance_m(self, stance, goals):
             return float("inf") if goals[0][0] > 4 else super().distance_m(stance, goals)
@@ -118,7 +118,7 @@ def test_a_trace_of_anyone_is_checked(tmp_path):
         TraceWriter(tmp_path / "file").on_begin(an_episode(), "stop")
 
 
-def test_a_course_is_told_beside_stop_random_and_oracle(tmp_path):
+def test_an_agent_is_evaluated_beside_stop_random_and_oracle(tmp_path):
     episodes = [an_episode(name=f"e{n}", goal=(2.0, 64.0, float(n))) for n in range(3)]
     walks, beside = evaluate_agent(
         episodes, lambda _: OpenField(), AGENTS.load("shortest")(), observers=lambda *_: ()

@@ -217,7 +217,7 @@ def test_best_weights_make_the_network_again(whole, store):
 def test_two_processes_do_not_train_in_one_folder(store, cache, tmp_path):
     code = (
         "import sys, time; from pathlib import Path; from world2minecraft.core.locks import Lock\n"
-        "Lock(Path(sys.argv[1]) / '.lock', 'trained').take(); print('held', flush=True)\n"
+        "Lock(Path(sys.argv[1]) / '.lock', 'trained').acquire(); print('held', flush=True)\n"
         "time.sleep(60)"
     )
     (tmp_path / "run").mkdir()

@@ -66,7 +66,7 @@ def test_a_flood_is_of_one_label_and_nothing_beside_it_is():
             assert (first[1:] == first[:-1])[same].all()
 
 
-def test_a_change_makes_the_scene_after_from_the_one_before_and_back():
+def test_changes_apply_forwards_and_backwards():
     for case in cases("changes.json"):
         for start, runs, end in (
             ("before", "done", "after"),

@@ -61,7 +61,7 @@ def test_the_answers_are_those_of_a_small_scene(script, monkeypatch, name):
     assert small or name == "holes"
 
 
-def test_how_far_a_question_is_is_told_to_every_tab(server, script, large):
+def test_progress_of_a_question_is_sent_to_every_tab(server, script, large):
     with tab(server) as socket_:
         script.post("/api/ask/holes", json={})
         told = []

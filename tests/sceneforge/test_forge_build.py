@@ -177,7 +177,7 @@ def test_an_unknown_kind_of_boxes_is_refused(script):
     assert answer.json()["error"] == "what must be build or voxels, not 'air'"
 
 
-def test_a_room_that_is_opened_while_another_is_built_never_gets_its_blocks(monkeypatch, tmp_path):
+def test_a_room_opened_during_a_build_never_gets_its_blocks(monkeypatch, tmp_path):
     begun, go_on = threading.Event(), threading.Event()
 
     def slowly(scene: SceneSnapshot) -> bytes:

@@ -96,7 +96,7 @@ def test_the_scene_is_compared_with_what_was_opened(editor):
     json.dumps(answer, allow_nan=False)
 
 
-def test_filling_what_was_never_seen_is_a_difference_to_what_was_opened(tmp_path):
+def test_filling_unseen_cells_differs_from_the_opened_scene(tmp_path):
     labels = room()
     labels[8:10, 8:11, 0] = 255
     np.save(tmp_path / "unseen.npy", labels)
@@ -106,7 +106,7 @@ def test_filling_what_was_never_seen_is_a_difference_to_what_was_opened(tmp_path
     editor.close()
 
 
-def test_the_scene_is_compared_with_a_file_of_finer_cells_elsewhere(editor, tmp_path):
+def test_the_scene_is_compared_with_a_finer_shifted_grid(editor, tmp_path):
     fine = np.repeat(np.repeat(np.repeat(room(), 2, 0), 2, 1), 2, 2)[:, :40]
     place = {"voxel_m": 0.04, "origin_m": np.zeros(3)}
     np.savez(tmp_path / "fine.npz", labels=fine, **place)
@@ -114,7 +114,7 @@ def test_the_scene_is_compared_with_a_file_of_finer_cells_elsewhere(editor, tmp_
     assert answer["cells"] == {"added": 0, "removed": 0, "changed": 0} and answer["iou"] == 1
 
 
-def test_the_scene_is_compared_with_the_truth_of_a_generated_room(editor, tmp_path):
+def test_the_scene_is_compared_with_a_generated_rooms_truth(editor, tmp_path):
     with pytest.raises(UsageError, match="only generated rooms have one"):
         editor.ask("compare", path="truth")
     whole = np.repeat(np.repeat(np.repeat(room(), 4, 0), 4, 1), 4, 2)

@@ -116,7 +116,7 @@ def damaged(path, at):
     path.write_bytes(data)
 
 
-def test_a_journal_damaged_before_a_snapshot_loses_nothing_but_old_undo(run, forge, monkeypatch):
+def test_damage_before_a_snapshot_loses_only_old_undo(run, forge, monkeypatch):
     monkeypatch.setattr(document_module, "SNAPSHOT_STEPS", 10)
     editor, states = edited(run, 24)
     steps = editor.document._journal.steps
@@ -143,7 +143,7 @@ def test_a_journal_damaged_before_a_snapshot_loses_nothing_but_old_undo(run, for
     last.close()
 
 
-def test_a_journal_damaged_after_the_last_snapshot_gives_what_is_before_it(run, forge):
+def test_damage_after_the_last_snapshot_keeps_earlier_edits(run, forge):
     editor, states = edited(run, 10)
     steps = editor.document._journal.steps
     abandon(editor)
@@ -176,7 +176,7 @@ def test_a_damaged_length_is_no_torn_tail(run, forge, record):
 
 @pytest.mark.parametrize("name", ["journal.bin", "snapshot", "base.npz"])
 @pytest.mark.parametrize("how", ["gone", "noise", "empty"])
-def test_one_damaged_file_of_a_closed_document_never_keeps_it_shut(run, forge, name, how):
+def test_a_closed_document_opens_with_any_one_file_damaged(run, forge, name, how):
     editor, states = edited(run, 10)
     editor.close()
     (path,) = forge.glob(f"{name}*")
@@ -347,7 +347,7 @@ def test_a_scene_that_was_made_anew_sets_saved_edits_aside(run, forge):
     again.close()
 
 
-def test_a_scene_that_was_made_anew_never_drops_edits_that_were_not_saved(run, forge):
+def test_a_rewritten_scene_never_drops_unsaved_edits(run, forge):
     editor, states = edited(run, 6)
     editor.close()
     (run / "objects.json").write_text("[]\n")

@@ -106,7 +106,7 @@ def test_another_site_is_refused_though_it_brings_the_cookie(server, cookie, hea
 
 
 @pytest.mark.parametrize(("headers", "why"), FOREIGN)
-def test_another_site_opens_no_websocket_though_it_brings_the_cookie(server, cookie, headers, why):
+def test_another_site_with_the_cookie_opens_no_websocket(server, cookie, headers, why):
     asked = request(server, UPGRADE | {"Cookie": "COOKIE_PAIR"} | headers, cookie, "/api/live")
     assert status(raw(server, asked)) in (400, 403)  # 400: no Host that HTTP knows.
 
@@ -197,7 +197,7 @@ def open_guard(**options):
         ("999.1.1.1", False),
     ],
 )
-def test_an_open_server_is_called_by_address_or_by_a_name_that_is_given(host, is_let_in):
+def test_an_open_server_accepts_addresses_and_named_hosts(host, is_let_in):
     guard = open_guard(hosts=["Den.lan"], any_address=True)
     assert (guard._foreign({"host": [host]}) == "") is is_let_in
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError
-from world2minecraft.core.progress import silent
+from world2minecraft.core.progress import no_progress
 from world2minecraft.sceneforge.jobs.jobs import MAX_RUNNING, CancelledError, Jobs
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import TimeLeft
@@ -108,7 +108,7 @@ def test_work_that_is_cancelled_ends_at_its_next_report(jobs):
     assert (state.state, state.note, reached) == ("cancelled", "", [])
 
 
-def test_cancelling_calls_what_cuts_the_work_off_once_it_is_known(jobs):
+def test_cancelling_calls_the_stop_function_once_it_is_known(jobs):
     calls = []
     began, go_on = threading.Event(), threading.Event()
 
@@ -188,4 +188,4 @@ def test_a_process_is_cut_off(jobs, tmp_path):
 
 
 def test_a_task_that_is_not_there_is_named():
-    assert run_task("erase", {}, silent)["error"].startswith("no forge_task is named 'erase'")
+    assert run_task("erase", {}, no_progress)["error"].startswith("no forge_task is named 'erase'")

@@ -73,7 +73,7 @@ def test_bad_json_is_refused_over_http(server, body, why):
 
 
 @pytest.mark.parametrize(("body", "why"), BAD, ids=range(len(BAD)))
-def test_bad_json_is_refused_over_the_websocket_and_the_tab_lives_on(server, body, why):
+def test_bad_json_over_the_websocket_is_refused(server, body, why):
     with tab(server) as page:
         page.send(f'{{"type":"do","seq":1,"command":{body}}}')
         told = heard(page)
@@ -151,7 +151,7 @@ def test_a_packed_websocket_message_is_never_unpacked(server):
             page.recv(timeout=HANG_S)
 
 
-def test_a_websocket_message_over_the_limit_closes_that_tab_alone(server):
+def test_an_oversized_websocket_message_closes_that_tab_alone(server):
     with tab(server) as one, tab(server) as other:
         with pytest.raises(ConnectionClosed):
             one.send(" " * (MAX_JSON_BYTES + 1))

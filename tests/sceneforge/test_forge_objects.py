@@ -61,7 +61,7 @@ def test_centers_are_previewed_and_change_nothing(editor):
         editor.ask("centers", **figures | {"density_kernel": 4})
 
 
-def test_found_anew_by_the_usual_figures_objects_stay_who_they_are(editor):
+def test_detecting_again_by_default_keeps_object_ids(editor):
     before = {n: len(editor.draft.cells_of(n)) for n in editor.draft.objects}
     figures = {"density_kernel": 3, "density_threshold": 0.2, "cluster_radius": 2}
     editor.do("recluster", **figures)

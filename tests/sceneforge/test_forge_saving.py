@@ -85,7 +85,7 @@ def test_a_file_of_someone_else_is_not_written_over(run):
     editor.close()
 
 
-def test_a_file_that_stood_where_a_grid_is_saved_is_not_written_over(tmp_path):
+def test_saving_a_grid_does_not_overwrite_an_existing_file(tmp_path):
     np.save(tmp_path / "den.npy", np.full((6, 5, 4), 2, np.uint8))
     (tmp_path / "den").mkdir()
     (tmp_path / "den" / "room.npz").write_bytes(b"another room")
@@ -97,7 +97,7 @@ def test_a_file_that_stood_where_a_grid_is_saved_is_not_written_over(tmp_path):
 
 
 @pytest.mark.parametrize("whole", range(3))
-def test_a_save_that_is_cut_off_is_finished_when_the_scene_is_opened(run, monkeypatch, whole):
+def test_an_interrupted_save_is_finished_on_opening(run, monkeypatch, whole):
     editor = Editor.open(run)
     edit(editor, 3)
     written, real = [], saving.write_bytes
@@ -147,7 +147,7 @@ def test_after_a_full_disk_it_is_saved_again(run, monkeypatch):
     editor.close()
 
 
-def test_a_document_from_elsewhere_writes_nothing_when_it_is_opened(run, tmp_path):
+def test_opening_a_document_from_elsewhere_writes_nothing(run, tmp_path):
     editor = Editor.open(run)
     edit(editor, 3)
     editor.save()

@@ -310,7 +310,7 @@ def test_a_run_and_an_occupancy_file_are_no_captures(small_run, tmp_path):
     assert not is_capture(tmp_path)
 
 
-def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
+def test_a_closed_demo_room_is_offered_again_with_its_edits(tmp_path):
     home = tmp_path / "home"
     with served(Editor.open(None, out=home / "demo-room"), home=home) as server:
         server.workspace.begin_with(document_folder(None, home / "demo-room"), False)

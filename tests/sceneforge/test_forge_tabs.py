@@ -24,7 +24,7 @@ from world2minecraft.sceneforge.server.serve import ForgeServer
 
 
 @pytest.mark.parametrize("quick_cells", [session.QUICK_CELLS, 0])  # At once; by the thread.
-def test_what_is_done_undone_and_redone_is_told_before_the_answer(monkeypatch, quick_cells):
+def test_changes_are_broadcast_before_the_answer(monkeypatch, quick_cells):
     monkeypatch.setattr(session, "QUICK_CELLS", quick_cells)
     with served(small_editor()) as server, tab(server) as page:
         for number in range(20):
@@ -102,7 +102,7 @@ class Sleeper:
             self.socket.sendall(data)
 
 
-def test_a_tab_that_slept_an_hour_is_told_to_begin_anew_and_nothing_is_lost(monkeypatch):
+def test_a_tab_that_slept_starts_again_and_loses_nothing(monkeypatch):
     monkeypatch.setattr(hub, "MAX_QUEUED_BYTES", 200_000)
     hours = iter(range(10**9))
     editor = small_editor((20, 20, 20))
@@ -127,7 +127,7 @@ def test_a_tab_that_slept_an_hour_is_told_to_begin_anew_and_nothing_is_lost(monk
         assert np.array_equal(cells, editor.draft.labels.ravel())
 
 
-def test_a_tab_that_answers_no_ping_is_let_go_and_told_where_it_stands_when_it_comes_back():
+def test_a_tab_without_pings_is_dropped_and_greeted_on_return():
     server = ForgeServer(small_editor(), port=0)
     server._server.config.ws_ping_interval = server._server.config.ws_ping_timeout = 0.05
     with server, client(server) as script:
@@ -205,7 +205,7 @@ def test_what_takes_long_blocks_no_reading_and_keeps_its_turn(monkeypatch):
         assert [m["actor"] for m in told[:2]] == ["tab 1", "tab 2"]
 
 
-def test_a_mistake_of_ours_is_told_as_one_and_the_next_edit_works(monkeypatch):
+def test_an_internal_error_is_reported_and_the_next_edit_works(monkeypatch):
     def broken(self, draft, tools):
         raise ZeroDivisionError("secret details")
 
@@ -251,7 +251,7 @@ def test_a_queue_that_is_full_is_emptied_and_begins_with_hello():
     assert got == [{"type": "hello"}, {"n": "next"}]
 
 
-def test_a_job_is_told_to_tabs_that_are_open_and_to_those_that_come():
+def test_a_job_is_sent_to_open_tabs_and_to_later_ones():
     with served() as server, tab(server) as page:
         may_end = threading.Event()
 

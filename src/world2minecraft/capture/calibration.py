@@ -19,7 +19,7 @@ from world2minecraft.core.types import Camera, View
 WORK_WIDTH_PX = 320  # Shifts below are in pixels of a colour image of this width.
 BLUR_PX = 1.5  # So wide that the coarse steps below cannot pass a peak by.
 JUMP = 0.06  # Of the nearer depth: more than noise and slanted surfaces give between two pixels.
-MAX_HOLE_PX = 8  # A Kinect's shadows beside near things are wider; the rest suffices.
+MAX_HOLE_PX = 8  # A Kinect's shadows next to near things are wider; the rest suffices.
 POINTS_PER_MAP = 700
 SCALES = np.arange(0.80, 1.2001, 0.02)
 SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
@@ -34,7 +34,7 @@ MIN_INSIDE_SHARE = 0.6
 class ColourCameraEstimate:
     """The colour camera relative to the stated matrix; shifts in pixels of the colour image.
 
-    ``gain`` is how much better the frames that were kept apart fit, as a ratio; ``clear`` says
+    ``gain`` is how much better the held-out frames fit, as a ratio; ``clear`` says
     whether it is enough to use the estimate.
     """
 
@@ -45,7 +45,7 @@ class ColourCameraEstimate:
     clear: bool
 
     def applied(self, camera: Camera) -> Camera:
-        """Return the stated camera with the estimate laid on it."""
+        """Return the stated camera corrected by the estimate."""
         return replace(
             camera,
             fx_px=camera.fx_px * self.scale,

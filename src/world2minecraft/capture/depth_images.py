@@ -100,7 +100,7 @@ def check_depth_kind(path: ImagePlace, header: ImageHeader) -> None:
 
 
 def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncoding:
-    """Return the encoding of a stream of depth images, stated or told from some of them.
+    """Return the encoding of a stream of depth images, stated or inferred from some of them.
 
     Args:
         paths: a few depth images of the stream.
@@ -137,7 +137,7 @@ def _sample_values(path: ImagePlace) -> np.ndarray:
 
 
 def _guess_unit(values: np.ndarray) -> str:
-    """Tell the unit from the values' range and steps."""
+    """Infer the unit from the values' range and steps."""
     typical, far = np.percentile(values, [50, 98])
     if values.dtype.kind == "f" and far < 100:
         return "m"

@@ -56,12 +56,12 @@ class FrameFiles:
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """What lies at a place, found out and listed but not judged.
+    """A capture that was detected and listed but not yet validated.
 
     ``folder`` is the folder or file that the user named. ``one_matrix`` says that depth and colour
     share one stated matrix, so that the colour camera may truly be another. ``depth_unit`` is None
     where the capture does not state it. ``depth_kind`` says what made the depth: a ``sensor``,
-    ``stereo``, a ``network``, or nothing that errs (``exact``, a mesh that is looked at). ``lens``
+    ``stereo``, a ``network``, or nothing that errs (``exact``, a rendered mesh). ``lens``
     says whether the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none).
     ``full_trust`` is the value of ``trust_path`` that means full trust; 0 always means none.
     ``world_up`` is a unit vector of the world frame where the capture is known to stand upright.

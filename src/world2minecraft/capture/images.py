@@ -77,7 +77,7 @@ class NamedByFrame:
 
 @dataclass(frozen=True)
 class ImageHeader:
-    """What an image says of itself; ``mode`` is Pillow's, or the dtype of a ``.npy``."""
+    """Size and mode of an image; ``mode`` is Pillow's, or the dtype of a ``.npy``."""
 
     width_px: int
     height_px: int

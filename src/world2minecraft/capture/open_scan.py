@@ -11,7 +11,7 @@ from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced, validate_capture
 from world2minecraft.capture.view_stream import CaptureViews, without_colour
 from world2minecraft.core.errors import CaptureError, UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 
 ALIGNMENT_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
@@ -26,17 +26,17 @@ def open_scan(
     *,
     voxel_m: float = 0.08,
     labels: Path | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     options: Mapping[str, str] | None = None,
 ) -> Scan:
-    """Open a capture: find out its layout, check it and find the room in it.
+    """Open a capture: detect its layout, validate it and align its room.
 
     Args:
         path: the capture's folder.
         voxel_m: the cell that the room will be cut into; a room of too many cells is refused
             here, before any long work. The room's inner corner is a corner of a cell.
         labels: a folder of label images ``NAME.png`` (uint8 class ids), one for each frame.
-        progress: told of the stage ``scan``.
+        progress: called with the stage ``scan``.
         options: see ``ScanOptions``: ``depth_unit``, ``every``, ``colour_camera``.
 
     Raises:
@@ -84,7 +84,7 @@ def open_scan(
 
 
 def _estimate_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
-    """Return the stream with the estimated colour camera where it is clear, and what to tell."""
+    """Return the stream with the estimated colour camera where it is clear, and a note."""
     both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
     estimate = estimate_colour_camera(stream.read(evenly_spaced(both, CALIBRATION_FRAMES)))
     if estimate is None:

@@ -21,17 +21,17 @@ class ScanOptions:
     """The options, parsed; each default is what fits most captures."""
 
     depth_unit: str | None = None
-    """mm, 5000, rotated, m, nyu_raw or metres per unit; else as stated, else told from values."""
+    """mm, 5000, rotated, m, nyu_raw or metres per unit; else as stated, else inferred."""
     every: int = 1
     """Take each n-th frame; a video's neighbours say little new."""
     colour_camera: str = "auto"
     """auto: estimate it where depth and colour share one stated matrix; stated: take that."""
     unit: str | None = None
-    """Of a mesh or a cloud: m, cm, mm, inch or foot; else told from its size."""
+    """Of a mesh or point cloud: m, cm, mm, inch or foot; else inferred from its size."""
     up: str | None = None
-    """Of a mesh or a cloud: which of its own axes points up; else told from its surfaces."""
+    """Of a mesh or point cloud: which of its axes points up; else inferred from its surfaces."""
     inside: tuple[float, float, float] | None = None
-    """Of a mesh or a cloud: a point inside the room, in the file's own units and axes."""
+    """Of a mesh or point cloud: a point inside the room, in the file's own units and axes."""
     frames: int | None = None
     """How many pictures to take of a video (else 100 at most) or a folder of photos (else all)."""
     fov_deg: float | None = None

@@ -51,7 +51,7 @@ class CapturePhotos:
 
 
 def photos_of_capture(validated: ValidatedCapture, longest_px: int = MAX_SIDE_PX) -> CapturePhotos:
-    """Return the photos of a judged capture: its usable frames that have a colour image."""
+    """Return the photos of a validated capture: its usable frames that have a colour image."""
     frames = tuple(frame for frame in validated.frames if frame.colour_path is not None)
     return CapturePhotos(frames, validated.capture.lens, longest_px)
 

@@ -4,12 +4,12 @@ from PIL import Image
 
 from world2minecraft.core.archives import AnyPath
 
-SOFTWARE_TAG = "w2m scan"  # What the PNG says of the software that wrote it.
+SOFTWARE_TAG = "w2m scan"  # PNG text ``Software`` of the page.
 POSTER_SUFFIX = "-scan.png"
 
 
 def is_poster(path: AnyPath) -> bool:
-    """Return whether a file is such a page, so that it may be written anew."""
+    """Return whether a file is such a page, which may be replaced."""
     try:
         with path.open("rb") as stream, Image.open(stream, formats=("PNG",)) as image:
             return getattr(image, "text", {}).get("Software") == SOFTWARE_TAG
@@ -18,5 +18,5 @@ def is_poster(path: AnyPath) -> bool:
 
 
 def is_saved_poster(path: AnyPath) -> bool:
-    """Return whether a file of a capture's folder is such a page, drawn by one who stood in it."""
+    """Return whether a file in a capture's folder is such a page, by name and content."""
     return path.name.endswith(POSTER_SUFFIX) and is_poster(path)

@@ -52,11 +52,11 @@ UNREAD_ARCHIVE_SUFFIXES = (".tar", ".tgz", ".gz", ".bz2", ".xz", ".zst", ".7z", 
 
 
 def find_capture(path: str | Path, options: ScanOptions | None = None) -> Capture:
-    """Find out what kind of capture lies at a path and list its frames.
+    """Detect the kind of capture at a path and list its frames.
 
     Args:
         path: a folder, one of its ``INDEX_FILES``, a zip of either, or a file that a source knows.
-        options: what the user says of it; told to sources that are ``ConfigurableSource``.
+        options: the user's options; passed to sources that are ``ConfigurableSource``.
 
     Raises:
         CaptureError: it is missing, empty, of another kind or contradicts itself.

@@ -170,7 +170,7 @@ class CaptureSummary:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The texts of the doubts that are no praise."""
+        """The texts of the diagnostics that are not ok."""
         return tuple(diagnostic.text for diagnostic in self.diagnostics if diagnostic.level != "ok")
 
 
@@ -187,7 +187,7 @@ def describe_capture(
 def describe_validated(
     validated: ValidatedCapture, options: Mapping[str, str] | None = None
 ) -> CaptureSummary:
-    """Describe a capture that is judged; ``options`` are named again in the next command."""
+    """Describe a validated capture; ``options`` are named again in the next command."""
     frames = validated.frames
     survey = survey_capture(validated)
     route = choose_route(validated)

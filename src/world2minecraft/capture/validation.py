@@ -59,7 +59,7 @@ def check_frames(
 
     Args:
         capture: as its source listed it.
-        step: told after each frame how many are done.
+        step: called after each frame with the number of frames done.
 
     Returns:
         The usable frames in order, and (name, reason) of the others.
@@ -248,7 +248,7 @@ def validate_capture(
     labels: Path | None = None,
     step: Callable[[int, int], None] = lambda done, total: None,
 ) -> ValidatedCapture:
-    """Find out a capture's layout, check its frames and tell its depth unit.
+    """Detect a capture's layout, check its frames and infer its depth unit.
 
     Raises:
         CaptureError: it cannot be used. LimitError: an image is too large.
@@ -288,7 +288,7 @@ def validate(
 def _rotate_upright(
     frames: tuple[FrameFiles, ...], capture: Capture
 ) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
-    """Return the frames with upright images where the capture knows up, and what to tell."""
+    """Return the frames with upright images where the capture knows up, and a note."""
     turns = 0 if capture.world_up is None else find_quarter_turns(frames, capture.world_up)
     if turns == 0:
         return frames, ()

@@ -60,7 +60,7 @@ def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:
 def skip_damaged_frames(scan: Scan) -> Scan:
     """Return the scan with the frames that could not be decoded among those skipped.
 
-    Call it once its views have been read through.
+    Call it after its views have been read.
     """
     damaged = getattr(scan.views, "damaged", {})
     late = [(name, reason) for name, reason in damaged.items() if name in scan.frames_used]

@@ -40,7 +40,7 @@ MaxPixels = Annotated[
         "--max-pixels", metavar="N", help="Of a picture that a model sees; larger ones are shrunk."
     ),
 ]
-MAX_PIXELS = 1_048_576  # models.chat_pictures.MOST_PX, which a test holds it to.
+MAX_PIXELS = 1_048_576  # external_models.chat_messages.MAX_PX, which a test holds it to.
 MaxTokens = Annotated[
     int,
     typer.Option(
@@ -103,17 +103,17 @@ DEFAULTS = ModelOptions()
 
 
 def with_model_options(
-    usual: ModelOptions = DEFAULTS,
+    defaults: ModelOptions = DEFAULTS,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Give a verb a model's options in place of its parameter ``asked``, which they become.
+    """Give a verb a model's options in place of its parameter ``model_options``, which they become.
 
     Args:
-        usual: what they are where the command line does not say them.
+        defaults: what they are where the command line does not say them.
     """
     options = [
         inspect.Parameter(
             one.name, inspect.Parameter.KEYWORD_ONLY, annotation=one.type,
-            default=getattr(usual, one.name),
+            default=getattr(defaults, one.name),
         )
         for one in fields(ModelOptions)
     ]  # fmt: skip
@@ -121,11 +121,11 @@ def with_model_options(
     def with_options(run: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(run)
         def called(**given: Any) -> Any:
-            said = {one.name: given.pop(one.name) for one in options if one.name in given}
-            return run(**given, asked=replace(usual, **said))
+            given_options = {one.name: given.pop(one.name) for one in options if one.name in given}
+            return run(**given, model_options=replace(defaults, **given_options))
 
         signature = inspect.signature(run)
-        own = [one for name, one in signature.parameters.items() if name != "asked"]
+        own = [one for name, one in signature.parameters.items() if name != "model_options"]
         shown = signature.replace(parameters=[*own, *options])
         called.__signature__ = shown  # type: ignore[attr-defined]
         called.__annotations__ = {one.name: one.annotation for one in shown.parameters.values()}

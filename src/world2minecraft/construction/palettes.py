@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from world2minecraft.construction.block_meanings import parse_meanings
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError, one_line
-from world2minecraft.core.files import plain_yaml, read_bytes
+from world2minecraft.core.files import load_plain_yaml, read_bytes
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import BlockState, check_state, complete, parse_state
@@ -178,7 +178,7 @@ def read_palette(path: Path) -> Palette:
     """
     text = read_bytes(path, MAX_BYTES)
     try:
-        raw = json.loads(text) if path.suffix == ".json" else plain_yaml(text)
+        raw = json.loads(text) if path.suffix == ".json" else load_plain_yaml(text)
     except (ValueError, RecursionError) as error:
         kind = "JSON" if path.suffix == ".json" else "YAML"
         raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error

@@ -191,8 +191,8 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
 def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
     """Return the columns, bool [X, Y], in which an upper storey's floor was seen through.
 
-    It is inferred from the layers of cells in which the rest of its floor lies, which may be a tenth of
-    a block thick.
+    It is inferred from the layers of cells in which the rest of its floor lies, which may be a
+    tenth of a block thick.
     """
     shape = lattice.shape[:2]
     if ground == lattice.ground:

@@ -145,8 +145,8 @@ def see_through(
 ) -> np.ndarray:
     """Return the share of each block's face, float32 [X, Y, Z], through which space was seen.
 
-    It is measured in the layer of cells right behind each plane, and -1 where no plane is. A doorway
-    is open there, while the space before a wall that stands back within its block is not.
+    It is measured in the layer of cells right behind each plane, and -1 where no plane is. A
+    doorway is open there, while the space before a wall that stands back within its block is not.
     """
     edges = lattice.edges_of(grid, faces.axis)
     across = [axis for axis in range(3) if axis != faces.axis]

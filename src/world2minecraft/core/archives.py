@@ -61,7 +61,7 @@ class Archive:
                 path, f"has over {MAX_MEMBERS:,} members; unpack it and give the folder"
             )
         self.members = {
-            _checked_name(path, info): info for info in self._zip.infolist() if not info.is_dir()
+            _check_name(path, info): info for info in self._zip.infolist() if not info.is_dir()
         }
         self.folders: dict[str, set[str]] = {"": set()}
         for name in self.members:
@@ -100,7 +100,7 @@ class Archive:
             raise DamagedFileError(where, f"cannot be unpacked ({error})") from error
 
 
-def _checked_name(path: Path, info: zipfile.ZipInfo) -> str:
+def _check_name(path: Path, info: zipfile.ZipInfo) -> str:
     name = info.filename.replace("\\", "/").rstrip("/")
     parts = PurePosixPath(name).parts
     linked = stat.S_ISLNK(info.external_attr >> 16)
@@ -110,7 +110,7 @@ def _checked_name(path: Path, info: zipfile.ZipInfo) -> str:
 
 
 @lru_cache(maxsize=4)
-def _opened(path: Path, stamp: tuple[int, int]) -> Archive:
+def _open_archive(path: Path, stamp: tuple[int, int]) -> Archive:
     return Archive(path)
 
 
@@ -128,7 +128,7 @@ class ArchivePath:
             found = self.path.stat()
         except OSError as error:
             raise InputError(self.path, f"cannot be read: {error.strerror or error}") from error
-        return _opened(self.path, (found.st_size, found.st_mtime_ns))
+        return _open_archive(self.path, (found.st_size, found.st_mtime_ns))
 
     def __str__(self) -> str:
         """The zip's path and the name inside it, for messages."""

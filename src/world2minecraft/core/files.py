@@ -78,7 +78,7 @@ def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) ->
         raise DamagedFileError(path, f"is not JSON ({error})") from error
 
 
-def plain_yaml(text: str | bytes) -> Any:
+def load_plain_yaml(text: str | bytes) -> Any:
     """Return what a YAML text holds, without aliases: they make a huge tree of a small file.
 
     Raises:
@@ -125,10 +125,10 @@ def read_bytes(path: "str | Path | ArchivePath", limit_bytes: int) -> bytes:
 
 def write_npz(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
     """Write arrays as a compressed ``.npz`` whose bytes depend on the values alone."""
-    write_bytes(path, npz_bytes(arrays))
+    write_bytes(path, pack_npz(arrays))
 
 
-def npz_bytes(arrays: Mapping[str, np.ndarray]) -> bytes:
+def pack_npz(arrays: Mapping[str, np.ndarray]) -> bytes:
     """Return what ``write_npz`` writes."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
@@ -158,7 +158,7 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
         raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
 
 
-def npz_arrays(
+def read_npz_bytes(
     data: bytes, names: tuple[str, ...], source: str | Path, limit_bytes: int
 ) -> dict[str, np.ndarray]:
     """Read the named arrays of a ``.npz`` in memory, each of at most ``limit_bytes``.
@@ -173,7 +173,7 @@ def npz_arrays(
         raise DamagedFileError(place, f"is not a readable .npz ({error})") from error
 
 
-def array_names(path: str | Path) -> tuple[str, ...]:
+def npz_array_names(path: str | Path) -> tuple[str, ...]:
     """Return the names of the arrays of a ``.npz``. Raises what ``read_npz`` raises."""
     try:
         with zipfile.ZipFile(path) as archive:
@@ -228,7 +228,7 @@ def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
         raise DamagedFileError(source, f"array {name} says {shape} {dtype}, holds less")
 
 
-def json_rows(text: str, source: Path) -> list[tuple[int, dict[str, Any]]]:
+def parse_json_lines(text: str, source: Path) -> list[tuple[int, dict[str, Any]]]:
     """Return the objects of a text with one JSON object a line, each with the number of its line.
 
     Raises:

@@ -18,7 +18,7 @@ _acquired: set[FileLock] = set()  # filelock releases those that nothing refers 
 
 
 class Lock:
-    """The lock at a path, held from ``take`` to ``let_go``."""
+    """The lock at a path, held from ``acquire`` to ``release``."""
 
     def __init__(self, path: Path, work: str = "edited"):
         """Name the lock and what is done under it; nothing is taken."""
@@ -31,7 +31,7 @@ class Lock:
             on_acquired=_write_holder,
         )
 
-    def take(self) -> None:
+    def acquire(self) -> None:
         """Take the lock, over from a process that is dead if need be.
 
         Raises:
@@ -47,7 +47,7 @@ class Lock:
             raise OutputError(self.path, reason) from error
         _acquired.add(self._lock)
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """Let go of the lock, where it is held."""
         if self._lock.is_locked:
             with contextlib.suppress(OSError):

@@ -14,5 +14,5 @@ class Progress(Protocol):
         ...
 
 
-def silent(stage: str, done: int, total: int, note: str = "") -> None:
+def no_progress(stage: str, done: int, total: int, note: str = "") -> None:
     """Ignore every report: the default of library calls."""

@@ -313,8 +313,8 @@ class WorldEntities:
     def _pack_chunk(self, place: Place, held: list[dict[str, Any]]) -> bytes:
         """Return a chunk of entities; with those of others in it, it stays as old as it was.
 
-        The game brings entities up to date by what their chunk says: one with too new a version would
-        leave what they carry in the form of an older game, which the newer one drops.
+        The game brings entities up to date by what their chunk says: one with too new a version
+        would leave what they carry in the form of an older game, which the newer one drops.
         """
         root = {
             "DataVersion": self._data_version,

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import BudgetError, DamagedFileError, UsageError
-from world2minecraft.core.files import plain_yaml, read_bytes
+from world2minecraft.core.files import load_plain_yaml, read_bytes
 from world2minecraft.external_models.chat_messages import Question, Reply
 
 PRICES_FILE = Path(__file__).with_name("chat_prices.yaml")
@@ -46,7 +46,7 @@ def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
         InputError: the file is missing. DamagedFileError: it is no such table.
     """
     try:
-        table = plain_yaml(read_bytes(path, MAX_PRICES_BYTES))
+        table = load_plain_yaml(read_bytes(path, MAX_PRICES_BYTES))
         prices = {str(name): Price(*map(float, pair)) for name, pair in table.items()}
     except (AttributeError, TypeError, ValueError) as error:
         raise DamagedFileError(

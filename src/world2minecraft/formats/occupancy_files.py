@@ -30,7 +30,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.core.files import array_names, read_json, read_npy, read_npz
+from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 from world2minecraft.formats.run_arrays import GRID_ARRAYS, read_room
@@ -71,7 +71,7 @@ def read_occupancy(path: str | Path) -> OccupancyGrid:
         return labels_grid(read_npy(source), source)
     if source.suffix != ".npz":
         raise InputError(source, "is no occupancy file; those end with .npz, .npy or .json")
-    held = array_names(source)
+    held = npz_array_names(source)
     if set(GRID_ARRAYS) <= set(held):
         return read_room(source)[0]
     wanted = ("labels", *(name for name in ("voxel_m", "origin_m") if name in held))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError
-from world2minecraft.core.files import array_names, read_json, read_npz, write_json, write_npz
+from world2minecraft.core.files import npz_array_names, read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import BlockVolume, checks
 
 DESIGNS = "designs.json"
@@ -119,7 +119,7 @@ def read_scene(folder: str | Path) -> Scene:
     source = Path(folder)
     raw = read_json(source / "scene.json")
     names = ("semantic", "instance")
-    if "design" in array_names(source / "scene.npz"):
+    if "design" in npz_array_names(source / "scene.npz"):
         names = (*names, "design")
     arrays = read_npz(source / "scene.npz", names)
     try:

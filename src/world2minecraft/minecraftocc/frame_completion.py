@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
-from world2minecraft.core.files import array_names, read_npz
+from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
 from world2minecraft.core.types.checks import transform
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, decode_depth
@@ -67,7 +67,7 @@ def read_grid_place(path: Path) -> GridPlace:
     if not path.is_file():
         raise InputError(path, "is not there; give an SSCNet .bin, or an npz with the geometry")
     if path.suffix == ".npz":
-        names = array_names(path)
+        names = npz_array_names(path)
         origin = "origin_m" if "origin_m" in names else "voxel_origin"
         pose = "camera_to_world" if "camera_to_world" in names else "cam_pose"
         arrays = read_npz(path, (origin, pose))

@@ -15,7 +15,7 @@ from PIL import Image
 
 from world2minecraft.capture.images import SUFFIXES, read_colour, read_header
 from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.image_quality import NiqeModel, laplacian_variance, piqe
 from world2minecraft.evaluation.metrics.image_quality.niqe import (
     distance,
@@ -185,7 +185,7 @@ def measure_quality(
     models: Sequence[NiqeModel],
     resize: tuple[int, int] | None = None,
     *,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> QualityReport:
     """Measure pictures as they are, and resized.
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError, UsageError
-from world2minecraft.core.files import plain_yaml, read_bytes, write_text
+from world2minecraft.core.files import load_plain_yaml, read_bytes, write_text
 
 MAX_BYTES = 1 << 20
 
@@ -196,7 +196,7 @@ def read_config(path: str | Path) -> RunConfig:
 def parse_config(text: str, source: str) -> RunConfig:
     """Return the run that a YAML text says; ``source`` names it in messages."""
     try:
-        plain = plain_yaml(text)
+        plain = load_plain_yaml(text)
     except ValueError as error:
         raise DamagedFileError(source, f"is no YAML ({error})") from error
     if not isinstance(plain, dict):

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
-from world2minecraft.core.files import array_names, read_npy, read_npz
+from world2minecraft.core.files import npz_array_names, read_npy, read_npz
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.networks.config import GRIDS, Grid
 
@@ -51,7 +51,7 @@ class SavedPredictions:
             found = [one for one in sorted(path.iterdir()) if one.suffix in SUFFIXES]
             self._files = {one.stem: one for one in found}
         elif path.suffix == ".npz" and path.is_file():
-            names = array_names(path)
+            names = npz_array_names(path)
             if not set(names) & set(NAMES):
                 self._members = names
         elif not path.is_file():
@@ -186,7 +186,7 @@ def _read_frame_array(path: Path) -> np.ndarray:
         return read_npy(path)
     if path.suffix == ".pkl":
         return _find_array(dict(read_pickle(path)), path)
-    names = array_names(path)
+    names = npz_array_names(path)
     wanted = next((name for name in NAMES if name in names), names[0] if len(names) == 1 else "")
     if not wanted:
         raise DamagedFileError(path, f"holds {', '.join(names)}; the grid is named labels")

@@ -13,7 +13,7 @@ import torch
 from torch import nn
 
 from world2minecraft.core.classes import UNKNOWN
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import count_scene
 from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
@@ -42,7 +42,7 @@ def memory_scores(
     frames: Frames,
     rows: Sequence[int],
     config: RunConfig,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> tuple[list[FrameScore], str]:
     """Return the counts of each scene of some rows, or none and the reason why there are none.
 
@@ -122,7 +122,7 @@ def add_memory_scores(
     config: RunConfig,
     *,
     seed: int = 0,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> None:
     """Add ``embodied memory`` to scores, where the network is one that fuses frames by itself."""
     if not isinstance(network, Embodied):

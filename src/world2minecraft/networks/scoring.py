@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore, summarise
 from world2minecraft.evaluation.metrics.protocols import (
     PROTOCOLS,
@@ -138,7 +138,7 @@ def saved_scene_scores(
     names: Sequence[str],
     *,
     seed: int = 0,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> dict[str, Any]:
     """Score saved grids of whole scenes, as EmbodiedOcc's memory leaves them.
 
@@ -180,7 +180,7 @@ def network_predictions(
 
 
 def onnx_predictions(
-    path: Path, frames: Frames, rows: Sequence[int], progress: Progress = silent
+    path: Path, frames: Frames, rows: Sequence[int], progress: Progress = no_progress
 ) -> Iterator[PredictedFrame]:
     """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
     from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork  # noqa: PLC0415
@@ -197,7 +197,10 @@ def onnx_predictions(
 
 
 def file_predictions(
-    saved: SavedPredictions, truth: ImportedSet, keys: Sequence[str], progress: Progress = silent
+    saved: SavedPredictions,
+    truth: ImportedSet,
+    keys: Sequence[str],
+    progress: Progress = no_progress,
 ) -> Iterator[PredictedFrame]:
     """Pair saved predictions with the samples of the same keys.
 

@@ -31,7 +31,7 @@ from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, DamagedFileError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.locks import Lock
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.callbacks import CHECKPOINT, LAST, WEIGHTS, RunState, TrainingCallback
 from world2minecraft.networks.checkpoints import (
@@ -89,7 +89,7 @@ def train_run(
     *,
     device: str = "auto",
     cache: CacheLocation | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> TrainedRun:
     """Train, or go on with a run of the same settings in the same folder.
 
@@ -110,7 +110,7 @@ def train_run(
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
     lock = Lock(folder / ".lock", "trained")
-    lock.take()
+    lock.acquire()
     try:
         if config.threads:
             torch.set_num_threads(config.threads)
@@ -228,7 +228,7 @@ def score_run(
     trained: TrainedRun,
     config: RunConfig,
     device: str = "auto",
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     *,
     last: bool = False,
 ) -> dict[str, Any]:

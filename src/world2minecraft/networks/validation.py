@@ -9,7 +9,7 @@ import torch
 from torch import nn
 
 from world2minecraft.core.errors import MissingExtraError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.networks.config import RunConfig
 from world2minecraft.networks.data.batches import ordered_loader
@@ -52,7 +52,7 @@ def predict_labels(
     rows: Sequence[int],
     config: RunConfig,
     *,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     stage: str = "score",
 ) -> Iterator[np.ndarray]:
     """Yield the likeliest class of each cell of some frames, uint8 [X, Y, Z], in their order.

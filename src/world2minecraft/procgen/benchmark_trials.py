@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.procgen.houses.house import generate_house
 from world2minecraft.procgen.rooms.room import Room, generate_room
 from world2minecraft.procgen.virtual_scan import scan_room
@@ -93,7 +93,7 @@ def find_trial(name: str) -> Trial:
     return found.clean() if name.endswith("-clean") else found
 
 
-def write_trial(trial: Trial, folder: str | Path, progress: Progress = silent) -> None:
+def write_trial(trial: Trial, folder: str | Path, progress: Progress = no_progress) -> None:
     """Generate and scan a trial, with label images, and write its capture and truth.
 
     Raises:

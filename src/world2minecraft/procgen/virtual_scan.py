@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening, View
 from world2minecraft.formats.objects import round_metres
 from world2minecraft.procgen.rooms.room import Room
@@ -40,7 +40,7 @@ def scan_room(
     coverage: float = 1.0,
     width: int = 640,
     height: int = 480,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> None:
     """Scan a room or a house virtually and write the capture with its truth.
 

@@ -24,7 +24,7 @@ from world2minecraft.capture.view_stream import read_view
 from world2minecraft.construction import build_volume
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.reconstruction.fusion import EvidenceMap, extract_grid, remove_floaters
@@ -146,7 +146,7 @@ class LiveRoom:
         """Write ``room.npz`` and ``preview.png`` of the moment."""
         show(self._live, self.out)
 
-    def finish(self, progress: Progress = silent) -> Scan:
+    def finish(self, progress: Progress = no_progress) -> Scan:
         """Run the batch over all frames; its files replace those of the moment.
 
         Raises:
@@ -170,7 +170,7 @@ class LiveRoom:
 
 
 def placed_scan(
-    capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = silent
+    capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = no_progress
 ) -> Scan:
     """Return a capture's scan, registered and placed, by the stages that the batch runs.
 
@@ -261,7 +261,7 @@ def follow(
     idle_s: float = IDLE_S,
     show_s: float = SHOW_S,
     poll_s: float = POLL_S,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     wait: Callable[[float], None] = time.sleep,
     clock: Callable[[], float] = time.monotonic,
 ) -> int:

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from world2minecraft import __version__
 from world2minecraft.capture import realign, skip_damaged_frames
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.run_arrays import write_evidence
 from world2minecraft.formats.scan import (
@@ -55,7 +55,7 @@ def reconstruct(
     start: str | None = None,
     until: str | None = None,
     labels: Path | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> Scan:
     """Turn the capture in a folder into a Minecraft world in ``out / "build"``.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.formats.occupancy_files import read_occupancy
 from world2minecraft.formats.run_arrays import write_room
@@ -23,7 +23,9 @@ from world2minecraft.reconstruction.stages import built_volume, run_stage
 MORE_FILES = ("scan.json", "layout.json")
 
 
-def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress = silent) -> None:
+def rebuild(
+    source: Path, out: Path, parameters: Parameters, progress: Progress = no_progress
+) -> None:
     """Build ``out / "build"`` from a run's folder or from any occupancy file.
 
     A run's folder is built from its objects and placements as they stand. From a grid alone
@@ -50,7 +52,9 @@ def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress 
         run_stage(stage, out, parameters, progress)
 
 
-def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent) -> BlockVolume:
+def blocks_of(
+    source: Path, parameters: Parameters, progress: Progress = no_progress
+) -> BlockVolume:
     """Return the blocks that ``rebuild`` would write; ``source`` may hold blocks already.
 
     Args:

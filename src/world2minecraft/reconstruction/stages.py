@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.construction import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
@@ -199,7 +199,9 @@ FILE_STAGES: dict[str, Callable[[Path, Parameters], None]] = {
 }
 
 
-def run_stage(stage: str, folder: Path, chosen: Parameters, progress: Progress = silent) -> None:
+def run_stage(
+    stage: str, folder: Path, chosen: Parameters, progress: Progress = no_progress
+) -> None:
     """Run one of ``FILE_STAGES`` on the folder of a run."""
     progress(stage, 0, 1)
     FILE_STAGES[stage](folder, chosen)

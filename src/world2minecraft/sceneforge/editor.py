@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import Command, SceneDraft, parse_command
 from world2minecraft.sceneforge.document.document import Document
@@ -42,7 +42,7 @@ class Editor:
     told how far a long question is.
     """
 
-    progress: Progress = staticmethod(silent)
+    progress: Progress = staticmethod(no_progress)
 
     def __init__(
         self, document: MemoryDocument | OpenedScene, clock: Callable[[], float] = time.time

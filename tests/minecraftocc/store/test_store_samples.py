@@ -14,7 +14,7 @@ from occ_samples import AIR, CAMERA, CHAIR, PLANKS, SHAPE, assert_same, sample
 from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.core.files import npz_bytes
+from world2minecraft.core.files import pack_npz
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.store.sample_files import (
     FineTable,
@@ -188,7 +188,7 @@ def test_fine_numbers_beyond_the_table_are_refused():
 def test_arrays_with_a_huge_header_are_refused():
     members = pack_sample(sample(1), TABLE, SampleFiles())
     huge = dict.fromkeys(("labels", "fine", "instance", "hits", "in_frustum", "free"))
-    members["occ.npz"] = npz_bytes({name: np.zeros(10**6, np.uint8) for name in huge})
+    members["occ.npz"] = pack_npz({name: np.zeros(10**6, np.uint8) for name in huge})
     with pytest.raises(Exception, match="1,000,128 bytes; too large to read"):
         unpack_sample(members, TABLE, "here")
 

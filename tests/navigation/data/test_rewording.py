@@ -42,7 +42,7 @@ def csv(folder, *rows):
     return path
 
 
-def test_people_are_asked_by_in_turn_and_the_programs_words_come_back(folder, capsys):
+def test_human_instructions_take_turns_and_can_be_deselected(folder, capsys):
     before = bytes_of(folder)
     words = csv(
         folder,
@@ -74,7 +74,7 @@ def test_people_are_asked_by_in_turn_and_the_programs_words_come_back(folder, ca
     st.sampled_from(LEVELS),
 )
 @settings(max_examples=60, deadline=None, suppress_health_check=[])
-def test_words_that_tell_the_way_are_never_followed_by_the_goal_alone(
+def test_route_instructions_are_not_replaced_by_goal_ones(
     tmp_path_factory, words, level
 ):
     made = read_set(_set_of(tmp_path_factory))
@@ -152,7 +152,7 @@ def test_a_thing_of_the_scene_that_was_not_told_is_seen(folder):
     assert len(again.trajectories[0].instructions) == 1
 
 
-def test_a_server_that_is_gone_ends_it_and_one_that_stumbles_does_not(folder):
+def test_no_reply_at_all_is_an_error_a_single_failure_is_not(folder):
     made = read_set(folder)
 
     def gone(_):

@@ -13,7 +13,7 @@ from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
 from world2minecraft.cli.reconstruct import print_plan_outcome
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.core.progress import silent
+from world2minecraft.core.progress import no_progress
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects import read_objects, read_placements
@@ -241,7 +241,7 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
     assert find_lone_roomplan(place) == place
     assert find_lone_roomplan(place.parent) == place
     out = tmp_path / "OUT"
-    built = run_plan(place, out, Parameters(blocks_per_metre=2.0), silent, "flat")
+    built = run_plan(place, out, Parameters(blocks_per_metre=2.0), no_progress, "flat")
     print_plan_outcome(out, built)
     assert "1 room of a plan, 4.0 x 3.2 x 2.4 m, 4 objects." in capsys.readouterr().out
     assert "flat in Minecraft" in (out / "report.html").read_text()

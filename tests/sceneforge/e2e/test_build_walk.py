@@ -134,7 +134,7 @@ def test_sizes_and_styles_give_other_blocks(forge, shot):
     assert facts(forge, "blocks_per_metre") == 4
 
 
-def test_a_click_tells_the_block_and_its_object_which_turns_there(forge, shot):
+def test_a_click_shows_block_and_object_and_can_turn_it(forge, shot):
     build(forge)
     chair = forge.state("[...s.objects.values()].find(one => one.class_id === 5).id")
     x, y = np.median(seen(forge)[chair], axis=0)[:2]

@@ -24,7 +24,7 @@ def chosen(forge, number=SOFA) -> None:
     forge.until("s.selectedObjects", [number])
 
 
-def test_a_click_chooses_and_a_dragged_centre_moves_by_whole_cells(objects, shot):
+def test_a_click_selects_and_a_drag_moves_by_whole_cells(objects, shot):
     forge = objects
     chosen(forge)
     before = centre(forge)
@@ -59,7 +59,7 @@ def test_the_arrow_keys_move_what_g_took_hold_of(objects):
     assert forge.rev() == 1
 
 
-def test_a_right_click_on_a_centre_deletes_and_a_right_drag_turns_the_view(objects):
+def test_a_right_click_deletes_and_a_right_drag_turns_the_view(objects):
     forge = objects
     x, y = forge.object_at(TABLE)
     forge.drag((x, y), (x + 40, y + 40), button="right")

@@ -3,7 +3,7 @@
 from world2minecraft.core.classes import CLASS_NAMES
 
 
-def test_the_demo_room_is_whole_in_view_without_its_ceiling_and_with_three_hints(open_tab, shot):
+def test_the_demo_room_is_in_view_with_three_hints(open_tab, shot):
     forge = open_tab(hints=True)
     shot(forge, "first")
     assert forge.page.title() == "Demo room · SceneForge"
@@ -99,7 +99,7 @@ def test_whole_classes_are_relabelled_and_deleted_by_their_menu(forge):
     assert page.locator(".menu").count() == 0
 
 
-def test_the_objects_of_a_class_are_merged_matched_and_found_anew_by_their_menu(forge):
+def test_the_menu_of_a_class_merges_matches_and_detects_again(forge):
     """The room has three objects of class tvs: a screen and two cushions."""
     page = forge.page
     tvs = "[...s.objects.values()].filter((one) => one.class_id === 9).length"

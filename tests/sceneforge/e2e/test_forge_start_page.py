@@ -110,7 +110,7 @@ def test_a_folder_is_looked_at_before_anything_is_made(start, capture, shot):
     assert unexpected(start) == []
 
 
-def test_a_dropped_plan_becomes_a_room_and_one_comes_back_to_the_start(start, shot):
+def test_a_dropped_plan_becomes_a_room_and_closes_again(start, shot):
     """Apple's RoomPlan as JSON: from the drop to the room in the editor, and back."""
     page = start.page
     layout = generate_room(3, kind="study").layout

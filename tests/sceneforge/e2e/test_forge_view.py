@@ -29,7 +29,7 @@ def look(forge, **change) -> None:
     forge.idle()
 
 
-def test_hiding_and_cutting_need_no_mesh_and_an_edit_only_those_it_touches(forge):
+def test_hiding_needs_no_mesh_and_an_edit_only_touched_ones(forge):
     before = forge.page.evaluate(STATS)
     with_floor = picture(forge)
     forge.page.evaluate("window.__forge.store.setView({hidden: new Set([1, 2])})")
@@ -54,7 +54,7 @@ def test_hiding_and_cutting_need_no_mesh_and_an_edit_only_those_it_touches(forge
     assert forge.page.evaluate(STATS)["made"] == made + 1
 
 
-def test_pixels_show_the_theme_the_colours_meant_and_how_voxels_are_drawn(forge, shot):
+def test_pixels_show_the_theme_and_the_class_colours(forge, shot):
     dark = picture(forge)
     assert share_of(dark, BRIGHT["dark"]) > 0.2
     by_class = share_of(dark, (43, 160, 4), 25)
@@ -77,7 +77,7 @@ def test_pixels_show_the_theme_the_colours_meant_and_how_voxels_are_drawn(forge,
         shot(forge, "_".join(change))
 
 
-def test_cuts_hold_for_picking_and_nothing_is_drawn_while_nothing_changes(forge):
+def test_cuts_apply_to_picking_and_an_idle_view_is_not_drawn(forge):
     x, y = forge.page.evaluate(
         "(() => { const {clientWidth: w, clientHeight: h} = window.__forge.view.canvas;"
         " return [w / 2, h / 2]; })()"
@@ -99,7 +99,7 @@ def test_cuts_hold_for_picking_and_nothing_is_drawn_while_nothing_changes(forge)
     assert forge.page.evaluate("__drawn") > 1
 
 
-def test_keys_the_wheel_and_the_cube_in_the_corner_move_the_camera(forge):
+def test_keys_wheel_and_corner_cube_move_the_camera(forge):
     start = forge.page.evaluate(ORBIT)
     forge.key("Control+ArrowLeft", "Control+ArrowUp")
     forge.idle()

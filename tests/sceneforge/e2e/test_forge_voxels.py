@@ -83,7 +83,7 @@ def test_the_brush_has_shapes_and_sizes(voxels, shot):
     forge.until("s.scene.rev", 1)
 
 
-def test_box_lasso_and_flood_with_add_subtract_intersect_and_depth(voxels, shot):
+def test_box_lasso_and_flood_selection_with_all_modes(voxels, shot):
     forge, page = voxels, voxels.page
     x, y = forge.object_at(2)
     size = "s.selectedCells.size"

@@ -35,10 +35,10 @@ MIN_FACE_M2 = 0.5
 MIN_FACE_SHARE = 0.15  # Of the largest that looks the same way.
 LIMITS_M = (0.05, 0.03, 0.02, 0.012, 0.012)
 SPREAD_FACTOR = 8.0  # A level face's limit is at least that many times the median distance from it.
-# Walls lean and tables stand askew more often than floors slope: with one say for all, the shared
+# Walls lean and tables stand askew more often than floors slope: with equal weights, the shared
 # kitchen's floor would lean by 0.5 degrees.
 WALL_WEIGHT, FLOOR_WEIGHT = 0.1, 4.0
-DAMPING_M2 = 0.02  # Moments that a face must exceed to be heard: 0.15 m from its middle on average.
+DAMPING_M2 = 0.02  # Moments that a face must exceed to count: 0.15 m from its middle on average.
 SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_RANGE_M = (1.5, 12.0)
 MIN_POINTS = 500
@@ -165,7 +165,7 @@ class Alignment:
 
 
 class ImplausibleRoomError(ValueError):
-    """What was seen cannot be a room; the text says why and what to do."""
+    """The surface cannot be a room; the message states why and what to do."""
 
 
 def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment:
@@ -210,7 +210,7 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
 
 
 def realign(scan: Scan, surface: OrientedPoints) -> Scan:
-    """Return a scan whose room is found anew in a better surface of its frame.
+    """Return a scan whose room is found again in a better surface of its frame.
 
     Where that is no plausible room, or nothing was seen by depth, the scan stays as it is.
     """

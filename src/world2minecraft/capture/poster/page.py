@@ -147,7 +147,7 @@ def _charts(sheet: Sheet, summary: "CaptureSummary", corner: Point) -> None:
 def _write_diagnostics(
     sheet: Sheet, diagnostics: tuple[Diagnostic, ...], corner: Point, bottom: float
 ) -> None:
-    """Write the doubts from the worst to what is well, as many as there is room for."""
+    """Write the diagnostics from the worst to the best, as many as there is room for."""
     top, step = corner[1], BODY_PX + 6
     for place, diagnostic in enumerate(diagnostics):
         width = RIGHT_PX - 34
@@ -191,7 +191,7 @@ def _foot(sheet: Sheet, command: str) -> None:
 
 
 def poster_png(summary: "CaptureSummary") -> bytes:
-    """Return the page as a PNG that says whose it is; the same capture gives the same bytes."""
+    """Return the page as a PNG marked as a poster; the same capture gives the same bytes."""
     stream = io.BytesIO()
     info = PngInfo()
     info.add_text("Software", SOFTWARE_TAG)

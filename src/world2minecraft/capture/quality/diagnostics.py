@@ -30,7 +30,7 @@ SCALE_ADVICE = 'measure one thing and say it: --known "table height" 0.72'
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One thing that was judged: ``ok``, ``warn`` (worse rooms) or ``stop`` (no room at all)."""
+    """One finding, rated ``ok``, ``warn`` (worse rooms) or ``stop`` (no room at all)."""
 
     level: Literal["ok", "warn", "stop"]
     about: str
@@ -39,7 +39,7 @@ class Diagnostic:
 
 
 def diagnose_capture(survey: Survey, route: Route) -> tuple[Diagnostic, ...]:
-    """Judge what was found; what stops comes first, then what harms, then what is well."""
+    """Return the diagnostics of a survey, the worst first."""
     checks: tuple[Callable[[Survey, Route], Iterator[Diagnostic]], ...] = (
         _check_extras,
         _check_count,
@@ -162,7 +162,7 @@ def _check_blur(survey: Survey, route: Route) -> Iterator[Diagnostic]:
 
 
 def blurred_pictures(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return those that are blurred beside the others, or by any measure."""
+    """Return those that are blurred compared with the others, or by any measure."""
     if not pictures:
         return []
     limit = max(BLURRED_SHARE * float(np.median([p.sharpness for p in pictures])), MIN_SHARPNESS)

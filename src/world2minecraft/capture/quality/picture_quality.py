@@ -22,7 +22,7 @@ THUMB_PX = 360
 MAX_PICTURES = 120
 BUDGET_MPX = 200.0  # About 5 s of decoding.
 DRAFT_COST = 0.15  # A JPEG at a quarter of its size, against one decoded whole.
-STRONG_SHARE = 0.1  # Blur is judged at the strongest edges alone: bare walls have none.
+STRONG_SHARE = 0.1  # Blur is measured at the strongest edges alone: bare walls have none.
 PATCH_PX = 16
 BARE_CONTRAST = 3.0  # Of 255: the noise of a good sensor; features need more.
 OVERLAP_WIDTH_PX = 64
@@ -33,7 +33,7 @@ NOISE_LEVEL = 8.0  # Grey levels: noise of bare walls is not blown up to texture
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """One picture that was looked at.
+    """A sampled picture and its quality.
 
     ``index`` is its place among the usable frames; ``thumb`` uint8 [h, w, 3]. ``sharpness`` is 0
     for full blur, about 0.4 for a video's good frame, over 1 for a still's. ``brightness`` is the
@@ -85,7 +85,7 @@ def _is_jpeg(place: ImagePlace) -> bool:
 
 
 def measure_picture(name: str, index: int, colour: np.ndarray) -> Picture:
-    """Return what is kept of a picture, uint8 [H, W, 3] of about ``WORK_PX``."""
+    """Return thumbnail and quality of a picture, uint8 [H, W, 3] of about ``WORK_PX``."""
     grey = np.asarray(Image.fromarray(colour).convert("L"), np.float32)
     image = Image.fromarray(colour)
     image.thumbnail((THUMB_PX, THUMB_PX), Image.Resampling.BOX)

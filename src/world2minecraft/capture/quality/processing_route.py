@@ -52,7 +52,7 @@ _DESCRIPTIONS = {
 
 
 def choose_route(validated: ValidatedCapture) -> Route:
-    """Return the route of a judged capture."""
+    """Return the route of a validated capture."""
     kind = _kind(validated)
     each = FRAME_S
     if kind in ("photos", "video", "unposed rgbd"):

@@ -13,12 +13,12 @@ from world2minecraft.capture.quality.top_view import TopView, make_top_view
 from world2minecraft.capture.quality.view_directions import ViewDirections, count_view_directions
 from world2minecraft.capture.validation import ValidatedCapture
 
-PICTURES_POSED = 40  # Where poses tell what was seen, pictures are judged by a sample.
+PICTURES_POSED = 40  # Where poses tell what was seen, a sample of pictures is enough.
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """What a first look found.
+    """Results of a quick survey.
 
     ``shares`` float64 [len(pictures) - 1] is how much of each picture the next shows too, NaN
     where that is not known. ``plan`` and ``directions`` are None where there are no poses.
@@ -32,7 +32,7 @@ class Survey:
 
 
 def survey_capture(validated: ValidatedCapture) -> Survey:
-    """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
+    """Sample pictures of a validated capture and, where it has poses, lay out a plan."""
     if validated.posed:
         pictures = sample_pictures(validated.frames, PICTURES_POSED)
         plan = make_top_view(validated)

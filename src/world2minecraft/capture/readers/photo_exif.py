@@ -27,7 +27,7 @@ SHARE_OF_DIAGONAL = (0.2, 15.0)  # From a fisheye to a long telephoto; else the 
 
 @dataclass(frozen=True)
 class PhotoMetadata:
-    """What a photo says of itself: its upright size, its lens, when it was taken, by a camera."""
+    """Metadata of a photo: upright size, its lens, when it was taken, by a camera."""
 
     width_px: int
     height_px: int
@@ -70,7 +70,7 @@ class UprightPhoto(NamedByFile):
 
 
 def read_photo_metadata(path: AnyPath) -> PhotoMetadata:
-    """Read what a photo says of itself. Raises what ``read_header`` raises."""
+    """Read the metadata of a photo. Raises what ``read_header`` raises."""
     with open_image(path) as image:
         width, height = _upright_size(image)
         general, own = _exif_tags(image)

@@ -51,13 +51,13 @@ class PhotoFolderSource:
     layout = "a folder of photos (.jpg, .png, .heic, .webp), with depth/NAME.png beside rgb/ or not"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether photos lie there, and not beside what a scanner app keeps of them."""
+        """Return whether photos lie there, and not beside the files of a scanner app."""
         if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
             return False
         return bool(_photos(_colour_folder(folder)))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photos. Raises CaptureError as ``Source.read`` says."""
+        """List the photos. Raises CaptureError as ``Source.read`` does."""
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
@@ -189,7 +189,7 @@ def _duplicate_reason(item: _PhotoFile, sizes: Counter[int], seen: dict[str, str
 
 
 def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
-    """Return the depth images beside a folder of photos, by the photos' names without suffix."""
+    """Return the depth images next to a folder of photos, by the photos' names without suffix."""
     place = folder / "depth"
     if colour_folder == folder or not place.is_dir():
         return {}
@@ -231,7 +231,7 @@ def _lens_note(frames: tuple[FrameFiles, ...]) -> str:
 
 
 def _notes(folder: AnyPath, photos: list[AnyPath]) -> list[str]:
-    """Return what to tell of live photos' videos and raw files."""
+    """Return notes on live photos' videos and raw files."""
     stems = {path.stem for path in photos}
     names = [path for path in folder.iterdir() if not path.name.startswith(".")]
     videos = [path for path in names if path.suffix.lower() in MOVIE_SUFFIXES]

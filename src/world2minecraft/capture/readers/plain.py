@@ -40,7 +40,7 @@ class PlainSource:
         return (folder / "capture.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames of a plain capture. Raises CaptureError as ``Source.read`` says."""
+        """List the frames of a plain capture. Raises CaptureError as ``Source.read`` does."""
         path = folder / "capture.json"
         stated = read_json(path)
         if not isinstance(stated, dict) or stated.get("format") != FORMAT:

@@ -32,11 +32,11 @@ class SinglePhotoSource:
         return folder.is_file() and folder.suffix.lower() in PHOTO_SUFFIXES
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photo. Raises CaptureError as ``Source.read`` says."""
+        """List the photo. Raises CaptureError as ``Source.read`` does."""
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
-        """List the photo, its lens as it is told."""
+        """List the photo, its lens as the user states it."""
         camera, note = _lens(read_photo_metadata(folder), options.fov_deg)
         name = re.sub(r"[^A-Za-z0-9_.-]+", "_", folder.stem).lstrip(".-")[:80] or "photo"
         frame = FrameFiles(name, None, UprightPhoto(folder), camera)

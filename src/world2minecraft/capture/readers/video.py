@@ -267,7 +267,7 @@ class VideoSource:
         return _video_in(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """Choose pictures of the video. Raises CaptureError as ``Source.read`` says."""
+        """Choose pictures of the video. Raises CaptureError as ``Source.read`` does."""
         return self.read_with(folder, ScanOptions())
 
     def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:

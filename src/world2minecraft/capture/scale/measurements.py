@@ -33,7 +33,7 @@ MERGE_DISTANCE_M = 0.035  # Two peaks nearer than that are one noisy face.
 
 
 def collect_unscaled(views: Iterable[View], max_per_view: int = 4096) -> OrientedPoints:
-    """Gather the flat patches of views in any unit; all lengths of the result are in that unit.
+    """Collect the flat patches of views in any unit; all lengths of the result are in that unit.
 
     Args:
         views: read twice, one view at a time; those without depth give nothing.

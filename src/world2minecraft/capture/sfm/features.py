@@ -19,7 +19,7 @@ PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
 
 @dataclass(frozen=True, eq=False)
 class Features:
-    """A photo without its pixels.
+    """Features of a photo, without its pixels.
 
     ``pixels`` float64 [K, 2] (centres at +0.5), ``descriptors`` uint8 [K, 128] of length 512 and
     ``colours`` uint8 [K, 3], the largest features first. ``sharpness`` is 1 for crisp pictures.

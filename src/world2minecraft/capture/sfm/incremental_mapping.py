@@ -34,7 +34,7 @@ from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
 from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 
@@ -180,7 +180,7 @@ def _register_model(model: Model, whole: Model) -> Model | None:
 def find_poses(
     photos: PhotoStream,
     parameters: SfmParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> SparseScene:
     """Return where photos were taken, from their pixels alone.
 

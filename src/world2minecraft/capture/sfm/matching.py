@@ -115,7 +115,7 @@ def _candidate_pairs(strong: list[np.ndarray], parameters: SfmParameters) -> lis
 
 
 def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
-    """Return float64 [N, WORDS], of length 1: how often each photo holds each word, rare ones more.
+    """Return float64 [N, words], of length 1: how often each photo holds each word, rare ones more.
 
     The words are some of the photos' own descriptors, so none have to be brought along.
     """
@@ -137,7 +137,7 @@ def _visual_words(strong: list[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class MatchGraph:
-    """What connects photos.
+    """Verified matches between photos.
 
     ``matches`` int64 [M, 2] of features for each linked pair (i < j) of photos; ``geometry``
     pycolmap's value for the same; ``alike`` int [N, N] is a first count for all pairs.

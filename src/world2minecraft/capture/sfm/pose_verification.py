@@ -27,11 +27,11 @@ from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_sessio
 from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 
-MIN_INLIERS = 30  # Points that a pose found anew must agree with; COLMAP's own least.
+MIN_INLIERS = 30  # Points that a pose found again must agree with; COLMAP's own least.
 MIN_POINTS = 50  # Fewer say nothing of poses.
 MIN_MOUNTED_POSES = 12  # Poses for the place of another sensor on the device to be sought.
 MAX_MOUNT_RATIO = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
@@ -129,7 +129,7 @@ def register_photo(
 
 @dataclass(frozen=True, eq=False)
 class StatedPoses:
-    """What is known before anything is moved."""
+    """Stated poses and matches before refinement."""
 
     photos: list[Features]
     groups: list[CameraGroup]
@@ -143,13 +143,13 @@ class StatedPoses:
 def check_poses(
     photos: PhotoStream,
     parameters: SfmParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> SparseScene:
     """Return the photos with their stated poses where these are good, with better ones if not.
 
     Poses and lenses that fit the pixels within ``good_px`` are given back bit by bit. Others are
     refined together and carried back to the stated frame by a similarity. Single wrong poses are
-    found anew from their neighbours, or left out.
+    found again from their neighbours, or left out.
 
     Raises:
         CaptureError: the photos share too little to be measured.

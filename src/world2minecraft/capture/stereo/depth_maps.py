@@ -12,7 +12,7 @@ from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep_depth
 from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.unprojection import pixel_rays, project
 from world2minecraft.rendering.thread_pool import run_parallel
@@ -99,7 +99,7 @@ def depth_maps(
     photos: PhotoStream,
     scene: SparseScene,
     parameters: StereoParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     guide: DepthModel | None = None,
 ) -> Iterator[DepthMap]:
     """Yield the depth of each photo of a scene, in its order.
@@ -108,14 +108,14 @@ def depth_maps(
         photos: read once; those that the scene does not name are left out.
         scene: where they were taken, in any unit; the depths are in the same.
         parameters: how.
-        progress: told of the stage ``stereo``.
-        guide: a network that fills what stays open, with low trust; see guide.py.
+        progress: called with the stage ``stereo``.
+        guide: a network that fills what stays open, with low trust; see ``monocular_depth``.
 
     Raises:
         CaptureError: no photo has another that sees the same, or one is missing.
     """
     values = parameters or StereoParameters()
-    small = prepare_stereo_photos(photos, scene, values.width_px, silent)
+    small = prepare_stereo_photos(photos, scene, values.width_px, no_progress)
     swept, neighbours = sweep_photos(small, values, progress)
     found = [filter_consistent(n, small, swept, neighbours, values) for n in range(len(small))]
     every_m = np.concatenate([photo.guide_m for photo in small])
@@ -132,7 +132,7 @@ def depth_maps(
 def _fill_planes(
     found: DepthMap, photo: StereoPhoto, every_m: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a guess at flat patches; see flats.py."""
+    """Return a guess at flat patches; see ``planar_regions``."""
     sure = found.trust >= SURE_TRUST
     return fill_planar_regions(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
 
@@ -156,7 +156,7 @@ def _fill_from_network(found: DepthMap, photo: StereoPhoto, guide: DepthModel) -
 
 
 def sweep_photos(
-    small: list[StereoPhoto], values: StereoParameters, progress: Progress = silent
+    small: list[StereoPhoto], values: StereoParameters, progress: Progress = no_progress
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return each photo's depth float32 [h, w] by itself, and the numbers of its neighbours."""
     every_m = np.concatenate([photo.guide_m for photo in small])

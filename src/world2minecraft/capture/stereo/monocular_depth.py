@@ -17,7 +17,7 @@ from scipy.ndimage import uniform_filter
 from world2minecraft.capture.stereo.parameters import StereoParameters
 from world2minecraft.capture.stereo.stereo_photos import prepare_stereo_photos
 from world2minecraft.core.errors import CaptureError, UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import Camera, DepthMap, PhotoStream, SparseScene
 
@@ -28,7 +28,7 @@ SURE_TRUST = 255
 MAX_FIT_ERROR = 0.15  # Guess: beyond this a network has not understood the picture.
 MAX_LOCAL_ERROR = 0.05  # Guess: about a voxel at two metres.
 POINT_WEIGHT = 9.0  # A sparse point counts as a sure patch of 3x3 pixels.
-MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is laid on anything.
+MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is fitted to anything.
 MIN_LOCAL_WEIGHT = 45.0  # Likewise around a hole: five points.
 WINDOW_SHARES = (
     1 / 4,
@@ -127,7 +127,7 @@ def fill_holes(
 def align_to_points(
     predicted: np.ndarray, kind: Kind, guide_px: np.ndarray, guide_m: np.ndarray
 ) -> tuple[np.ndarray, float] | None:
-    """Lay a network's depth on the sparse points of its picture, as a whole and then around each.
+    """Fit a network's depth to the sparse points of its picture, as a whole and then locally.
 
     Args:
         predicted: float32 [H, W].
@@ -241,7 +241,7 @@ def network_maps(
     scene: SparseScene,
     guide: DepthModel,
     parameters: StereoParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> Iterator[DepthMap]:
     """Yield the network's depth of each photo of a scene, in its order and its unit.
 
@@ -251,7 +251,7 @@ def network_maps(
         CaptureError: no photo has points enough to tell the network's scale.
     """
     width_px = max(WIDTH_PX, (parameters or StereoParameters()).width_px)
-    small = prepare_stereo_photos(photos, scene, width_px, silent)
+    small = prepare_stereo_photos(photos, scene, width_px, no_progress)
     found: list[tuple[np.ndarray, float]] = []
     for number, photo in enumerate(small):
         predicted = guide.predict(photo.colour, photo.camera)

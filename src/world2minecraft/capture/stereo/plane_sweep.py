@@ -332,7 +332,7 @@ def _add_sparse_point_costs(costs, photo, inverse, guide_cost):
 
 
 def _homographies(photo: StereoPhoto, others: list[StereoPhoto]):
-    """Return turns float32 [N, 3, 3] and shifts float32 [N, 3]; see cost.py."""
+    """Return turns float32 [N, 3, 3] and shifts float32 [N, 3]; see the module."""
     back = np.linalg.inv(photo.camera.matrix)
     turns, shifts = [], []
     for other in others:

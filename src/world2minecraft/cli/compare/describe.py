@@ -50,7 +50,7 @@ def run(
     keep: Keep = Path("described"),
     photos: Photos = 6,
     *,
-    asked: option.ModelOptions,
+    model_options: option.ModelOptions,
 ) -> None:
     """Describe a room in words, by rule from its boxes or by a model from its photos.
 
@@ -77,7 +77,7 @@ def run(
         raise UsageError("photos tell no sizes: --agent goes with --for text")
     more = ""
     if agent:
-        chat = asked.open(agent, keep)
+        chat = model_options.open(agent, keep)
         text = describe_photos(scene, photos, chat)
         told = text
     else:

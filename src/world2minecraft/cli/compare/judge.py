@@ -51,7 +51,7 @@ def run(
     repeats: Repeats = 3,
     wish: Wish = None,
     *,
-    asked: option.ModelOptions,
+    model_options: option.ModelOptions,
 ) -> None:
     """Grade rooms from 1 to 10 for realism, completeness and atmosphere.
 
@@ -68,7 +68,7 @@ def run(
     from world2minecraft.paper.layouts.table import grade_table
 
     told = read_bytes(wish, MAX_WISH_BYTES).decode("utf-8", "replace") if wish else ""
-    chat = asked.open(agent, out)
+    chat = model_options.open(agent, out)
     grades = grade_scenes(places, chat, out, told, repeats)
     write_json(
         out / "judged.json",

@@ -68,7 +68,7 @@ def run(
     jobs: Jobs = 1,
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
     *,
-    asked: option.ModelOptions,
+    model_options: option.ModelOptions,
 ) -> None:
     """Ask a model the items of a set, and tell its accuracy with intervals.
 
@@ -96,7 +96,7 @@ def run(
     place = folder if folder.is_dir() else folder.parent
     chat = None
     if is_endpoint(agent):
-        chat = asked.open(agent, target)
+        chat = model_options.open(agent, target)
         answerer: Any = VlmAnswerer(chat, place, style, most_px=max_pixels)
     else:
         answerer, items = _baseline(agent, every, items, place)

@@ -40,7 +40,7 @@ def run(
     plain: Plain = False,
     jobs: Jobs = 4,
     *,
-    asked: option.ModelOptions,
+    model_options: option.ModelOptions,
 ) -> None:
     """Let a set ask in the words of people, or of a language model.
 
@@ -67,7 +67,7 @@ def run(
     if annotations is not None:
         made = add_annotations(made, annotations)
     if rewrite:
-        chat = asked.open(rewrite, path / REPLIES)
+        chat = model_options.open(rewrite, path / REPLIES)
         made, outcomes = _reword(made, chat, jobs)
     made = select_instructions(made, ORDER[-1:] if plain else ORDER)
     write_set(path, made)

@@ -102,7 +102,7 @@ def run(
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
     no_browser: NoBrowser = False,
     *,
-    asked: option.ModelOptions,
+    model_options: option.ModelOptions,
 ) -> None:
     """Let an agent walk by an instruction, and score it beside Stop, Random and the oracle.
 
@@ -121,7 +121,7 @@ def run(
     chats: list[Any] = []
 
     def chat() -> Any:
-        chats.append(asked.open(agent, folder))
+        chats.append(model_options.open(agent, folder))
         return chats[0]
 
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.repair import find_floaters
@@ -42,7 +42,7 @@ class Diagnostic:
     object_id: int = 0
 
 
-def find_diagnostics(draft: SceneDraft, progress: Progress = silent) -> list[Diagnostic]:
+def find_diagnostics(draft: SceneDraft, progress: Progress = no_progress) -> list[Diagnostic]:
     """Return the doubts of a scene, one for each object and place, the most doubtful first.
 
     ``progress`` is called for each check.

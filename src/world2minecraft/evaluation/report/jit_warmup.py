@@ -20,7 +20,7 @@ from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.evaluation.report.comparison_pictures import make_pairs
 from world2minecraft.rendering.preview import plan_view, preview
 
-LAST = "pixels.draw_rows"  # Kept last, when all that it calls is compiled.
+LAST = "picture_kernel.draw_rows"  # Kept last, when all that it calls is compiled.
 PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what it makes.
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from world2minecraft import __version__
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.core.files import write_bytes, write_json, write_text
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
 from world2minecraft.evaluation.report.comparison_pictures import (
     Pair,
@@ -110,7 +110,7 @@ def _area_m2(polygon: np.ndarray) -> float:
 
 
 def write_report(
-    folder: Path, scan: Scan, *, truth: Path | None = None, progress: Progress = silent
+    folder: Path, scan: Scan, *, truth: Path | None = None, progress: Progress = no_progress
 ) -> dict[str, Any]:
     """Write ``report.html``, ``report.json`` and ``preview.png`` of a finished run.
 

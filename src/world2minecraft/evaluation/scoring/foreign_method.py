@@ -21,7 +21,7 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN, class_id
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
-from world2minecraft.core.files import array_names, read_json, read_npy, read_npz
+from world2minecraft.core.files import npz_array_names, read_json, read_npy, read_npz
 from world2minecraft.core.types import LayoutObject, OccupancyGrid
 from world2minecraft.core.types.checks import floats, positive, transform
 from world2minecraft.evaluation.scoring.object_scores import object_counts, object_facts
@@ -115,7 +115,7 @@ def evaluate_foreign(path: Path, truth: Path) -> dict[str, Any]:
 def _arrays(path: Path) -> dict[str, np.ndarray]:
     if path.suffix == ".npy":
         return {"labels": read_npy(path)}
-    held = array_names(path)
+    held = npz_array_names(path)
     return read_npz(path, ("labels", *(name for name in OPTIONAL if name in held)))
 
 

@@ -18,7 +18,7 @@ from world2minecraft.capture import open_scan
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan, View
 from world2minecraft.evaluation.scoring.oracle_stages import (
     put_true_labels,
@@ -90,7 +90,7 @@ class TrueViews:
             yield replace(view, camera_to_scan=pose, depth_m=depth_m)
 
 
-def stage_losses(out: Path, truth: Path, *, progress: Progress = silent) -> dict[str, Any]:
+def stage_losses(out: Path, truth: Path, *, progress: Progress = no_progress) -> dict[str, Any]:
     """Return the scores of the run in ``out`` with truth put in after each stage.
 
     Args:

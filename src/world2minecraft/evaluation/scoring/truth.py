@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
-from world2minecraft.core.files import array_names, read_json, read_npz
+from world2minecraft.core.files import npz_array_names, read_json, read_npz
 from world2minecraft.core.types import Layout, LayoutObject, checks
 from world2minecraft.formats.layout import layout_from_json
 
@@ -140,12 +140,12 @@ def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
 
 
 def _surface(path: Path) -> np.ndarray | None:
-    return read_npz(path, ("surface",))["surface"] if "surface" in array_names(path) else None
+    return read_npz(path, ("surface",))["surface"] if "surface" in npz_array_names(path) else None
 
 
 def _by_frame(path: Path, key: str, shape: tuple[int, ...]) -> Any:
     """Return an array [F, ...] of the truth as a dictionary by frame; None where it has none."""
-    names = array_names(path)
+    names = npz_array_names(path)
     if key not in names or "frame_names" not in names:
         return None
     arrays = read_npz(path, ("frame_names", key))

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError, ServerError, UsageError, one_line
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_states import BlockState, parse_state
@@ -217,7 +217,7 @@ class LiveBuilder:
         client: RconClient,
         plan: BuildPlan,
         note: Path | None = None,
-        progress: Progress = silent,
+        progress: Progress = no_progress,
         sleep: Callable[[float], None] = time.sleep,
     ):
         self._client, self._plan, self._note = client, plan, note

@@ -11,7 +11,7 @@ from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UnknownNameError
-from world2minecraft.core.files import plain_yaml, read_bytes
+from world2minecraft.core.files import load_plain_yaml, read_bytes
 from world2minecraft.minecraftocc.block_map.context import CONDITIONS, MEASURES, NEIGHBOURS
 from world2minecraft.minecraftocc.block_map.rules import (
     BlockMap,
@@ -153,7 +153,7 @@ def _shipped_tree(name: str) -> dict[str, Any]:
 
 def _parse_yaml(text: bytes, path: Path) -> Any:
     try:
-        return plain_yaml(text)
+        return load_plain_yaml(text)
     except ValueError as error:
         raise InputError(path, f"is not YAML ({' '.join(str(error).split())[:200]})") from error
 

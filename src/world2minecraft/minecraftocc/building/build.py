@@ -18,7 +18,7 @@ from world2minecraft.core.errors import ConflictError, OutputError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.locks import Lock
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.building.cpu_clock import (
     STAGES,
     StageClock,
@@ -134,7 +134,7 @@ class BuildReport:
 
 
 def build_dataset(
-    folder: str | Path, plan: DatasetPlan, engine: Engine, progress: Progress = silent
+    folder: str | Path, plan: DatasetPlan, engine: Engine, progress: Progress = no_progress
 ) -> BuildReport:
     """Make a data set, or what is missing of it, and finish it.
 
@@ -154,14 +154,14 @@ def build_dataset(
     arrow_modules()
     _make_folder(root)
     lock = Lock(root / LOCK, "built")
-    lock.take()
+    lock.acquire()
     try:
         wait_for_others(root)
         begin_dataset(root, plan)
         remove_leftovers(root)
         report = _finished_report(root) or _Build(root, plan, engine, progress).run()
     except BaseException:
-        lock.let_go()
+        lock.release()
         raise
     remove_registry(root)
     lock.remove()

@@ -7,7 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.exporters.options import FORMATS, Exporter, ExportRule
 from world2minecraft.minecraftocc.types import OccSample
 
@@ -47,7 +47,7 @@ def export_samples(
     *,
     split: str | None = None,
     limit: int | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> ExportReport:
     """Write samples in one of ``FORMATS`` into a folder, new or begun by the same choices.
 

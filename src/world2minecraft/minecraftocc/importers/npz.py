@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.core.files import array_names, read_npz
+from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
@@ -23,7 +23,7 @@ NEEDED = (
 def is_npz(path: Path) -> bool:
     """Return whether a path is a ``.npz`` of a sample, or a folder of them by split."""
     if path.suffix == ".npz":
-        return path.is_file() and "camera_lens" in array_names(path)
+        return path.is_file() and "camera_lens" in npz_array_names(path)
     return any(any((path / split).glob("*.npz")) for split in SPLITS)
 
 
@@ -42,7 +42,7 @@ def open_npz(path: Path) -> ImportedSet:
 
 
 def _read(path: Path) -> OccSample:
-    names = set(array_names(path))
+    names = set(npz_array_names(path))
     pictures = tuple(name for name in ("colour", "depth_m") if name in names)
     arrays = read_npz(path, (*NEEDED, *pictures))
     try:

@@ -14,7 +14,7 @@ from typing import Any
 
 from world2minecraft.core.errors import InputError, WorkerError
 from world2minecraft.core.files import read_bytes, read_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers.format_detection import IMPORTED, open_occupancy
 from world2minecraft.minecraftocc.statistics.counting import (
     StatisticsCounter,
@@ -37,7 +37,7 @@ def statistics_of(
     *,
     format: str | None = None,
     jobs: int = 1,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> DatasetStatistics:
     """Return the statistics of a data set on disk, of ours or of others.
 
@@ -72,7 +72,7 @@ def store_statistics(
     split: str | None = None,
     *,
     jobs: int = 1,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> DatasetStatistics:
     """Return the statistics of a stored data set, or of one of its splits.
 

@@ -25,7 +25,7 @@ from PIL import Image
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.coordinates import carry_camera, invert
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.core.files import npz_arrays, npz_bytes
+from world2minecraft.core.files import pack_npz, read_npz_bytes
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 from world2minecraft.rendering.output.images import PER_METRE, colour_bytes, depth_numbers
@@ -150,7 +150,7 @@ def pack_sample(sample: OccSample, table: FineTable, files: SampleFiles) -> dict
     if sample.fine_classes != table.classes:
         arrays["fine"] = table.numbers_of(sample.fine_classes)[occ.fine]
     arrays |= {name: np.packbits(getattr(occ, name)) for name in BIT_ARRAYS}
-    members[LABELS] = npz_bytes(arrays)
+    members[LABELS] = pack_npz(arrays)
     sums = {kind: hashlib.sha256(data).hexdigest() for kind, data in members.items()}
     facts = {**sample_facts(sample), "sha256": sums}
     members[FACTS] = json.dumps(facts, sort_keys=True, allow_nan=False).encode() + b"\n"
@@ -247,7 +247,7 @@ def _unpack_labels(data: bytes, meta: Any, fine_count: int, source: str | Path) 
     to_room = np.array(meta["region_to_room"], np.float64)
     region = LabelRegion((shape[0], shape[1], shape[2]), meta["voxel_m"], to_room, meta["kind"])
     limit = 4 * cells + 1024
-    arrays = npz_arrays(data, (*WHOLE_ARRAYS, *BIT_ARRAYS), source, limit)
+    arrays = read_npz_bytes(data, (*WHOLE_ARRAYS, *BIT_ARRAYS), source, limit)
     for name in BIT_ARRAYS:
         bits = arrays[name]
         if bits.dtype != np.uint8 or bits.shape != (-(-cells // 8),):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.store.folder import (
     CARD,
     CLASSES,
@@ -38,7 +38,7 @@ class VerifyReport:
     faults: tuple[str, ...]
 
 
-def verify_store(folder: str | Path, progress: Progress = silent) -> VerifyReport:
+def verify_store(folder: str | Path, progress: Progress = no_progress) -> VerifyReport:
     """Read all shards of a finished data set and compare every sum.
 
     Raises:

@@ -13,7 +13,7 @@ from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.locks import Lock
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.store.folder import (
     INDEX,
     KIND,
@@ -96,7 +96,7 @@ def write_store(
     meta: dict[str, Any] | None = None,
     *,
     files: SampleFiles | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> dict[str, Any]:
     """Write samples as a new data set; return its ``dataset.json``.
 
@@ -121,7 +121,7 @@ def write_store(
         raise ConflictError(target, "holds a data set already; choose another folder")
     target.mkdir(parents=True, exist_ok=True)
     lock = Lock(target / LOCK, "written")
-    lock.take()
+    lock.acquire()
     try:
         if (target / SHARDS).exists():
             raise ConflictError(

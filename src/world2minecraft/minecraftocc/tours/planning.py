@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.walk_graph import (
     SLIM,
@@ -215,7 +215,7 @@ def plan_views(
     rule: TourRule | None = None,
     *,
     scene: BlockScene | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> list[PlannedView]:
     """Return views of the rooms of a volume, tour after tour; the same for the same seed.
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.navigation.data.planned_walks import TourPlanner
 from world2minecraft.navigation.scene import open_scene
@@ -42,7 +42,7 @@ def make_scenes(
     houses: int,
     seed: int = 0,
     workers: int = 1,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> list[Path]:
     """Make runs of generated rooms, and houses; return their folders, rooms first.
 

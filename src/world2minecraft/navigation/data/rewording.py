@@ -14,7 +14,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import BudgetError, ServerError
 from world2minecraft.core.files import read_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
@@ -111,7 +111,7 @@ def annotate_set(folder: str | Path, file: str | Path) -> None:
 
 
 def reword_set(
-    made: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = silent
+    made: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = no_progress
 ) -> tuple[NavigationSet, Counter[str]]:
     """Return a set with the program's words, as items use them, said again by a model.
 

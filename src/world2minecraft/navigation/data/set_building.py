@@ -21,7 +21,7 @@ from typing import Any
 from world2minecraft import __version__
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.navigation.data.item_building import (
@@ -76,7 +76,7 @@ class SceneJob:
 
 
 def run_scene_jobs(
-    jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = silent
+    jobs: Sequence[SceneJob], workers: int = 1, progress: Progress = no_progress
 ) -> list[SceneItems]:
     """Return what comes of scenes, in their order. The largest ones are begun first.
 
@@ -187,7 +187,7 @@ def build_navigation_set(
     paths: Sequence[str | Path],
     out: str | Path,
     rule: BuildRule | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     workers: int = 1,
 ) -> BuiltSet:
     """Make a set of scenes.

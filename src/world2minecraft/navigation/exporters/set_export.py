@@ -8,7 +8,7 @@ from typing import Any
 from world2minecraft import __version__
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json, write_text
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.navigation.exporters import easyr1, llamafactory
 from world2minecraft.navigation.exporters.options import ExportedFile, ExportOptions, group_items
 from world2minecraft.navigation.exporters.pictures import SetPictures
@@ -55,7 +55,7 @@ def export_set(
     out: str | Path,
     rule: ExportOptions | None = None,
     *,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> ExportResult:
     """Write a set in one of ``FORMATS``. The same set and choices give the same bytes.
 

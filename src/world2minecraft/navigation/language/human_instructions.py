@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.core.files import json_rows, read_bytes
+from world2minecraft.core.files import parse_json_lines, read_bytes
 from world2minecraft.navigation.prompts import find_reserved_token
 from world2minecraft.navigation.values import LEVELS, Instruction, Trajectory
 
@@ -36,7 +36,7 @@ def read_annotations(path: str | Path) -> list[tuple[str, Instruction]]:
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
-    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else json_rows(text, source)
+    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else parse_json_lines(text, source)
     if len(rows) > MAX_ROWS:
         raise LimitError(source, f"has {len(rows):,} lines; at most {MAX_ROWS:,} are read")
     return [_annotation(row, number, source) for number, row in rows]

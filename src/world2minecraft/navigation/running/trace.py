@@ -14,7 +14,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, OutputError
-from world2minecraft.core.files import json_rows, read_bytes, write_bytes
+from world2minecraft.core.files import parse_json_lines, read_bytes, write_bytes
 from world2minecraft.navigation.agents.values import Decision, Observation
 from world2minecraft.navigation.agents.vlm_agent import encode_jpeg
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
@@ -132,7 +132,7 @@ def read_trace(path: str | Path) -> list[dict[str, Any]]:
     """
     data = read_bytes(path, MAX_TRACE_BYTES)
     try:
-        lines = [row for _, row in json_rows(data.decode(), Path(path))]
+        lines = [row for _, row in parse_json_lines(data.decode(), Path(path))]
     except UnicodeDecodeError as error:
         raise DamagedFileError(path, "is no text in UTF-8") from error
     if not lines:

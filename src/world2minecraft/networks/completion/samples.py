@@ -17,7 +17,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError, World2MinecraftError
-from world2minecraft.core.files import array_names, read_npz, write_npz
+from world2minecraft.core.files import npz_array_names, read_npz, write_npz
 from world2minecraft.core.types import Camera, FusedEvidence
 from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.networks.completion.sensor_noise import ScanNoise, draw_noise
@@ -252,7 +252,7 @@ def read_samples(path: Path) -> list[Sample]:
     Raises:
         InputError: the file is missing. DamagedFileError: it is damaged.
     """
-    arrays = read_npz(path, array_names(path))
+    arrays = read_npz(path, npz_array_names(path))
     try:
         return _samples_of(arrays)
     except (KeyError, ValueError) as error:

@@ -18,7 +18,7 @@ from world2minecraft.core.errors import OutputError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.locks import Lock
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.data.frames import Frame, FrameRule, make_frame
 
@@ -110,7 +110,7 @@ def open_cached_frames(
     source: ImportedSet,
     rule: FrameRule,
     root: Path | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> CachedFrames:
     """Return a set's frames from the cache, which is filled first where they are not there.
 
@@ -128,7 +128,7 @@ def open_cached_frames(
     if not (folder / READY).is_file():
         root.mkdir(parents=True, exist_ok=True)
         lock = Lock(root / f"{folder.name}.lock", "filled")
-        lock.take()
+        lock.acquire()
         try:
             _fill(source, rule, folder, progress)
         finally:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.minecraftocc.importers.samples import ImportedSet
 from world2minecraft.networks.config import RunConfig
@@ -53,7 +53,7 @@ def frame_rule(config: RunConfig) -> FrameRule:
 
 
 def open_run_data(
-    config: RunConfig, cache: CacheLocation | None = None, progress: Progress = silent
+    config: RunConfig, cache: CacheLocation | None = None, progress: Progress = no_progress
 ) -> RunData:
     """Open the sets of a run and split them.
 
@@ -85,7 +85,7 @@ def open_run_data(
 
 
 def open_frames(
-    found: ImportedSet, rule: FrameRule, place: CacheLocation, progress: Progress = silent
+    found: ImportedSet, rule: FrameRule, place: CacheLocation, progress: Progress = no_progress
 ) -> Frames:
     """Return the frames of a set, from the cache where one is kept."""
     if not place.keep:

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.evaluation.report import write_brief_report
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
@@ -31,7 +31,7 @@ def build_scene(
     scene: ComparedScene,
     out: Path,
     parameters: Parameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> PlanWorld:
     """Build the world of a layout into a run's folder, with a brief report and its boxes.
 

@@ -121,9 +121,7 @@ def ball(rng: np.random.Generator) -> Model:
 def bricks(rng: np.random.Generator) -> Model:
     """Building bricks: a small tower and two that fell."""
     parts = [
-        Part(
-            (-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), _pick_colour(rng, BRIGHT_COLOURS)
-        )
+        Part((-0.05, -0.05, 0.08 * n, 0.05, 0.05, 0.08 * (n + 1)), bright_colour(rng))
         for n in range(int(rng.integers(2, 5)))
     ]
     for x, y in ((0.12, 0.06), (-0.06, 0.14)):

@@ -58,7 +58,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Cut:
-    """A corner cut off at 45 degrees: at x = max and y = max as stated, ``leg_m`` along each wall."""
+    """A corner cut off at 45 degrees, ``leg_m`` along each wall, at the stated x and y ends."""
 
     high_x: bool
     high_y: bool

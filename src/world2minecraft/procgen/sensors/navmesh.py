@@ -117,7 +117,7 @@ def _places_m(room: Room, spots: np.ndarray) -> np.ndarray:
 
 
 def _where(layouts: tuple[Layout, ...], places_m: np.ndarray):
-    """Return for each place whether it is in a room or its walls, in which room, and on its floor."""
+    """Return whether each place is in a room or its walls, in which room, and on its floor."""
     near, on_floor = np.zeros(len(places_m), bool), np.zeros(len(places_m), bool)
     index = np.full(len(places_m), -1)
     for n, layout in enumerate(layouts):

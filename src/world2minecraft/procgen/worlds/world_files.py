@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.scene import scene_from_volume, write_scene
@@ -136,7 +136,7 @@ def write_worlds(
     seed: int,
     *,
     style: str | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> list[Path]:
     """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter.
 

@@ -11,7 +11,7 @@ import numpy as np
 from world2minecraft import __version__
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.files import write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, Scan
 from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.objects import write_objects, write_placements
@@ -44,7 +44,7 @@ def build_plan(
     place: AnyPath,
     out: Path,
     parameters: Parameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     name: str = "",
 ) -> PlanWorld:
     """Turn a RoomPlan capture into a run's folder with its world; no photo is needed.
@@ -72,7 +72,7 @@ def build_captured(
     parameters: Parameters,
     source: Mapping[str, Any],
     *,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     name: str = "",
     as_told: bool = False,
 ) -> PlanWorld:

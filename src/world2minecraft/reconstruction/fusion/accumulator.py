@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 from world2minecraft.reconstruction.fusion.integration import (
     ViewRules,
@@ -220,7 +220,7 @@ def fuse_views(
     evidence: Iterable[PointEvidence | GridEvidence],
     scan: Scan,
     parameters: FuseParameters | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> FusedEvidence:
     """Fuse the evidence of all views, streamed: the paper's F_embodied, equation 2.
 

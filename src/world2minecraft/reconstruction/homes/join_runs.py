@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft import __version__
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.layout import read_rooms, write_layouts
 from world2minecraft.formats.objects import (
@@ -80,7 +80,7 @@ def join(
     out: Path,
     parameters: Parameters | None = None,
     places: Sequence[str] = (),
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> Scan:
     """Join finished runs into one run's folder with its world.
 

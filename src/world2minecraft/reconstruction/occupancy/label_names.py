@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
-from world2minecraft.core.files import plain_yaml, read_bytes
+from world2minecraft.core.files import load_plain_yaml, read_bytes
 
 TABLE = Path(__file__).parent / "data" / "label_names.yaml"
 NOTHING = "nothing"  # In place of a class: outdoor things, which vote for none.
@@ -80,7 +80,7 @@ def _shipped() -> dict[str, int | None]:
 
 def _read(path: Path) -> dict[str, int | None]:
     try:
-        raw = plain_yaml(read_bytes(path, MAX_BYTES))
+        raw = load_plain_yaml(read_bytes(path, MAX_BYTES))
     except ValueError as error:
         raise DamagedFileError(path, f"is not YAML ({error})") from None
     rows = raw if isinstance(raw, dict) else {}

@@ -27,7 +27,7 @@ from world2minecraft.core.errors import (
     UsageError,
 )
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan, SparseScene, View
 from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepare_photo
 from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
@@ -46,7 +46,9 @@ Told = dict[str, Any]
 GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
 
 
-def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = silent) -> Path:
+def prepared(
+    capture: Path, out: Path, chosen: Parameters, progress: Progress = no_progress
+) -> Path:
     """Return the place of a capture with poses and depth.
 
     Args:
@@ -204,7 +206,7 @@ def open_prepared(
     out: Path,
     chosen: Parameters,
     labels: Path | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> Scan:
     """Open a capture; poses and depth that it lacks are computed and kept in ``out`` first.
 

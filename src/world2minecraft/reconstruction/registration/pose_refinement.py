@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Corrections, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.reconstruction.registration.gauss_newton import (
@@ -194,14 +194,14 @@ class Registered:
 
 
 def refine(
-    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = silent
+    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = no_progress
 ) -> Corrections:
     """Return what puts a scan's poses and depth scales right; arguments as ``register``."""
     return register(scan, parameters, progress).corrections
 
 
 def register(
-    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = silent
+    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = no_progress
 ) -> Registered:
     """Return the corrections of a scan together with the corrected surface.
 

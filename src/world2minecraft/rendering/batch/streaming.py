@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.rendering.batch.pool import MAX_WORKERS, RenderPool
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
@@ -131,7 +131,7 @@ def render_stream(
     write: Write | None = None,
     encode_threads: int = 1,
     jobs: int = 1,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
 ) -> Iterator[Any]:
     """Take the pictures of shots, and write each while the next ones are drawn.
 

@@ -8,7 +8,7 @@ from multiprocessing.pool import ThreadPool
 
 import numpy as np
 
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.light.exposure import LUMINANCE
@@ -59,7 +59,7 @@ def render_photo(
     threads: int = 1,
     denoise: bool = True,
     budget_s: float | None = None,
-    progress: Progress = silent,
+    progress: Progress = no_progress,
     lamps: Emitters | None = None,
 ) -> Photo:
     """Take a photo of a scene.

@@ -60,9 +60,9 @@ class Hit(NamedTuple):
     """
 
     t: float
-    i: int
-    j: int
-    k: int
+    i: int | np.signedinteger
+    j: int | np.signedinteger
+    k: int | np.signedinteger
     face: int
     element: int
 

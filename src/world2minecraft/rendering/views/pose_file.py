@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.core.files import json_rows, read_bytes, write_text
+from world2minecraft.core.files import parse_json_lines, read_bytes, write_text
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.views.cameras import (
     GamePose,
@@ -61,7 +61,11 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
-    rows = _csv_rows(text, source) if source.suffix.lower() == ".csv" else json_rows(text, source)
+    rows = (
+        _csv_rows(text, source)
+        if source.suffix.lower() == ".csv"
+        else parse_json_lines(text, source)
+    )
     poses = [_pose({"at": at, **row}, number, source) for number, row in rows]
     if not poses:
         raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")

@@ -112,12 +112,12 @@ class Document(MemoryDocument):
             notes = _prepare(folder, source, out, opened)
             document = cls(folder, clock, lock, "")
         except OutputError as error:
-            lock.let_go()
+            lock.release()
             if not is_document(folder):
                 raise
             return cls(folder, clock, None, str(error))
         except BaseException:
-            lock.let_go()
+            lock.release()
             raise
         document.notes[:0] = notes
         return document
@@ -160,7 +160,7 @@ class Document(MemoryDocument):
         if self.rev > self._snapshot_rev:
             self._snapshot()
         self.wait()
-        self._lock.let_go()
+        self._lock.release()
         self._lock, self.read_only = None, "it is closed"
 
     def _take(self, found: RecoveredScene) -> None:
@@ -250,7 +250,7 @@ def _take_lock(folder: Path) -> tuple[Lock | None, str]:
     lock = Lock(folder / "lock")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        lock.take()
+        lock.acquire()
     except ConflictError:
         who = lock.holder()
         if not is_document(folder):

@@ -38,7 +38,7 @@ class ARKitScenesSource:
         return folder.is_dir() and _trajectory_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         inner = _trajectory_folder(folder) or folder
         times, poses = _trajectory(inner / TRAJECTORY)
         kind = next((name for name in COLOUR_FOLDERS if (inner / name).is_dir()), None)

@@ -38,7 +38,7 @@ class PolycamSource:
         return any((keyframes / name).is_dir() for name in ("cameras", "corrected_cameras"))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         keyframes = folder / "keyframes"
         corrected = files_by_stem(keyframes / "corrected_cameras", (".json",))
         prefix = "corrected_" if corrected and (keyframes / "corrected_images").is_dir() else ""

@@ -175,7 +175,7 @@ class Record3DSource:
         return packed or (exported and any((folder / "depth").glob("*.exr")))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         packed = (folder / "rgbd").is_dir()
         path = folder / ("metadata" if (folder / "metadata").is_file() else "metadata.json")
         stated = read_json(path)

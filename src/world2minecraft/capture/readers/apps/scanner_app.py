@@ -36,7 +36,7 @@ class ScannerAppSource:
         return folder.is_dir() and next(iter(folder.glob("frame_[0-9]*.json")), None) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         found = _files(folder)
         stated = {index: files for index, files in found.items() if "frame.json" in files}
         pictured = {index: files for index, files in stated.items() if "frame.jpg" in files}

@@ -47,7 +47,7 @@ class StraySource:
         return any(part.exists() for part in parts)
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         rows = _rows(folder / ODOMETRY)
         pictures = _pictures(folder, rows)
         depths = _by_index(folder / "depth", (".png", ".npy"))

@@ -142,7 +142,7 @@ class VideoFrame:
 
     @property
     def stem(self) -> str:
-        """The picture's number with six digits, as the files beside the video are named."""
+        """The picture's number with six digits, as the files with the video are named."""
         return f"{self.index:06d}"
 
     @property

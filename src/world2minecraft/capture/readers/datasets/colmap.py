@@ -211,7 +211,7 @@ class ColmapSource:
         return bool(_find_models(folder)) and not (folder / "transforms.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the photos. Raises CaptureError as ``Source.read`` says."""
+        """List the photos. Raises CaptureError as ``Source.read`` does."""
         chosen, *others = _find_models(folder)
         images = read_model(chosen)
         if not images:

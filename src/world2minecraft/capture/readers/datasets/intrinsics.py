@@ -53,7 +53,7 @@ def matrix_camera(where: AnyPath, size: tuple[int, int], matrix: np.ndarray) -> 
 
 
 def first_image_size(images: Sequence[ImagePlace | None]) -> tuple[int, int] | None:
-    """Return the size of the first image that can be read; the others are judged later."""
+    """Return the size of the first image that can be read; the others are checked later."""
     for image in images:
         if image is not None:
             try:
@@ -68,7 +68,7 @@ def intrinsics_size(
 ) -> tuple[int, int] | None:
     """Return the size whose middle the principal point (cx, cy) meets best, the first of equals.
 
-    Exported images are often smaller than what the intrinsics beside them speak of.
+    Exported images are often smaller than what the intrinsics next to them speak of.
     """
     known = [size for size in sizes if size is not None]
     cx, cy = lens

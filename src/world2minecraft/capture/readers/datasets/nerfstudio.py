@@ -34,7 +34,7 @@ class NerfstudioSource:
         return (folder / "transforms.json").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         path = folder / "transforms.json"
         stated = read_json(path)
         entries = stated.get("frames") if isinstance(stated, dict) else None

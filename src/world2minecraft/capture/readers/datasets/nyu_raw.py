@@ -51,7 +51,7 @@ class NyuRawSource:
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` says."""
+        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
         colour_s, colours = _stream(folder, "r-*.ppm")
         depth_s, depths = _stream(folder, "d-*.pgm")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)

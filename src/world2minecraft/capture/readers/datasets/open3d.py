@@ -44,7 +44,7 @@ class Open3dSource:
         return both and bool(_trajectories(folder))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` says."""
+        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
         chosen, *others = _trajectories(folder)
         poses, cameras = _read_trajectory(chosen)
         pairs = _pairs(folder)
@@ -166,7 +166,7 @@ def _intrinsic(path: AnyPath, stated: Any) -> Camera:
 
 
 def _camera(folder: AnyPath) -> tuple[Camera, tuple[str, ...]]:
-    """Return the camera of a JSON beside the images or one folder up, or the usual default."""
+    """Return the camera of a JSON with the images or one folder up, or the usual default."""
     for place in (folder, folder.parent):
         for pattern in ("camera*.json", "*intrinsic*.json"):
             for path in sorted(place.glob(pattern), key=str):

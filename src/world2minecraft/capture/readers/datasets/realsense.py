@@ -295,7 +295,7 @@ class RealSenseSource:
         return _bag_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of pictures. Raises CaptureError as ``Source.read`` says."""
+        """List the pairs of pictures. Raises CaptureError as ``Source.read`` does."""
         path = _bag_file(folder)
         if path is None:
             raise CaptureError(folder, "holds no .bag")

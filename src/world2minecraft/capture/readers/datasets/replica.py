@@ -34,7 +34,7 @@ class ReplicaSource:
         return named and next(iter(results.glob("frame*.*")), None) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         path = folder / "traj.txt"
         rows = read_rows(path)
         if not rows or any(len(row) != 16 for row in rows):

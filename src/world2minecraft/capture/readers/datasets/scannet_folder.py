@@ -36,12 +36,12 @@ class ScanNetFolderSource:
     layout = "color/0.jpg, depth/0.png, pose/0.txt, intrinsic/intrinsic_depth.txt (ScanNet export)"
 
     def recognise(self, folder: AnyPath) -> bool:
-        """Return whether poses and images lie in folders so named, with a matrix beside them."""
+        """Return whether poses and images lie in folders so named, with a matrix next to them."""
         images = (folder / "color").is_dir() or (folder / "depth").is_dir()
         return images and (folder / "pose").is_dir() and bool(_matrix_files(folder))
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         colours, depths = _images(folder / "color"), _images(folder / "depth")
         poses = {
             int(path.stem): path for path in (folder / "pose").glob("*.txt") if _numbered(path)

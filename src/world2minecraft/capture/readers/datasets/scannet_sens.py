@@ -73,7 +73,7 @@ class ScanNetSensSource:
         return _sens_file(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         path = _sens_file(folder)
         if path is None:
             raise DamagedFileError(folder, "holds no .sens")

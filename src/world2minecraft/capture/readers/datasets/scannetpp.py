@@ -42,7 +42,7 @@ class ScanNetPpSource:
         return _iphone_folder(folder) is not None
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         place = _iphone_folder(folder) or folder
         entries = _entries(place / POSES)
         pictures, depths = _pictures(place, entries), _depths(place)

@@ -37,7 +37,7 @@ class SevenScenesSource:
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames of all sequences. Raises CaptureError as ``Source.read`` says."""
+        """List the frames of all sequences. Raises CaptureError as ``Source.read`` does."""
         parts = _parts(folder)
         listed = [(part, stem, found) for part in parts for stem, found in _frames(part)]
         if not any("pose" in found for _, _, found in listed):

@@ -41,7 +41,7 @@ class SunSource:
         )
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        """List the frames. Raises CaptureError as ``Source.read`` does."""
         depth_folder = _depth_folder(folder) or folder
         pairs = _pairs(folder, _images(folder / "image"), _images(depth_folder))
         matrix = read_matrix(_intrinsics_file(folder), [(3, 3), (4, 4)])

@@ -51,7 +51,7 @@ class TumSource:
         return (folder / "rgb.txt").is_file() and (folder / "depth.txt").is_file()
 
     def read(self, folder: AnyPath) -> Capture:
-        """List the pairs of images. Raises CaptureError as ``Source.read`` says."""
+        """List the pairs of images. Raises CaptureError as ``Source.read`` does."""
         colour_s, colours = _read_image_list(folder / "rgb.txt")
         depth_s, depths = _read_image_list(folder / "depth.txt")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)

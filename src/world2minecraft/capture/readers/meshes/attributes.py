@@ -63,7 +63,7 @@ def identity_classes() -> np.ndarray:
 def classes_of_label_ids(
     place: AnyPath, column: str, values: np.ndarray
 ) -> tuple[np.ndarray | None, str]:
-    """Return uint8 classes of a file's label numbers, and the sentence that tells how.
+    """Return uint8 classes of a file's label numbers, and a note on how.
 
     Args:
         place: the file.
@@ -71,7 +71,7 @@ def classes_of_label_ids(
         values: [N] numbers.
 
     Raises:
-        CaptureError: the map beside the file cannot be used.
+        CaptureError: the map next to the file cannot be used.
     """
     numbers = np.nan_to_num(
         np.asarray(values, np.float64), nan=MAX_LABEL_ID, posinf=MAX_LABEL_ID, neginf=MAX_LABEL_ID
@@ -120,7 +120,7 @@ def colours_of_columns(columns: Mapping[str, np.ndarray]) -> np.ndarray | None:
     """Return uint8 [N, 3] of columns that hold colours, or None.
 
     Whole numbers up to 255, or up to 65535 (LAS, PTS of some scanners), and shares up to 1 are
-    told apart by their most.
+    distinguished by their maximum.
     """
     for names in COLOUR_COLUMNS:
         if all(name in columns for name in names):

@@ -178,7 +178,7 @@ def _remove_gaps(depth, rim):
     """Return the depth without pixels in gaps, and without the outermost ones of things.
 
     In a gap are those that most of the 24 around them stand clearly before. Outermost are those
-    that only the rims of discs meet (``rim``), with something clearly farther beside them.
+    that only the rims of discs meet (``rim``), with something clearly farther next to them.
     """
     height, width = depth.shape
     result = depth.copy()

@@ -48,7 +48,7 @@ class SurfaceGrid:
 
 
 def voxelise_surface(geometry: Geometry, low_m: np.ndarray, high_m: np.ndarray) -> SurfaceGrid:
-    """Return which cells of a box hold surface of a solid in metres.
+    """Return which cells of a box hold surface of a mesh or point cloud in metres.
 
     Raises:
         ValueError: its triangles have far more surface than a building.

@@ -112,7 +112,7 @@ Geometry = Mesh | PointCloud
 
 @dataclass(frozen=True, eq=False)
 class LoadedGeometry:
-    """A solid as its file gives it, and what the file or its format states of it.
+    """A mesh or point cloud as read, and what its file or format states of it.
 
     A place in the file is one of ``geometry`` plus ``offset`` (float64 [3]), so that surveyed
     coordinates of millions of metres keep their millimetres. ``unit_m`` is metres per unit where

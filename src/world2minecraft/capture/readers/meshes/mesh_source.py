@@ -40,7 +40,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import Camera
 
-# Where one solid is exported in several ways side by side, the first is taken.
+# Where one mesh is exported in several ways side by side, the first is taken.
 READERS = {
     ".glb": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
     ".gltf": "world2minecraft.capture.readers.meshes.trimesh_scenes:load_scene",
@@ -68,7 +68,7 @@ AMBIGUOUS_SUFFIXES = (
     ".asc",
 )  # Anything may be in them: taken only where they are named.
 MESH_READERS = Registry("solid format", READERS)
-ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder beside the room's own.
+ANNOTATIONS = "Annotations"  # S3DIS: one file a thing, in a folder next to the room's own.
 LABELLED = ".labels"  # ScanNet: the same mesh again, coloured by class.
 MAX_CACHE_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
 MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}
@@ -120,7 +120,7 @@ def file_stamp(place: AnyPath) -> tuple[int, ...]:
 
 @dataclass(eq=False)
 class ViewRenderer:
-    """Renders views of one solid and keeps the last ones; ``name`` is that of its file."""
+    """Renders views of a mesh or point cloud and caches the last ones; ``name`` is its file's."""
 
     name: str
     geometry: Mesh | Surfels
@@ -207,7 +207,7 @@ def view_name(view: int) -> str:
 
 
 class MeshSource:
-    """Reads one mesh or point cloud of a room, alone or beside its textures."""
+    """Reads one mesh or point cloud of a room, alone or with its textures."""
 
     layout = "a mesh or a point cloud (.glb .gltf .obj .ply .stl .usdz .las .laz .e57 .xyz .pts ..)"
 
@@ -234,7 +234,7 @@ class MeshSource:
 
 @lru_cache(maxsize=1)
 def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
-    """Read a file; the same file is asked for twice, to be judged and to be opened."""
+    """Read a file; the same file is asked for twice, to be summarised and to be opened."""
     loaded = load_geometry(place)
     if not len(loaded.geometry.positions) or (
         isinstance(loaded.geometry, Mesh) and not len(loaded.geometry.faces)

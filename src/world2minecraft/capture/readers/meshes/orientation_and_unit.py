@@ -40,7 +40,7 @@ STATED_MARGIN = 3.0  # A format's unit is doubted only where another fits so muc
 
 @dataclass(frozen=True, eq=False)
 class Orientation:
-    """``turn`` float64 [3, 3] rotates the file's axes to z up; ``description`` names the up axis."""
+    """``turn`` float64 [3, 3] rotates the file's axes to z up; ``description`` names that axis."""
 
     turn: np.ndarray
     description: str
@@ -49,10 +49,10 @@ class Orientation:
 def find_orientation(
     samples: SurfaceSamples, usual_up: str, stated: bool, chosen: str | None
 ) -> Orientation:
-    """Return how a solid stands.
+    """Return the orientation of a mesh or point cloud.
 
     Args:
-        samples: of the solid, in its file's axes.
+        samples: of the surface, in its file's axes.
         usual_up: the axis that the format takes for up.
         stated: whether the file itself says so.
         chosen: the axis that the user says, or None.
@@ -153,10 +153,10 @@ def _up_score(samples: SurfaceSamples, up: np.ndarray, usual_up: str) -> float:
 
 
 def find_unit(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tuple[float, str]:
-    """Return metres per unit and the sentence that tells it.
+    """Return metres per unit and a note on it.
 
     Args:
-        size: float64 [3] of the upright box around the solid, in its own units.
+        size: float64 [3] of the upright box around it, in its own units.
         stated_m: what the format or the file states.
         chosen: the unit that the user says, or None.
     """

@@ -465,7 +465,7 @@ def _labels_twin(place: AnyPath, file: PlyFile) -> PlyFile | None:
 
 
 def _labels(place: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray | None, str]:
-    """Return uint8 classes of the column that holds labels, and what to tell; None for none."""
+    """Return uint8 classes of the column that holds labels, and a note; None for none."""
     by_name = {name.lower(): values for name, values in columns.items()}
     for name in LABEL_NAMES:
         if name in by_name:
@@ -480,7 +480,7 @@ def _vertex_positions(file: PlyFile) -> np.ndarray:
 def _vertex_attributes(
     place: AnyPath, file: PlyFile, twin: PlyFile | None
 ) -> tuple[np.ndarray | None, np.ndarray | None, str]:
-    """Return colours and labels of the vertices, and what to tell."""
+    """Return colours and labels of the vertices, and a note."""
     labels, note = _labels(place, file.vertex)
     colour = colours_of_columns(file.vertex)
     if twin is not None:

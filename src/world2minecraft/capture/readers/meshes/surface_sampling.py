@@ -26,7 +26,7 @@ class SurfaceSamples:
 
 
 def sample_surface(geometry: Geometry) -> SurfaceSamples:
-    """Return at most ``MAX_SAMPLES`` samples of a solid, the same for the same solid."""
+    """Return at most ``MAX_SAMPLES`` samples of a mesh or point cloud, deterministic."""
     return _sample_mesh(geometry) if isinstance(geometry, Mesh) else _sample_cloud(geometry)
 
 

@@ -67,7 +67,7 @@ def load_text(place: AnyPath) -> LoadedGeometry:
 def add_text(place: AnyPath, thinner: VoxelDownsampler, label: int | None = None) -> str:
     """Add a file's points to others, all of one class where ``label`` says it.
 
-    Returns what is to be told of its labels. Raises as ``load_text``.
+    Returns a note on its labels. Raises as ``load_text``.
     """
     names: list[str] | None = None
     colour_at: int | None = None
@@ -166,7 +166,7 @@ def _parse_rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
 
 
 def _colour_column(rows: np.ndarray) -> int | None:
-    """Return where three columns of colour begin, told from their values."""
+    """Return where three columns of colour begin, inferred from their values."""
     some = rows[:: max(1, len(rows) // 5000)]
     starts = range(3, rows.shape[1] - 2)
     for start in starts:

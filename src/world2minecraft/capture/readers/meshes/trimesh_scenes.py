@@ -85,12 +85,12 @@ class _FolderResolver:
     def get(self, key: str) -> bytes:
         """Return a file's bytes.
 
-        It is sought as it is named, and by its last part beside the mesh: exporters leave paths of
+        It is sought as it is named, and by its last part next to the mesh: exporters leave paths of
         their own machine before the name. glTF's names are escaped as addresses are, and options
         stand before those of an MTL file.
 
         Raises:
-            DamagedFileError: the name leaves the folder, and no such file lies beside the mesh.
+            DamagedFileError: the name leaves the folder, and no such file lies next to the mesh.
         """
         name = key.strip().replace("\\", "/")
         names = [name, unquote(name), *(name.split()[-1:] if name.startswith("-") else [])]
@@ -116,7 +116,7 @@ class _FolderResolver:
         return self
 
     def keys(self) -> list[str]:
-        """Return the names of the files beside the mesh."""
+        """Return the names of the files next to the mesh."""
         return [entry.name for entry in self.place.parent.iterdir() if entry.is_file()]
 
     def __contains__(self, key: str) -> bool:

@@ -57,7 +57,7 @@ def load_usd(place: AnyPath) -> LoadedGeometry:
             up_stated = bool(stage.HasAuthoredMetadata("upAxis"))
         except (tf.ErrorException, RuntimeError) as error:
             raise DamagedFileError(place, "cannot be read as USD; export it again") from error
-    # What states no unit is in centimetres by USD's rule, yet often in metres: it is told by size.
+    # Without a stated unit USD means centimetres, yet files are often in metres: it is inferred.
     return LoadedGeometry(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
 
 

@@ -17,7 +17,7 @@ class VoxelDownsampler:
 
     The first point's neighbourhood becomes the origin, so that float32 keeps millimetres of
     surveyed coordinates: ``offset`` float64 [3] is what was taken off. ``unit_m`` is metres per
-    unit where the format states it; else it is told from how long the cloud is. ``cell`` is the
+    unit where the format states it; else it is inferred from how long the cloud is. ``cell`` is the
     side of the cells that points were merged in, 0 before.
     """
 

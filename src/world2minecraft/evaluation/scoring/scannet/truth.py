@@ -27,7 +27,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import write_json, write_npz
-from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.scoring.scannet.labelled_mesh import (
     LabelledMesh,
     labelled_meshes,
@@ -162,7 +162,7 @@ def _cut(corners: np.ndarray, owner: np.ndarray, longest_m: float) -> tuple[np.n
     return np.concatenate(middles), np.concatenate(owners)
 
 
-def seen_free(truth: Truth, progress: Progress = silent) -> np.ndarray:
+def seen_free(truth: Truth, progress: Progress = no_progress) -> np.ndarray:
     """Return bool [A, B, C]: the voxels of a truth that rays of its own capture passed.
 
     Args:
@@ -251,7 +251,7 @@ def scenes_in(place: Path) -> list[Path]:
 
 
 def write_scannet_truth(
-    scene: Path, out: Path | None = None, progress: Progress = silent
+    scene: Path, out: Path | None = None, progress: Progress = no_progress
 ) -> TruthMade:
     """Write the truth of a scene.
 
