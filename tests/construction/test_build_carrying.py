@@ -97,7 +97,7 @@ def test_a_thing_steps_aside_only_where_it_would_lose_much():
     assert best_step(thin, low, free, opened, stands=True).tolist() == [0, 0, 0]
 
 
-def test_an_object_whose_places_are_all_taken_gets_the_free_block_that_serves_it_best():
+def test_an_object_without_free_places_gets_the_best_free_block():
     free = np.zeros((5, 5, 5), bool)
     blocks, counts = np.array([[2, 2, 2], [2, 2, 3]]), np.array([9, 1])
     assert best_place(blocks, counts, free) is None
@@ -114,7 +114,7 @@ def test_a_small_thing_between_others_is_never_lost():
     assert (volume.instance == 3).any()
 
 
-def test_a_chair_s_back_without_its_seat_gets_a_leg_and_no_bridge_to_the_chair_beside():
+def test_a_chair_back_alone_gets_a_leg_and_no_bridge():
     sketch = Sketch().put((20, 26), (8, 14), (0, 11), CHAIR, WOOD, 1)
     sketch.put((34, 40), (8, 10), (8, 11), CHAIR, WOOD, 2)
     volume = build_volume(sketch.grid(), (), (), corner_m=np.array([0.0, 2.0]))

@@ -55,7 +55,7 @@ def test_equal_chairs_come_out_equal_wherever_they_stand(scale, x, y):
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_beside_a_chair_of_few_blocks_there_is_no_lump_of_its_cells(scale):
+def test_a_chair_of_few_blocks_leaves_no_lump_of_cells(scale):
     sketch = Sketch()
     chair = _chair(1, 10, 10, sketch)
     sketch.put((17, 24), (10, 14), (0, 9), CHAIR, RED, 1)  # Cells that the chair does not explain.
@@ -87,7 +87,7 @@ def test_a_box_on_a_table_lies_over_its_top_and_both_are_whole(scale):
 
 
 @pytest.mark.parametrize("turns", range(4))
-def test_handles_stand_out_to_the_front_and_the_body_stays_at_the_wall(turns):
+def test_handles_protrude_and_the_body_stays_at_the_wall(turns):
     one = placement("cabinet", FURN, (2.0, 2.0, 0.45), (0.5, 1.0, 0.9), turns)
     lattice = Lattice((-3, 61, -3), (30, 30, 20), np.array([0.0, 4.0]), 4.0)
     design = block_design(one, 4.0)
@@ -111,6 +111,6 @@ def test_handles_stand_out_to_the_front_and_the_body_stays_at_the_wall(turns):
         ((0.5, 0.5, 0.5), "barrel"),
     ],
 )
-def test_a_small_thing_at_two_blocks_a_metre_is_no_larger_than_it_must_be(size_m, word):
+def test_a_small_thing_stays_small_at_two_blocks_per_metre(size_m, word):
     blocks = block_design(placement("box", OBJS, (0, 0, 0), size_m), 2.0).blocks
     assert all(word in block.state for block in blocks)

@@ -152,7 +152,7 @@ def test_a_lamp_hangs_from_the_blocks_of_the_ceiling():
     assert canvas.states[8, 8, round(top)] > 0
 
 
-def test_colliders_are_barriers_where_a_block_is_filled_and_marks_where_it_is_not():
+def test_colliders_are_barriers_only_in_filled_blocks():
     canvas, _ = shell()
     frame = Frame(np.array([2.0, 1.0, 0.0]), np.array([1.0, 1.0, 1.0]), 0.0)
     solid = DisplayBox(np.array([-0.5, -0.5, 0.0, 0.5, 0.5, 0.5]), "stone")

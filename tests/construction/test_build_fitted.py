@@ -77,7 +77,7 @@ def test_every_material_is_a_block_of_the_game_in_every_shape():
             check_state(parse_state(shape.of(block)))
 
 
-def test_a_shape_is_of_its_own_wood_and_missing_where_nothing_is_near():
+def test_a_shape_is_of_its_own_wood_or_missing():
     slab = Shape("slab", (("type", "top"),))
     assert MATERIALS.dressed(slab, "minecraft:birch_planks") == (
         "minecraft:birch_slab[type=top,waterlogged=false]"

@@ -108,7 +108,7 @@ def test_an_edge_between_colours_stays_where_it_is():
     assert set(chosen[positions[:, 2] >= 4]) == {"minecraft:black_wool"}
 
 
-def test_few_means_few():
+def test_the_number_of_blocks_is_limited():
     rng = np.random.default_rng(2)
     rgb = rng.integers(0, 256, (300, 3)).astype(np.uint8)
     positions = np.argwhere(np.ones((300, 1, 1), bool))

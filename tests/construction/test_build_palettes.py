@@ -62,7 +62,7 @@ def states_of(name: str, size_m, scale=2.0, turns=0, colour=None) -> dict:
 
 
 @pytest.mark.parametrize("name", PALETTE_FILES)
-def test_a_shipped_palette_covers_every_class_with_known_full_blocks(name):
+def test_shipped_palettes_cover_every_class_with_full_blocks(name):
     palette = load_palette(name)
     assert palette.name == name
     for number in range(1, len(CLASS_NAMES)):
@@ -288,7 +288,7 @@ def test_what_stands_for_a_block_is_named_or_nothing(state):
     assert nearest_allowed(found, palette) == found
 
 
-def test_a_palette_that_extends_a_mods_has_its_furniture_and_words():
+def test_an_extended_mod_palette_has_its_furniture_and_words():
     palette = parse_palette({"name": "x", "extends": "refurbished_furniture"})
     assert palette.furniture == MOD.furniture
     assert palette.meanings.words == MOD.meanings.words
@@ -386,7 +386,7 @@ def test_a_piece_of_several_cells_fills_no_place():
         parse_piece(raw)
 
 
-def test_a_mods_block_has_the_colour_of_the_wood_or_dye_in_its_name():
+def test_a_mod_block_has_the_colour_that_its_name_states():
     assert colour_of("refurbished_furniture:dark_oak_chair") == colour_of("dark_oak_planks")
     assert colour_of("refurbished_furniture:light_blue_sofa[shape=left]") == colour_of(
         "light_blue_wool"

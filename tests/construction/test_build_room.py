@@ -206,7 +206,7 @@ def test_nothing_of_a_furnished_room_would_fall_or_change(scale, style):
 
 
 @pytest.mark.parametrize("seed", (2101, 2103))
-def test_nothing_of_a_room_built_from_its_cells_would_fall_or_change(seed):
+def test_a_room_built_from_its_cells_is_stable_in_the_game(seed):
     grid = true_grid(generate_room(seed))
     for scale in SCALES:
         assert find_unstable(build_volume(grid, (), (), blocks_per_metre=scale)) == []
@@ -279,7 +279,7 @@ def test_a_ceiling_is_not_closed_where_one_saw_through():
 
 
 @pytest.mark.parametrize("scale", SCALES)
-def test_what_stands_before_a_wall_s_hidden_foot_makes_no_floor_behind_it(scale):
+def test_objects_before_a_hidden_wall_foot_add_no_floor_behind(scale):
     sketch = Sketch((50, 40, 30))
     sketch.put((18, 36), (-1, 0), (0, 16), 255, 0)  # Behind the sofa nothing was seen.
     sketch.put((20, 34), (-1, 0), (16, 26), WALL + 1, (180, 200, 210))

@@ -39,7 +39,7 @@ def test_the_lit_half_says_the_paint():
     assert np.allclose(paints[1], srgb_to_oklab(np.array(BROWN, np.uint8)), atol=1e-4)
 
 
-def test_chairs_of_a_set_share_one_paint_and_a_red_one_keeps_its_own():
+def test_chairs_of_a_set_share_a_paint_but_a_red_one_does_not():
     other_brown = tuple(value + 6 for value in BROWN)
     paints = chair_paints(*chairs((BROWN, SHADE), (RED, SHADE), (other_brown, SHADE)), 0.4)
     assert np.array_equal(paints[1], paints[3])

@@ -118,7 +118,7 @@ def test_every_template_gives_blocks_and_turns_as_a_whole(name, scale):
 
 @pytest.mark.parametrize("turns", range(4))
 @pytest.mark.parametrize("away_m", [0.0, 0.06, 0.1, 0.17])
-def test_the_front_of_a_counter_stays_within_half_a_block_of_where_it_is(turns, away_m):
+def test_the_front_of_a_counter_moves_by_half_a_block_at_most(turns, away_m):
     found = template("counter")
     size = np.array(found.typical_m)
     place = placement("counter", FURN, (2.0 + away_m, 1.0 + away_m, size[2] / 2), size, turns)

@@ -56,7 +56,7 @@ def test_what_is_green_is_a_plant(rgb, name):
         replace(cells(SemanticClass.SOFA, (0.8, 2.0, 0.9)), template="bench"),
     ],
 )
-def test_all_else_stays(own):
+def test_other_placements_are_unchanged(own):
     assert substitute_template(own, alone=True, colour=lab(GREEN)) is own
 
 

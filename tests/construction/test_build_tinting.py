@@ -51,7 +51,7 @@ def _names(states):
     return {state.partition("[")[0].removeprefix("minecraft:") for state in states}
 
 
-def test_a_blue_sofa_is_of_blue_wool_and_a_leather_one_of_dark_wood():
+def test_a_blue_sofa_is_blue_wool_and_a_leather_one_dark_wood():
     _, states = _states("sofa", BLUE)
     assert "blue_wool" in _names(states)
     assert not {"light_gray_wool", "gray_wool"} & _names(states)

@@ -232,7 +232,7 @@ def test_an_object_seen_elsewhere_is_not_replaced_by_a_poor_box():
     assert blocks <= 2 * 6 * 7
 
 
-def test_the_same_room_gives_the_same_blocks_whatever_the_hash_seed():
+def test_blocks_do_not_depend_on_the_hash_seed():
     code = (
         "import sys, hashlib; sys.path.insert(0, sys.argv[1]);"
         "from build_samples import furnished;"

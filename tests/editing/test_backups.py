@@ -162,7 +162,7 @@ def test_a_full_disk_leaves_the_world_as_it_was(world, monkeypatch):
         assert tree(world) == before
 
 
-def test_too_little_space_is_told_before(world, monkeypatch):
+def test_too_little_disk_space_is_reported_first(world, monkeypatch):
     before = tree(world)
     monkeypatch.setattr(backups.shutil, "disk_usage", lambda _: type("", (), {"free": 5 << 20})())
     with pytest.raises(OutputError) as raised:
@@ -178,7 +178,7 @@ def test_a_file_that_was_saved_since_is_seen(world):
     assert changed_since(step) == ["region/r.0.1.mca"]
 
 
-def test_what_was_changed_after_a_cut_off_step_is_not_overwritten(world, monkeypatch):
+def test_later_changes_are_kept_after_an_interrupted_step(world, monkeypatch):
     with monkeypatch.context() as patch, contextlib.suppress(Killed):
         calls(patch, 9, Killed)
         commit_step(world, FILES, "a test")
@@ -256,7 +256,7 @@ while True:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_a_program_that_is_really_killed_leaves_a_world_that_comes_back(tmp_path):
+def test_a_killed_process_leaves_a_recoverable_world(tmp_path):
     world = write_ground(tmp_path / "world")
     before = tree(world)
     chance = random.Random(5)

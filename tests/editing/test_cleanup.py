@@ -175,7 +175,7 @@ def test_a_piece_behind_a_wall_is_taken_away():
     assert not result.states[13, 1, 8]
 
 
-def test_a_chair_that_pokes_through_furniture_loses_what_is_beyond():
+def test_a_chair_through_furniture_loses_the_part_beyond():
     room = Room()
     room.put((slice(11, 15), slice(1, 6), 11), RED, FURN, 3)
     room.put((slice(11, 13), slice(1, 4), slice(12, 15)), WOOD, CHAIR, 4)
@@ -233,7 +233,7 @@ def test_an_unknown_rule_is_named():
         repair_volume(Room().volume(), ("holse",))
 
 
-def test_blocks_without_labels_keep_what_stands_and_lose_what_floats():
+def test_unlabelled_blocks_lose_only_what_floats():
     room = Room()
     room.put((9, 6, 9), RED, 0, 0)
     room.semantic[:], room.instance[:] = 0, 0

@@ -68,7 +68,7 @@ def test_data_go_with_their_block_and_come_back():
     assert seen(apply_edits(draft.volume(), edit.inverse())) == seen(volume)
 
 
-def test_an_edit_of_changed_blocks_is_refused_and_changes_nothing():
+def test_an_edit_of_changed_blocks_is_refused_without_effect():
     volume = small_volume()
     first = random_edits(volume, 1, 3)[0]
     changed = apply_edits(volume, first)

@@ -88,7 +88,7 @@ def test_an_independent_reader_finds_the_blocks(world):
         assert f"{block.namespace}:{block.id}" == state.partition("[")[0]
 
 
-def test_untouched_chunks_keep_their_bytes_and_touched_ones_their_tags(home, world):
+def test_untouched_chunks_keep_bytes_and_touched_ones_keep_tags(home, world):
     build_into_world(world, room())
     touched = {(x, z) for x in (-1, 0) for z in (-2, -1)}
     for path in sorted((world / "region").glob("*.mca")):
@@ -148,7 +148,7 @@ def test_a_sign_is_written_as_the_game_of_its_chunk_has_it(world, data_version, 
     assert is_as_wanted(held)
 
 
-def test_a_chunk_of_entities_of_an_older_game_stays_so_while_others_are_in_it(world):
+def test_entity_chunk_keeps_its_version_with_foreign_entities(world):
     path = world / "entities" / "r.0.0.mca"
     (place,) = read_region_file(path).records  # Of the armor stand.
     root = read_nbt(read_region_file(path).chunk(place), path)[1]
@@ -168,7 +168,7 @@ def test_a_chunk_of_entities_of_an_older_game_stays_so_while_others_are_in_it(wo
     ]  # fmt: skip
 
 
-def test_a_section_that_keeps_more_bits_than_it_needs_is_built_into(world):
+def test_sections_with_more_bits_than_needed_are_edited(world):
     path = world / "region" / "r.-1.-1.mca"
     region, before = read_region_file(path), world_blocks(world)
     chunks = {place: read_nbt(region.chunk(place), path)[1] for place in region.records}
@@ -261,7 +261,7 @@ def test_a_chest_that_was_built_over_comes_back_with_its_things(world):
     assert chest.nbt["CustomName"] == "chest 0"
 
 
-def test_missing_chunks_are_refused_where_the_game_would_make_some(world):
+def test_missing_chunks_are_refused_outside_void_worlds(world):
     path = world / "level.dat"
     data = level_data("Home", (0, 80, 0), 0.0, game_version())
     overworld = data["Data"]["WorldGenSettings"]["dimensions"]["minecraft:overworld"]
@@ -331,7 +331,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
     assert (world / "session.lock").read_bytes() == "\u2603".encode()
 
 
-def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(tmp_path, monkeypatch):
+def test_an_oversized_chunk_moves_to_its_own_file_and_back(tmp_path, monkeypatch):
     monkeypatch.setattr(region_edit, "MAX_SECTORS", 3)
     rng = np.random.default_rng(1)
     names = [f"mod:{rng.integers(1 << 60)}_{rng.integers(1 << 60)}_{n}" for n in range(2000)]

@@ -78,7 +78,7 @@ def test_what_cannot_be_written_is_not_done(tmp_path):
     assert not history.journal.edits
 
 
-def test_any_edit_that_no_later_one_touches_can_be_undone_and_redone(tmp_path):
+def test_edits_without_later_overlap_can_be_undone_and_redone(tmp_path):
     volume = small_volume(shape=(30, 20, 30))
     edits = random_edits(volume, 4, 2)
     history = History(volume, Journal(tmp_path / "j"))
@@ -136,7 +136,7 @@ for number, edit in enumerate(random_edits(small_volume(), 200, 1)):
 """
 
 
-def test_a_killed_program_leaves_every_edit_that_it_told_of(tmp_path):
+def test_a_killed_program_leaves_every_reported_edit(tmp_path):
     words = [sys.executable, "-c", KILLED, str(tmp_path / "j"), os.path.dirname(__file__)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
         for _ in range(5):

@@ -30,7 +30,7 @@ def files(folder):
     }
 
 
-def test_a_scan_is_the_same_bytes_twice_and_other_bytes_for_another_seed(tmp_path):
+def test_the_bytes_of_a_scan_depend_on_the_seed_alone(tmp_path):
     for name, seed in (("a", 3), ("b", 3), ("c", 4)):
         scan_room(room(), tmp_path / name, frames=2, seed=seed, width=64, height=48)
     assert files(tmp_path / "a") == files(tmp_path / "b")
@@ -71,7 +71,7 @@ def test_clean_depth_lifted_by_the_truth_lands_on_its_voxels():
         assert (found == said).mean() > 0.98
 
 
-def test_true_poses_are_the_stated_ones_without_jitter_and_in_the_room_s_frame(tmp_path):
+def test_true_poses_are_the_stated_ones_without_jitter(tmp_path):
     size = {"frames": 4, "seed": 6, "width": 64, "height": 48}
     for sensor in ("clean", "rgbd"):
         scan_room(room(), tmp_path / sensor, sensor=sensor, **size)
@@ -88,7 +88,7 @@ def test_true_poses_are_the_stated_ones_without_jitter_and_in_the_room_s_frame(t
         assert moved == 0 or np.abs(left).max() > 1e-4
 
 
-def test_true_scales_turn_the_stated_depth_into_that_of_a_true_cast():
+def test_true_scales_correct_the_stated_depth():
     how = ScanSettings(
         sensor="clean", frames=5, seed=3, depth_scale_sigma=0.03, width=64, height=48
     )
@@ -180,7 +180,7 @@ def test_the_pictures_show_the_colours_of_the_room():
     assert 60 < view.colour.mean() < 220
 
 
-def test_depth_of_the_rgbd_sensor_has_holes_and_noise_but_is_near():
+def test_rgbd_depth_has_holes_and_noise_but_is_near():
     settings = {"frames": 2, "seed": 5, "width": 160, "height": 120}
     for rough, exact in zip(
         room_views(room(), sensor="rgbd", **settings),

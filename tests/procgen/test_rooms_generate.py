@@ -94,7 +94,7 @@ def test_no_two_pieces_collide(kind, seed):
 
 
 @each_room
-def test_each_object_of_the_layout_stands_in_the_voxels_with_its_class(kind, seed):
+def test_layout_objects_are_in_the_voxels_with_their_class(kind, seed):
     room = room_of(kind, seed)
     expected = boxes(room)
     for number, item in enumerate(room.layout.objects, start=1):
@@ -123,7 +123,7 @@ def test_the_shell_is_closed_and_thick(kind, seed):
 
 
 @each_room
-def test_the_floor_slab_ends_at_zero_and_the_inner_box_begins_there(kind, seed):
+def test_the_floor_slab_ends_and_the_inner_box_begins_at_zero(kind, seed):
     room = room_of(kind, seed)
     assert np.allclose(room.origin_m / room.voxel_m, np.round(room.origin_m / room.voxel_m))
     ground = round(-room.origin_m[2] / room.voxel_m)
@@ -144,7 +144,7 @@ def test_there_is_a_door_and_a_window(kind, seed):
 
 
 @each_room
-def test_ways_are_clear(kind, seed):
+def test_paths_are_clear(kind, seed):
     stands = build_navmesh(room_of(kind, seed))
     parts = np.bincount(stands.part[stands.easy])
     assert parts.max() * 0.01 > 1.0

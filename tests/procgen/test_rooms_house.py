@@ -81,7 +81,7 @@ def test_a_plan_lies_on_the_grid_of_voxels(which):
 
 
 @each_plan
-def test_every_room_has_a_door_to_the_hall_and_halls_a_front_door_or_stairs(which):
+def test_rooms_have_hall_doors_and_halls_an_entrance(which):
     plan = planned(which)
     gaps = house_gaps(plan, np.random.default_rng(0))
     assert gaps[0].kind == "door" and gaps[0].cells == (0,)
@@ -206,7 +206,7 @@ def test_openings_without_leaf_are_open_and_windows_are_glazed(which):
                 assert labels <= {0, 11}
 
 
-def test_the_same_seed_gives_the_same_bytes_and_another_gives_others():
+def test_the_bytes_of_a_house_depend_on_the_seed_alone():
     def digest(room):
         held = (room.labels, room.instance, room.colour)
         return hashlib.sha256(b"".join(array.tobytes() for array in held)).hexdigest()

@@ -95,7 +95,7 @@ def test_shades_stay_colours():
 
 @pytest.mark.parametrize("maker", MAKERS, ids=lambda maker: maker.__name__)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_a_drawn_thing_stands_on_its_floor_and_has_a_size_of_homes(maker, seed):
+def test_a_model_stands_on_its_floor_and_has_a_plausible_size(maker, seed):
     model = maker(np.random.default_rng(seed))
     boxes = np.array([part.box_m for part in model.parts])
     size = np.array(model.size_m)

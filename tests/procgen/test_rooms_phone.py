@@ -104,7 +104,7 @@ def test_a_video_has_even_sides():
     ScanSettings("photos", width=161, height=120)
 
 
-def test_phones_take_more_pictures_unless_told():
+def test_phones_take_more_pictures_by_default():
     assert [ScanSettings(s).planned for s in ("rgbd", "photo", "photos", "video")] == [
         40,
         100,

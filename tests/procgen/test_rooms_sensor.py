@@ -37,7 +37,7 @@ def test_axial_noise_has_the_stated_sigma(depth_m):
     assert seen.mean() == pytest.approx(depth_m, abs=1e-3)
 
 
-def test_depth_comes_in_steps_of_an_eighth_of_a_pixel_of_disparity():
+def test_depth_is_quantized_to_eighths_of_a_disparity_pixel():
     sensed = sense(find_sensor("rgbd"), flat(2.0))
     disparity = 525 * BASELINE_M / np.unique(sensed[sensed > 0]).astype(np.float64)
     steps = disparity * 8
@@ -91,7 +91,7 @@ def test_clean_is_exact():
     assert np.array_equal(jitter_pose(CLEAN, pose, np.random.default_rng(0)), pose)
 
 
-def test_stated_poses_are_off_by_five_millimetres_and_a_fifth_of_a_degree():
+def test_stated_poses_have_the_jitter_of_the_sensor():
     rng = np.random.default_rng(0)
     stated = np.array([jitter_pose(find_sensor("rgbd"), np.eye(4), rng) for _ in range(4000)])
     assert stated[:, :3, 3].std() == pytest.approx(0.005, rel=0.05)

@@ -181,7 +181,7 @@ def test_a_ground_has_its_corners_and_walls_along_them(ground, corners, square_m
         assert not ground.holds((x - 0.01, y - 0.01, 0.0, x + 0.01, y + 0.01, 0.1))
 
 
-def test_a_roof_holds_low_things_at_its_knee_and_tall_ones_in_the_middle():
+def test_a_roof_fits_low_things_at_its_knee_and_tall_ones_inside():
     ground = Ground((4.0, 3.0, 2.4), roofs=(Roof(0, 1.0, 1.4),))
     assert ground.holds((0.0, 0.0, 0.0, 1.0, 1.0, 0.9))
     assert not ground.holds((0.0, 0.0, 0.0, 1.0, 1.0, 1.1))

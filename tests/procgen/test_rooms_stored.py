@@ -133,7 +133,7 @@ def test_bytes_that_are_no_archive_are_refused(written, tmp_path):
         read_generated(folder)
 
 
-def test_a_picture_shows_the_floor_in_its_middle_and_nothing_at_its_corners():
+def test_a_picture_shows_the_floor_and_has_empty_corners():
     picture = room_picture(room(), 200, 150)
     assert picture.shape == (150, 200, 3) and picture.dtype == np.uint8
     assert (picture[[0, 0, -1, -1], [0, -1, 0, -1]] == picture[0, 0]).all()

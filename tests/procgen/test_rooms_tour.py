@@ -86,7 +86,7 @@ def inside_of(room, points_m):
     return owner
 
 
-def test_a_place_to_stand_is_solid_below_and_free_around_the_body():
+def test_standing_places_are_solid_below_and_free_around_a_body():
     room = living()
     stands = build_navmesh(room)
     solid = room.labels != 0
@@ -162,7 +162,7 @@ def test_the_eye_is_in_free_space_at_a_person_s_height(make):
         assert not room.labels[i - 4 : i + 5, j - 4 : j + 5, k - 4 : k + 5].any()
 
 
-def test_a_person_holds_the_camera_level_or_down_and_looks_all_around():
+def test_the_camera_is_held_level_or_down_and_looks_all_around():
     assert np.allclose(tour()[:, 2, 0], 0, atol=1e-9)  # No roll.
     pitch = np.degrees(np.arcsin(tour()[:, 2, 2]))
     assert -30 < pitch.mean() < -3
@@ -233,7 +233,7 @@ def test_a_door_is_where_the_walk_begins():
     assert np.linalg.norm(walk.feet_m[0, :2] - [0.2, 2.8]) < 0.8
 
 
-def test_a_room_without_a_place_to_stand_is_scanned_from_its_middle():
+def test_a_room_without_standing_room_is_scanned_from_its_middle():
     shell = Shell((2.4, 2.4, 1.6)).room(0.2, 0.2, 2.2, 2.2, height=1.2)
     walk = plan_walk(shell.made(), 5, np.random.default_rng(0))
     assert np.allclose(walk.feet_m, [1.2, 1.2, 0.2])
@@ -252,7 +252,7 @@ def test_points_are_inside_an_l_where_they_are():
 
 
 @pytest.mark.parametrize("voxel_m", [0.02, 0.1, 0.5])
-def test_a_room_from_a_stranger_s_file_is_scanned_without_a_crash(voxel_m):
+def test_a_room_from_a_foreign_file_is_scanned_without_a_crash(voxel_m):
     polygons = ([[0, 0], [9e3, 0], [9e3, 9e3], [0, 9e3]], [[-5, -5], [9e3, -5], [-4, -4]])
     layouts = tuple(
         Layout(np.array(one, float), 2.4, floor_z_m=n) for n, one in enumerate(polygons)

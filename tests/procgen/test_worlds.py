@@ -95,7 +95,7 @@ def test_a_room_whose_door_is_walled_up_is_not_reached(tall):
     assert counts[0][0] > 0.9 * before[0][0]
 
 
-def test_one_who_walks_up_the_stairs_never_bumps_into_the_floor_over_them(tall):
+def test_stairs_have_headroom_under_the_upper_floor(tall):
     house, graph = tall.house, walk_graph(tall.volume)
     flight = house.flight
     assert flight is not None
@@ -209,6 +209,6 @@ def test_written_worlds_are_read_back(tmp_path):
         ({"style": "modrn"}, UnknownNameError, "did you mean 'modern'?"),
     ],
 )
-def test_wrong_numbers_are_told(given, error, text):
+def test_wrong_numbers_are_refused(given, error, text):
     with pytest.raises(error, match=text.replace("?", r"\?")):
         generate_world(**{"seed": 1, **given})

@@ -66,7 +66,7 @@ def test_gaps_lie_in_walls_between_their_rooms(seed, rooms, storeys):
             assert beside.any(axis=across).all()
 
 
-def test_ways_refuse_what_shuts_a_door():
+def test_clear_paths_refuse_what_blocks_a_door():
     house = plan_block_house((1,), 5, 1, 4.0)
     ways, room = ClearPaths(house), house.rooms[1]
     x, y = ways.ends[1][0]
@@ -86,7 +86,7 @@ def test_ways_refuse_what_shuts_a_door():
     assert ways.stay(room, np.array(corner[:1]))
 
 
-def test_ways_refuse_what_parts_a_room():
+def test_clear_paths_refuse_what_divides_a_room():
     house = plan_block_house((1,), 5, 1, 4.0)
     ways, room = ClearPaths(house), house.rooms[0]  # The hall, with doors on all of its length.
     middle = (room.low[0] + room.high[0]) // 2
@@ -98,7 +98,7 @@ def test_ways_refuse_what_parts_a_room():
 
 
 @pytest.mark.parametrize("scale", [2.0, 2.5, 3.0, 4.0, 25 / 6, 4.5, 5.0, 5.9])
-def test_a_person_covers_as_many_blocks_as_the_walkable_graph_asks_for(scale):
+def test_a_person_is_as_wide_as_the_walk_graph_requires(scale):
     wide, high = person_size_blocks(scale)
     free = []
     for width in range(1, wide + 2):  # A passage between walls, as high as a person.

@@ -1,4 +1,4 @@
-"""What colour a block is, seen from afar, and which block comes nearest to a colour.
+"""Average colours of blocks, and the blocks nearest to a colour.
 
 The table ``data/block_colours.json`` holds our own estimates of the mean sRGB colour of the
 blocks of 1.20.1 and of newer games. Slabs, stairs, fences and the like take the colour of what they

@@ -1,4 +1,4 @@
-"""What blocks and entities hold as each game keeps it: texts of signs, things in chests, frames.
+"""Convert data of blocks and entities between games: texts of signs, items in chests and frames.
 
 Until 1.20.4 a stack of things was ``{id, Count, tag}``, since 1.20.5 it is ``{id, count,
 components}``; a game that meets the other form takes the stack for nothing, or for one plain thing.

@@ -1,4 +1,4 @@
-"""What versions of the game call blocks. Volumes use the names of 1.20.1, the table's version.
+"""Names of blocks in versions of the game. Volumes use those of 1.20.1, the table's version.
 
 A file names its blocks as the game that wrote it: readers bring the names to those of 1.20.1 and
 writers to those of the game that is written for, so that a volume means the same whatever it came

@@ -1,4 +1,4 @@
-"""The files by which players share builds, as formats: Litematica, structures, old schematics."""
+"""Formats in which players share builds: Litematica, structures, old schematics."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Turning and mirroring block states and volumes.
+"""Turn and mirror block states and volumes.
 
 A quarter turn is counter-clockwise seen from above: east goes to north, north to west, west to
 south. Block axes are x east, y up, z south. The rules speak of properties and not of blocks, so

@@ -1,4 +1,4 @@
-"""Volumes as files of players give them: blocks, no labels, no scale.
+"""Volumes from files of players: blocks without labels and scale.
 
 Readers know their blocks as a list of state texts, of which the volume's palette is made: air
 first, the others sorted, each once.

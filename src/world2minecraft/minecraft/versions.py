@@ -1,4 +1,4 @@
-"""The versions of the game that the program writes for, from one data file."""
+"""Versions of the game that the program writes for, from one data file."""
 
 import json
 from dataclasses import dataclass

@@ -75,7 +75,7 @@ def test_mirroring_a_shape_mirrors_its_mask(axis):
 
 
 @pytest.mark.parametrize("state", SAMPLES)
-def test_samples_state_every_property_of_states_that_the_game_knows(state):
+def test_samples_state_every_property_that_the_game_knows(state):
     parsed = check_state(parse_state(state))
     assert complete(parsed) == parsed
 

@@ -32,7 +32,7 @@ def told(draft):
     return [(one.kind, one.why, one.object_id) for one in find_diagnostics(draft)]
 
 
-def test_a_scene_without_faults_leaves_no_doubt():
+def test_a_scene_without_faults_has_no_diagnostics():
     assert told(table()) == []
 
 
@@ -64,11 +64,11 @@ def test_a_scene_without_faults_leaves_no_doubt():
     ],
     ids=lambda one: one[0] if isinstance(one, tuple) else "",
 )  # fmt: skip
-def test_a_doubtful_object_is_told_in_a_sentence(draft, expected):
+def test_an_uncertain_object_is_reported_in_a_sentence(draft, expected):
     assert told(draft) == [expected]
 
 
-def test_the_worst_reason_of_an_object_is_told_alone():
+def test_only_the_worst_reason_of_an_object_is_reported():
     draft = table(0.4, at=4)
     assert [one.kind for one in find_diagnostics(draft)] == ["unsupported"]
 
@@ -82,7 +82,7 @@ def test_what_was_not_seen_below_may_carry():
     assert told(SceneDraft(replace(grid, confidence=sure), draft.objects.values())) == []
 
 
-def test_doubtful_cells_are_told_and_mended_ones_are_not():
+def test_uncertain_cells_are_reported_and_repaired_ones_are_not():
     draft = table()
     labels, grid = draft.labels.copy(), draft.grid()
     labels[1, 1, 1:3] = 11  # Crumbs on the floor,
@@ -112,7 +112,7 @@ def test_doubtful_cells_are_told_and_mended_ones_are_not():
 
 
 @given(seeds)
-def test_doubts_are_ordered_and_name_objects_that_are_there_once(seed):
+def test_diagnostics_are_ordered_and_name_each_object_once(seed):
     draft = random_scene(seed)
     found = find_diagnostics(draft)
     assert [one.doubt for one in found] == sorted((one.doubt for one in found), reverse=True)

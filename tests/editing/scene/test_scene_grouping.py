@@ -72,7 +72,7 @@ def test_split_then_merged_is_the_same_object(how, by_plane):
     assert np.allclose(draft.objects[TABLE].size_m, one.size_m)
 
 
-def test_a_plane_cuts_where_it_is_said_and_the_larger_part_keeps_the_id():
+def test_a_plane_cuts_at_its_place_and_the_larger_part_keeps_id():
     draft = furnished_room()
     done(draft, op="split_object", id=TABLE, plane={"axis": "x", "at_m": 1.4})
     assert draft.cells_of(TABLE)[:, 0].min() == 14 and len(draft.cells_of(TABLE)) == 64
@@ -80,7 +80,7 @@ def test_a_plane_cuts_where_it_is_said_and_the_larger_part_keeps_the_id():
     assert draft.objects[new].class_id == 8 and len(draft.cells_of(new)) == 32
 
 
-def test_two_things_that_were_taken_for_one_are_parted_by_where_they_are():
+def test_split_separates_two_things_by_position():
     draft = furnished_room()
     put(draft.labels, draft.instance, (5, 14, 1), (3, 3, 5), 5, CHAIR)
     done(draft, op="split_object", id=CHAIR, parts=2)
@@ -96,7 +96,7 @@ def test_merged_objects_take_the_class_of_the_first():
     assert (draft.labels[draft.instance == TABLE] == 8).all()
 
 
-def test_what_is_relabelled_keeps_its_cells_and_box_and_gets_other_furniture():
+def test_relabelling_keeps_cells_and_box_and_changes_furniture():
     draft = furnished_room()
     before = draft.objects[CHAIR]
     operation = done(draft, op="relabel_objects", ids=[CHAIR, TABLE], class_id=8)
@@ -107,7 +107,7 @@ def test_what_is_relabelled_keeps_its_cells_and_box_and_gets_other_furniture():
     assert one.placements[0].template == "cells"
 
 
-def test_found_anew_objects_keep_the_ids_of_those_they_share_cells_with():
+def test_recluster_keeps_ids_of_objects_with_shared_cells():
     draft = furnished_room()
     parted = {"chair": (5, 5, 7), "rest": (7, 5, 9)}
 
@@ -131,7 +131,7 @@ def test_found_anew_objects_keep_the_ids_of_those_they_share_cells_with():
     assert len(draft.cells_of(TABLE)) == 96
 
 
-def test_an_object_snaps_onto_what_is_under_it_and_to_the_nearest_wall():
+def test_snap_moves_an_object_to_its_support_or_nearest_wall():
     draft = lifted_room()
     done(draft, op="snap_object", id=LAMP, to="floor")
     assert draft.objects[LAMP].center_m[2] == pytest.approx(0.5)
@@ -145,7 +145,7 @@ def test_an_object_snaps_onto_what_is_under_it_and_to_the_nearest_wall():
 
 
 @given(st.integers(2, 8), st.integers(2, 40), st.randoms(use_true_random=False))
-def test_clusters_are_the_same_each_time_and_part_what_is_far_apart(count, size, chance):
+def test_clusters_are_repeatable_and_separate_distant_cells(count, size, chance):
     cells = np.array([[chance.randrange(9) for _ in range(3)] for _ in range(size)])
     cells = np.unique(cells, axis=0)
     once = cluster_cells(cells, count)

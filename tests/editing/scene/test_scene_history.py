@@ -23,7 +23,7 @@ def done(count, seed=0):
 
 
 @given(SEEDS)
-def test_undo_of_everything_gives_the_first_scene_and_redo_the_last(seed):
+def test_undo_all_gives_the_first_scene_and_redo_all_the_last(seed):
     history, states, _ = done(5, seed)
     for wanted in reversed(states[:-1]):
         history.undo()
@@ -90,7 +90,7 @@ def test_a_log_that_cannot_be_written_leaves_the_scene_as_it_is():
     assert before == states[1]
 
 
-def test_an_operation_of_another_scene_is_refused_before_it_is_kept():
+def test_an_operation_of_another_scene_is_refused_unlogged():
     history, _, rng = done(1)
     foreign = random_operation(small_draft(99), rng)
     with pytest.raises(ConflictError, match=r"^operation paint: .* changed since$"):

@@ -132,7 +132,7 @@ def test_pinholes_lie_between_cells_along_two_axes(seed):
 
 
 @given(seeds)
-def test_done_and_undone_a_mend_is_nothing(seed):
+def test_a_repair_done_and_undone_changes_nothing(seed):
     draft = random_scene(seed)
     before = held(draft)
     number = min(draft.objects, default=1)
@@ -234,7 +234,7 @@ def test_a_named_gap_is_filled_alone_even_a_door():
     assert (draft.labels[DOOR] == 3).all() and draft.labels[5, 0, 5] == 0
 
 
-def test_rooms_that_share_a_wall_have_planes_of_their_own_and_keep_their_doors():
+def test_rooms_that_share_a_wall_have_own_planes_and_doors():
     labels = np.concatenate([box_room(), box_room()[1:]], axis=0)
     labels[:, 44] = np.where(labels[:, 44] == 0, 3, labels[:, 44])
     labels[49, 10:20, 1:27] = 0  # A door between them,
@@ -303,7 +303,7 @@ def floating_cells(labels, rng):
 
 
 @pytest.mark.parametrize(("seed", "shape"), [(500, None), (505, None), (513, None), (524, "box")])
-def test_a_generated_room_is_mended_to_what_it_was(seed, shape):
+def test_a_damaged_generated_room_is_repaired(seed, shape):
     """Holes and floaters are made on purpose; windows, doors and furniture are there."""
     truth = generated_labels(seed, shape)
     rng = np.random.default_rng(seed)
@@ -374,7 +374,7 @@ def test_floaters_that_are_kept_stay():
         ({"op": "smooth"}, "no cell changes: the furniture here is smooth already, or locked"),
     ],
 )
-def test_what_cannot_be_mended_is_said(fields, text):
+def test_impossible_repairs_are_refused_with_a_reason(fields, text):
     with pytest.raises((UsageError, UnknownNameError)) as refusal:
         parse_command(fields).plan(box_draft(box_room()), TOOLS)
     assert str(refusal.value) == text

@@ -54,7 +54,7 @@ def test_a_command_changes_the_scene_and_its_inverse_restores_it(fields):
     assert state(draft) == before
 
 
-def test_what_is_deleted_leaves_seen_and_empty_cells_and_the_floor():
+def test_deletion_leaves_observed_empty_cells_and_the_floor():
     draft = furnished_room()
     cells = draft.cells_of(CHAIR)
     structure = (draft.labels > 0) & (draft.labels < 5)
@@ -118,7 +118,7 @@ def test_quarter_turns_that_make_whole_ones_are_the_identity(turns, number):
     assert state(draft)[6:] == objects
 
 
-def test_a_template_turns_and_its_seen_cells_stay_while_own_cells_turn():
+def test_turning_moves_own_cells_but_not_those_of_a_template():
     draft = furnished_room()
     chair, table = draft.cells_of(CHAIR), draft.cells_of(TABLE)
     operation = done(draft, op="turn_objects", ids=[CHAIR, TABLE], quarter_turns=1)
@@ -140,7 +140,7 @@ def test_a_runs_placements_turn_about_the_middle_of_their_object():
     assert draft.objects[CHAIR].placements[1].center_m.tolist() == [0.7, 1.0, 0.25]
 
 
-def test_a_duplicate_stands_beside_and_deleting_it_restores_the_cells():
+def test_deleting_a_duplicate_restores_the_cells():
     draft = furnished_room()
     labels, instance = draft.labels.copy(), draft.instance.copy()
     operation = done(draft, op="duplicate_object", id=TABLE)
@@ -152,7 +152,7 @@ def test_a_duplicate_stands_beside_and_deleting_it_restores_the_cells():
     assert np.array_equal(draft.labels, labels) and np.array_equal(draft.instance, instance)
 
 
-def test_an_added_chair_stands_on_the_floor_and_one_on_a_table_on_it():
+def test_an_added_chair_stands_on_the_floor_or_on_a_table():
     draft = furnished_room()
     done(draft, op="add_object", class_id=5, at_m=[2.0, 1.5, 1.2], quarter_turns=3)
     (new,) = set(draft.objects) - {CHAIR, TABLE, LAMP}
@@ -165,13 +165,13 @@ def test_an_added_chair_stands_on_the_floor_and_one_on_a_table_on_it():
     assert draft.cells_of(max(draft.objects))[:, 2].min() == 5
 
 
-def test_what_is_added_looks_away_from_the_wall_unless_told():
+def test_an_added_piece_faces_away_from_the_wall_by_default():
     draft = furnished_room()
     done(draft, op="add_object", class_id=7, at_m=[0.55, 1.3, 0.0], template="sofa")
     assert draft.objects[max(draft.objects)].yaw_deg == 0
 
 
-def test_a_chosen_template_gives_the_object_its_box_and_counts_as_a_turn_where_it_only_turns():
+def test_set_template_sets_the_box_and_counts_a_pure_turn():
     draft = furnished_room()
     first = done(draft, op="set_template", id=CHAIR, template="armchair", quarter_turns=-1)
     assert first.counts_as == "other" and len(first.cells) == 0

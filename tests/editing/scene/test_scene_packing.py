@@ -104,7 +104,7 @@ def changed(**fields):
         ({"objects_after": "none"}, "string indices"),
     ],
 )
-def test_what_is_no_operation_is_told(fields, reason):
+def test_bytes_that_are_no_operation_are_refused(fields, reason):
     with pytest.raises(DamagedFileError, match="^j: holds no operation on a scene") as refused:
         unpack_operation(changed(**fields), SHAPE, "j")
     assert reason in str(refused.value)

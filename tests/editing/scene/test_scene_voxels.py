@@ -58,7 +58,7 @@ def random_command(draft, seed):
 
 
 @given(seeds)
-def test_done_and_undone_a_command_is_nothing(seed):
+def test_a_command_done_and_undone_changes_nothing(seed):
     draft = random_scene(seed)
     before = held(draft)
     command = random_command(draft, seed)
@@ -111,7 +111,7 @@ def painted(draft, cells, class_id, **fields):
     return done(draft, parse_command(command))
 
 
-def test_a_painted_cell_joins_the_object_of_its_class_that_it_touches():
+def test_a_painted_cell_joins_the_touching_object_of_its_class():
     draft = two_chairs()
     assert painted(draft, [(1, 0, 0)], 5).counts_as == "add"
     assert draft.instance[1, 0, 0] == 1
@@ -120,7 +120,7 @@ def test_a_painted_cell_joins_the_object_of_its_class_that_it_touches():
 
 
 @given(seeds)
-def test_a_new_cell_has_a_colour_of_the_nearest_cells_of_its_class(seed):
+def test_a_new_cell_takes_the_nearest_colour_of_its_class(seed):
     draft = random_scene(seed)
     rng = np.random.default_rng(seed)
     cells = rng.permutation(np.argwhere(draft.labels % 255 == 0))[:5]
@@ -144,7 +144,7 @@ def test_many_objects_lose_their_last_cells_at_once():
     assert sorted(draft.objects) == list(range(31, 41))
 
 
-def test_a_bridge_goes_as_a_whole_to_the_one_with_most_faces_and_the_lowest_id():
+def test_a_bridge_joins_the_object_with_most_shared_faces():
     draft = two_chairs()
     painted(draft, [(x, 0, 0) for x in (1, 2, 3)], 5)
     assert draft.instance[1:4, 0, 0].tolist() == [1, 1, 1]
@@ -160,7 +160,7 @@ def test_what_touches_none_of_its_class_belongs_to_none():
     assert not draft.colour[2, 0, 0].any(), "no cell of the class gives it a colour"
 
 
-def test_an_object_without_cells_goes_and_one_that_lost_some_stays_as_it_is():
+def test_an_object_is_removed_only_with_its_last_cell():
     draft = two_chairs()
     before = draft.objects[2]
     operation = painted(draft, [(4, 0, 0)], 0)
@@ -263,7 +263,7 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
     ],
 )
-def test_what_cannot_be_done_is_said(fields, text):
+def test_impossible_edits_are_refused_with_a_reason(fields, text):
     draft = two_chairs()
     with pytest.raises(UsageError) as refusal:
         parse_command(fields).plan(draft, TOOLS)

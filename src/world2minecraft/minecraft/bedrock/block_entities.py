@@ -1,4 +1,4 @@
-"""What Bedrock keeps in block entities and Java in names or in data of another form.
+"""Block data that Bedrock keeps in block entities and Java in names or in another form.
 
 Colours of beds and banners, plants in pots, kinds of heads: a name in Java. Text of signs: JSON
 lines in Java, one text in Bedrock.

@@ -1,4 +1,4 @@
-"""Bedrock's structure file, ``.mcstructure``: written by a mapping of states, and read back.
+"""Write and read Bedrock's structure file, ``.mcstructure``, by a mapping of states.
 
 Uncompressed little-endian NBT: ``size``, two layers of palette numbers in the order x, y, z with z
 running fastest (-1 leaves what is there), a palette of names and states, and block entities by

@@ -1,4 +1,4 @@
-"""NBT as Bedrock keeps it: little-endian, plain UTF-8, read strictly and within bounds.
+"""NBT in Bedrock's dialect: little-endian, plain UTF-8, read strictly and within bounds.
 
 Values are those of ``minecraft.nbt``, with one difference: an int32 array stands for a List of Int,
 which is how Bedrock keeps its block numbers, and such a list comes back as an array, taken from the

@@ -1,4 +1,4 @@
-"""Java block states as Bedrock's, and back, by one table of all blocks of Java 1.20.1.
+"""Convert Java block states to Bedrock's and back, by one table of all blocks of Java 1.20.1.
 
 The table is made by ``tools/make_bedrock_table.py`` from the public package ``minecraft-data``; see
 its notice beside it. States are written as Bedrock 1.20.0 has them, which every later game

@@ -1,1 +1,1 @@
-"""Commands: what data packs, command lists and RCON say, written and read."""
+"""Write and read commands of data packs, command lists and RCON."""

@@ -1,4 +1,4 @@
-"""A data pack that builds a volume in any world by commands, takes it away, and sizes the player.
+"""Write a data pack that builds a volume by commands, removes it, and sizes the player.
 
 ``/function NAME:build`` loads the chunks, waits for them, then runs its parts one a tick, each
 short enough for the game's command limit; ``/function NAME:clear`` empties the same box.

@@ -1,4 +1,4 @@
-"""Covering blocks with few boxes, each of one state, for ``fill`` commands."""
+"""Cover blocks with few boxes, each of one state, for ``fill`` commands."""
 
 import numpy as np
 

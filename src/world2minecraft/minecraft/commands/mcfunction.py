@@ -1,4 +1,4 @@
-"""A plain list of commands, ``.mcfunction``, for any tool that runs commands."""
+"""Write a plain list of commands, ``.mcfunction``, for any tool that runs commands."""
 
 from pathlib import Path
 

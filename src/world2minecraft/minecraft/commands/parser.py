@@ -1,4 +1,4 @@
-"""Commands read as the blocks that they set: plain lists, and the data packs of this program.
+"""Parse commands into the blocks that they set: plain lists, and data packs of this program.
 
 What is read are ``setblock``, ``fill``, ``data merge block`` and ``summon`` with numbers for
 coordinates, or such after ``~``, which count from the corner of the world. Other commands are

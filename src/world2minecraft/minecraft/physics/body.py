@@ -1,4 +1,4 @@
-"""Who walks, and what the game says of them.
+"""The player's body and the constants of the game's physics.
 
 Coordinates are those of blocks: x east, y up, z south. Lengths are in blocks for a player of the
 game's size; ``scale`` makes the player and all speeds as many times larger, so that at 4 blocks a

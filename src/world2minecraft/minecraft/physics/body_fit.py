@@ -1,4 +1,4 @@
-"""Whether bodies fit at places that need not be those of a graph."""
+"""Check whether bodies fit at places that need not be those of a graph."""
 
 import numpy as np
 

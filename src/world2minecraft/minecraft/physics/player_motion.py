@@ -1,4 +1,4 @@
-"""One tick, a twentieth of a second, of a player on foot."""
+"""Move a player on foot by one tick, a twentieth of a second."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Ways in a walkable graph: shortest paths, distances from or to a place, what can be reached."""
+"""Shortest paths, distances and reachability in a walkable graph."""
 
 from typing import NamedTuple
 

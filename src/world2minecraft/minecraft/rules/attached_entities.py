@@ -1,4 +1,4 @@
-"""Entities that hang on a block: frames, paintings and leash knots say which by its position.
+"""Entities attached to a block: frames, paintings and leash knots state which by its position.
 
 They say it in world coordinates, as ``TileX``, ``TileY``, ``TileZ``, or from 1.21.5 on as
 ``block_pos``. Where a file was moved after it was written, the block is no longer there, and the

@@ -1,4 +1,4 @@
-"""Which faces of a block hold something: as the game asks before a torch or a fence is set.
+"""Support shapes: which faces of a block support something, as the game decides for a torch.
 
 A face is what the block's support shape shows at that side of its cube. It is *full* where it
 covers the whole square, *rigid* where it covers the outer two sixteenths all around, and has a

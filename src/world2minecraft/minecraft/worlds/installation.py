@@ -1,4 +1,4 @@
-"""A world copied into a game's saves folder, under a free name."""
+"""Copy a world into a game's saves folder under a free name."""
 
 import os
 import re

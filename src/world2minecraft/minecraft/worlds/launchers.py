@@ -1,4 +1,4 @@
-"""Where the games of this machine keep their worlds: the launchers and their saves folders.
+"""Find the saves folders of the launchers on this machine.
 
 ======================  ========================================================================
 Minecraft launcher      ``.minecraft``, and the game directories of its installations

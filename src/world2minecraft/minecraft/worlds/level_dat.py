@@ -1,4 +1,4 @@
-"""``level.dat``: creative, a void, always one hour, nothing that moves, the player in the room."""
+"""Make ``level.dat``: creative, a void, always one hour, nothing moves, the player in the room."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""``session.lock``: how the game says that it has a world open, and how it is told the same.
+"""``session.lock``: how the game marks a world as open, and how others lock it.
 
 The game keeps the first byte of the file locked as long as it has the world open. Where the lock
 can be taken, nobody has it; while it is held here, the game refuses to open the world.
