@@ -1,6 +1,6 @@
 """Depth of photos by OpenCV's StereoSGBM: pairs are rectified, matched, and carried back.
 
-It takes the place of ``world2minecraft.capture.stereo.depth_maps``, with the same neighbours and the same
+It takes the place of ``capture.stereo.compute_depth_maps``, with the same neighbours and the same
 filter behind it, so that the two differ only in how depth is estimated.
 ``python -m benchmarks.rival_sgbm ARGUMENTS`` runs ``w2m ARGUMENTS`` with it; ``check_photos``
 compares the two.
@@ -171,7 +171,7 @@ def carried_back(pair: Pair, found: np.ndarray, camera: Camera) -> np.ndarray:
 
 def main(words: list[str]) -> int:
     """Run ``w2m`` with this stereo and return its exit code."""
-    preparing.depth_maps = depth_maps
+    preparing.compute_depth_maps = depth_maps
     return run(words)
 
 

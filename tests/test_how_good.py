@@ -29,7 +29,7 @@ from world2minecraft.cli.verbs import VERBS
 ROOT = Path(__file__).resolve().parents[1]
 AREAS = read_areas()
 STEPS = sorted({step for run in every_run(AREAS).values() for step in run.steps})
-CLI = "".join(path.read_text("utf-8") for path in (ROOT / "src/world2minecraft/cli").glob("*.py"))
+CLI = "".join(path.read_text("utf-8") for path in (ROOT / "src/world2minecraft/cli").rglob("*.py"))
 
 
 def options_of(words):

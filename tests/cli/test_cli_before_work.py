@@ -31,7 +31,9 @@ WORDS = [
 
 
 @pytest.mark.parametrize(("words", "code", "line"), WORDS)
-def test_wrong_options_are_refused_before_any_work(words, code, line, tmp_path, monkeypatch, capsys):
+def test_wrong_options_are_refused_before_any_work(
+    words, code, line, tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     assert cli.run(words.split()) == code
     out, err = capsys.readouterr()

@@ -79,11 +79,13 @@ def test_every_material_is_a_block_of_the_game_in_every_shape():
 
 def test_a_shape_is_of_its_own_wood_or_missing():
     slab = Shape("slab", (("type", "top"),))
-    assert MATERIALS.dressed(slab, "minecraft:birch_planks") == (
+    assert MATERIALS.shaped_state(slab, "minecraft:birch_planks") == (
         "minecraft:birch_slab[type=top,waterlogged=false]"
     )
-    assert MATERIALS.dressed(slab, "minecraft:red_concrete") is None
-    assert MATERIALS.dressed(Shape("full"), "minecraft:red_concrete") == "minecraft:red_concrete"
+    assert MATERIALS.shaped_state(slab, "minecraft:red_concrete") is None
+    assert (
+        MATERIALS.shaped_state(Shape("full"), "minecraft:red_concrete") == "minecraft:red_concrete"
+    )
 
 
 def test_a_red_object_is_of_full_blocks():

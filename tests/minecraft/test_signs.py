@@ -9,13 +9,16 @@ from block_volumes import volume_of
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.block_entities import convert_volume
+from world2minecraft.minecraft.commands import parser
 from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
+from world2minecraft.minecraft.schematics import litematic, sponge, structure
 from world2minecraft.minecraft.server.building import plan_build
 from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, upgrade_signs, wrap_sign_text
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
+from world2minecraft.minecraft.worlds import world_reader
 
 STATE = "minecraft:oak_wall_sign[facing=north,waterlogged=false]"
 ENTITY = sign_entity((1, 2, 3), ["Küche", 'the "red" one'], "/function w2m:human_size")
@@ -69,11 +72,9 @@ def test_every_format_keeps_a_sign_as_its_game_has_it(tmp_path, name, version, m
     lines = [json.loads(line) for line in back.nbt["front_text"]["messages"]]
     assert lines == [json.loads(line) for line in ENTITY.nbt["front_text"]["messages"]]
     # Without the readers' part the lines are what lies in the file.
-    for module in ("worlds.reading", "schematics.schem", "schematics.structure",
-                   "schematics.litematic"):  # fmt: skip
-        place = f"world2minecraft.minecraft.{module}.signs_of_today"
-        monkeypatch.setattr(place, lambda held, _: tuple(held))
-    monkeypatch.setattr("world2minecraft.minecraft.commands.parser.signs_of_commands", tuple)
+    for reader in (world_reader, sponge, structure, litematic):
+        monkeypatch.setattr(reader, "upgrade_signs", lambda held, _: tuple(held))
+    monkeypatch.setattr(parser, "upgrade_command_signs", tuple)
     (raw,) = read_blocks(tmp_path / name).block_entities
     kind = str if version == "1.20.1" else dict
     assert {type(line) for line in raw.nbt["front_text"]["messages"]} == {kind}

@@ -66,7 +66,7 @@ def test_a_generated_world_brings_its_truth_scale_and_designs(house):
     assert (volume.semantic[volume.states > 0] > 0).all()
 
 
-def test_what_a_player_adds_is_told_by_the_map(house):
+def test_blocks_that_a_player_adds_are_classified_by_the_map(house):
     volume = open_scene_source(house).volume()
     with_bed = cottage()
     with_bed.put((5, 2, 6), "minecraft:white_bed[facing=east,occupied=false,part=foot]")
@@ -110,7 +110,7 @@ def test_a_run_knows_designs_by_its_placements(house, tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".schem", ".litematic", ".nbt"])
-def test_schematics_are_told_by_the_map(tmp_path, suffix):
+def test_schematics_are_classified_by_the_map(tmp_path, suffix):
     path = tmp_path / f"a house{suffix}"
     write_blocks(cottage().volume(), path)
     source = open_scene_source(path, blocks_per_metre=1)

@@ -64,7 +64,7 @@ def test_a_sidecar_tells_poses(tmp_path, suffix):
     views = read_screenshots(tmp_path, at="feet")
     assert [view.image.name for view in views] == ["b.png", "a.png"]
     assert [view.pose.x for view in views] == [0, 1] and [view.frame for view in views] == [0, 1]
-    assert {view.told_by for view in views} == {f"poses.{suffix}"}
+    assert {view.pose_source for view in views} == {f"poses.{suffix}"}
     assert (views[1].camera.width_px, views[1].camera.height_px) == (64, 36)
     assert views[1].camera.fy_px == pytest.approx(18 / np.tan(np.radians(35)))
     named = read_screenshots(tmp_path, at="feet", poses=tmp_path / f"poses.{suffix}")
@@ -107,7 +107,7 @@ def test_a_name_tells_a_pose(tmp_path, name, pattern):
     picture(tmp_path / f"{name}.png")
     (view,) = read_screenshots(tmp_path, at="eye", pattern=pattern)
     assert view.pose == GamePose(*POSE.values(), at="eye")
-    assert view.told_by.startswith("its name by ")
+    assert view.pose_source.startswith("its name by ")
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_a_name_tells_a_pose(tmp_path, name, pattern):
 def test_a_pngs_texts_tell_a_pose(tmp_path, texts):
     picture(tmp_path / "a.png", texts=texts)
     (view,) = read_screenshots(tmp_path, at="feet")
-    assert view.pose == GamePose(*POSE.values(), at="feet") and view.told_by == "its PNG text"
+    assert view.pose == GamePose(*POSE.values(), at="feet") and view.pose_source == "its PNG text"
 
 
 def test_pictures_come_in_the_order_of_their_names(tmp_path):

@@ -63,7 +63,7 @@ def find_price(model: str, prices: Mapping[str, Price]) -> Price | None:
 
     Example:
         >>> table = {"gpt-4o": Price(2.5, 10), "gpt-4o-mini": Price(0.15, 0.6)}
-        >>> price_of("gpt-4o-mini-2024-07-18", table).prompt_usd, find_price("gpt-5", table)
+        >>> find_price("gpt-4o-mini-2024-07-18", table).prompt_usd, find_price("gpt-5", table)
         (0.15, None)
     """
     fitting = [name for name in prices if model == name or model.startswith(f"{name}-")]

@@ -100,8 +100,9 @@ def resolve_endpoint(text: str, *, model: str = "", key_name: str | None = None)
         UnknownNameError: no such name. UsageError: the address is none.
 
     Example:
-        >>> endpoint_of("qwen:qwen-vl-max").model, resolve_endpoint("http://localhost:8000/v1").key_name
-        ('qwen-vl-max', '')
+        >>> names = ("qwen:qwen-vl-max", "http://localhost:8000/v1")
+        >>> [resolve_endpoint(name).model for name in names]
+        ['qwen-vl-max', '']
     """
     if "://" in text:
         found = Endpoint(_check_address(text))

@@ -173,8 +173,9 @@ def extract_json_object(text: str) -> dict[str, Any] | None:
     """Return the one JSON object of a text, bare or between other words, else None.
 
     Example:
-        >>> json_of('Sure! ```json {"a": 1} ```'), extract_json_object('{"a": 1} {"b": 2}')
-        ({'a': 1}, None)
+        >>> texts = ('Sure! ```json {"a": 1} ```', '{"a": 1} {"b": 2}')
+        >>> [extract_json_object(text) for text in texts]
+        [{'a': 1}, None]
     """
     start, end = text.find("{"), text.rfind("}")
     if start < 0 or end < start:

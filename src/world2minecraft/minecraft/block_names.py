@@ -69,7 +69,7 @@ def write_state(text: str, data_version: int) -> str:
     """Return a state of 1.20.1 as another version of the game calls it.
 
     Example:
-        >>> written_state("minecraft:grass", 3700), write_state("minecraft:oak_sign", 1519)
+        >>> write_state("minecraft:grass", 3700), write_state("minecraft:oak_sign", 1519)
         ('minecraft:short_grass', 'minecraft:sign')
     """
     name, bracket, rest = text.partition("[")

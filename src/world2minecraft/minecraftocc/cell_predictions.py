@@ -25,7 +25,7 @@ OBSERVED = 1  # Of ``OccupancyGrid.source``.
 class PredictedCells:
     """Labels of a grid along its world's axes x, y, z up."""
 
-    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11, or 255 where nobody looked
+    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11, or 255 where nothing was observed
     confidence: np.ndarray  # float [X, Y, Z], 0 to 1
     observed: np.ndarray  # bool [X, Y, Z]; the rest is completed, or unknown
     voxel_m: float
@@ -37,7 +37,7 @@ def write_cells(out: Path, cells: PredictedCells, axes: str, **more: np.ndarray)
 
     Args:
         out: the file.
-        cells: what is said.
+        cells: the predictions.
         axes: xyz or xzy, the order in which the three arrays are written.
         more: further arrays, such as ``scan_to_room``.
 
@@ -60,7 +60,7 @@ def write_cells(out: Path, cells: PredictedCells, axes: str, **more: np.ndarray)
 
 
 def cells_of_room(grid: OccupancyGrid) -> PredictedCells:
-    """Return what a room's grid says; unseen cells are 255."""
+    """Return the predictions of a room's grid; unseen cells are 255."""
     return PredictedCells(
         grid.labels, grid.confidence, grid.source == OBSERVED, grid.voxel_m, grid.origin_m
     )
@@ -69,7 +69,7 @@ def cells_of_room(grid: OccupancyGrid) -> PredictedCells:
 def resample_to_grid(
     room: PredictedCells, scan_to_room: np.ndarray, place: GridPlace
 ) -> PredictedCells:
-    """Return what a room's cells say of a grid file's cells: of each, the cell its centre is in.
+    """Resample a room's cells to a grid file's: each takes the cell that its centre lies in.
 
     Args:
         room: cells in the room's axes.
@@ -99,9 +99,9 @@ def resample_to_grid(
 def predict_cells(
     photo: np.ndarray, camera: Camera, place: GridPlace, network: OccupancyNetwork
 ) -> PredictedCells:
-    """Return what a monocular network says of a frame's grid, from one photo.
+    """Predict a frame's grid by a monocular network, from one photo.
 
-    A network of cells twice as large says of each what it says of the eight in it. Nothing of it
+    A network of cells twice as large predicts the same for the eight cells in each. Nothing of it
     counts as observed: a network guesses all of it.
 
     Args:

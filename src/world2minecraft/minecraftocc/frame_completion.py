@@ -2,7 +2,7 @@
 
 The grid is that of a file: of a ``.bin`` of SSCNet only its first 76 bytes are read, where the grid
 begins and where the camera stands; its labels never are. The picture is fused by our own fusion in
-the grid's own cells, and the completion network says what each is. Observed surface stays
+the grid's own cells, and the completion network classifies each. Observed surface stays
 occupied; everything else is what the network finds likelier.
 """
 
@@ -47,7 +47,7 @@ class GridPlace:
 
 @dataclass(frozen=True, eq=False)
 class CompletedFrame:
-    """What is said of a frame's grid, in our axes x, y, z up."""
+    """The predictions of a frame's grid, in our axes x, y, z up."""
 
     labels: np.ndarray  # uint8 [60, 60, 36], 0 to 11
     confidence: np.ndarray  # float32 [60, 60, 36], the chance of the label

@@ -134,7 +134,7 @@ def sample_keys(
         keys: in any order.
         count: how many.
         seed: which.
-        is_wanted: whether a key may be taken; any may where None. Few are asked.
+        is_wanted: whether a key may be taken; any may where None. It is called for few.
 
     Example:
         >>> sample_keys(["a", "b", "c", "d"], 2, seed=0)
@@ -273,7 +273,7 @@ def _niqe(picture: np.ndarray, models: Sequence[NiqeModel]) -> dict[str, float]:
         manners = {model.manner for model in models}
         features = {manner: patch_features(picture, manner)[0] for manner in manners}
         return {model.name: distance(features[model.manner], model) for model in models}
-    return {model.name: float("nan") for model in models}  # Too small: told below the table.
+    return {model.name: float("nan") for model in models}  # Too small: reported below the table.
 
 
 def _row(size: str, figures: Sequence[PictureQuality], variants: Sequence[str]) -> QualityRow:

@@ -16,7 +16,7 @@ from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.tours import nyu_camera
 
-TEST_SHARE = 0.2  # Of images and of scenes, where no preset says it.
+TEST_SHARE = 0.2  # Of images and of scenes, where there is no preset.
 MAX_IMAGES, MAX_SCENES = 10_000_000, 100_000
 # Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
 MAX_SCENE_NAME = 46
@@ -142,7 +142,7 @@ def plan_dataset(
 
     Args:
         scenes: with names that differ.
-        images: how many in all, where no preset says it.
+        images: how many in all, where there is no preset.
         preset: one of ``PRESETS``, or none.
         recipe: how pictures are taken; its seed splits too.
         test_share: of the images, without a preset; at least one scene is for training.

@@ -2,7 +2,7 @@
 
 Whether a pose is that of the feet, as F3 shows it, or of the eye must be stated: a slip of 1.62
 blocks spoils every label. By default a sidecar beside the pictures is looked for first, then the
-PNG's texts, then the name; each view says where its pose came from.
+PNG's texts, then the name; each view states where its pose came from.
 
 A pattern of names is a template such as ``shot_{x}_{y}_{z}_{yaw}_{pitch}``, which is safe whatever
 the names are, or a regex with the named groups x, y, z, yaw and pitch; a regex that could take very
@@ -257,8 +257,8 @@ class RecordedView:
 
     image: Path
     camera: Camera
-    pose: GamePose  # at the feet or the eye, as it was said
-    told_by: str  # "poses.csv", "its PNG text", "its name by {x}_{y}..."
+    pose: GamePose  # at the feet or the eye, as it was stated
+    pose_source: str  # "poses.csv", "its PNG text", "its name by {x}_{y}..."
     frame: int = 0
     tour_id: str = ""
     t_s: float = 0.0
@@ -292,8 +292,8 @@ def read_screenshots(
         vertical_fov_deg: the game's option; a line of a sidecar may say its own.
 
     Raises:
-        UsageError: ``at`` is not said, the pattern is none. InputError: the folder has no picture,
-            or no pose for one. DamagedFileError, LimitError: a file is not what it should be.
+        UsageError: ``at`` is not given, the pattern is invalid. InputError: the folder has no
+            picture, or no pose for one. DamagedFileError, LimitError: a file is not what it should be.
     """
     if at not in ("feet", "eye"):
         raise UsageError(

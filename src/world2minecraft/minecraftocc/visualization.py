@@ -1,7 +1,7 @@
 """Draw a sample as one figure: its image, its depth, its labels, and the region from above.
 
 The labels are cast back into the image: where the colours lie on the things, axes, camera and
-labels belong together. A figure beside says the same of the depth.
+labels belong together. A figure beside states the same of the depth.
 """
 
 import numpy as np

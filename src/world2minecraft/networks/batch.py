@@ -39,7 +39,7 @@ class OccTarget:
 
     labels: Tensor  # int64 [B, X, Y, Z], 0 to 11 or 255
     in_frustum: Tensor  # bool [B, X, Y, Z]: the cell's centre falls into the picture
-    # float32 [B, H, W], 0 where there is none: what a depth branch is to say, where that is not
+    # float32 [B, H, W], 0 where there is none: the target of a depth branch, where that is not
     # the depth that the network is given.
     depth_m: Tensor | None = None
 
@@ -50,7 +50,7 @@ class OccTarget:
 
 @dataclass(frozen=True)
 class OccOutput:
-    """What a network says: ``logits`` of the 12 classes, and what its own losses need.
+    """The output of a network: ``logits`` of the 12 classes, and what its own losses need.
 
     ``auxiliary`` holds further logits of the same shape, from earlier layers. ``relations`` are
     those of MonoScene's context prior, ``depth_logits`` those of a depth branch.

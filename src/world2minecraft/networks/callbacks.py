@@ -5,7 +5,7 @@ mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tens
 """
 
 # Not by Lightning's ModelCheckpoint and EarlyStopping: their checkpoints are pickles, which can run
-# code when they are read, and hold no sums of losses that are not noted yet, without which a run
+# code when they are read, and hold no sums of losses that are not logged yet, without which a run
 # that was killed and went on would not leave the same metrics.
 
 import math
@@ -26,7 +26,7 @@ from world2minecraft.networks.csv_logger import CsvLogger
 from world2minecraft.networks.lightning_module import OccupancyModule, learning_rate_at
 
 CHECKPOINT, WEIGHTS, LAST = "checkpoint.safetensors", "weights.safetensors", "last.safetensors"
-LOG_EVERY_STEPS = 20  # A mean of losses is noted so often.
+LOG_EVERY_STEPS = 20  # Mean losses are logged so often.
 
 
 @dataclass
@@ -40,12 +40,12 @@ class RunState:
     stopped: bool = False  # Early, because it got no better.
     seconds: float = 0.0  # Of training and validation, all tries together.
     cpu_seconds: float = 0.0  # The same of this process's processors.
-    sums: dict[str, float] = field(default_factory=dict)  # Of losses not yet noted,
+    sums: dict[str, float] = field(default_factory=dict)  # Of losses not yet logged,
     summed: int = 0  # and of how many steps.
 
 
 class TrainingCallback(lightning.Callback):
-    """Counts the steps of a run and does what is due after each."""
+    """Logs losses, validates, saves checkpoints and stops early, after each step of a run."""
 
     def __init__(
         self,
@@ -66,7 +66,7 @@ class TrainingCallback(lightning.Callback):
     def on_train_batch_end(
         self, trainer: Any, pl_module: Any, outputs: Any, batch: Any, batch_idx: int
     ) -> None:
-        """Note the losses; validate, keep and stop where it is time."""
+        """Log the losses; validate, save a checkpoint and stop where it is time."""
         module: OccupancyModule = pl_module
         state, config = self.state, self._config
         state.step += 1
@@ -126,6 +126,6 @@ class TrainingCallback(lightning.Callback):
         self._progress("train", state.step, self._config.steps, note)
 
     def finish(self, module: OccupancyModule) -> None:
-        """Write the last weights and close the journal."""
+        """Write the last weights and close the logger."""
         write_weights(self._folder / LAST, module.network, self._config)
         self._logger.finalize()

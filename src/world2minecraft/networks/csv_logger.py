@@ -21,7 +21,7 @@ HEADER = ("step", "name", "value")
 
 
 class CsvLogger:
-    """The figures of a run, from a step on."""
+    """Logs the figures of a run, from a step on."""
 
     def __init__(self, folder: Path, first_step: int = 0):
         """Go on after ``first_step``: what an earlier try wrote of later steps is dropped."""
@@ -31,7 +31,7 @@ class CsvLogger:
         self._board: Any = None
 
     def log_metrics(self, step: int, figures: Mapping[str, float]) -> None:
-        """Note figures of a step; TensorBoard has them at once, the CSV with ``save``."""
+        """Log figures of a step; TensorBoard has them at once, the CSV with ``save``."""
         if self._board is None:
             from torch.utils.tensorboard import SummaryWriter  # noqa: PLC0415
 

@@ -257,14 +257,14 @@ def occupancy_losses(
     """Return the weighted losses by name; ``sum(found.values())`` is the loss of a step.
 
     Args:
-        output: what the network said.
+        output: of the network.
         target: what is true. Cells of 255 teach nothing.
         inputs: what the network saw: its cameras cut the frusta, its depth teaches a depth branch
             where the target has none.
         weights: how much each counts.
 
-    What has nothing to judge is left out: relations and depth where the network says none of them
-    or, for depth, where none is known.
+    Losses without an input are left out: relations and depth where the network predicts none of
+    them or, for depth, where none is known.
     """
     chosen = weights or LossWeights()
     found = _class_losses(output.logits, target.labels, inputs, chosen)

@@ -124,7 +124,7 @@ def _store_int8(graph: Any, weight: Any, values: np.ndarray, axis: int) -> Any:
 
 
 class ExportReport(NamedTuple):
-    """What a written file came to, asked about one picture."""
+    """The result of an export, measured on one image."""
 
     difference: float  # the most that a logit differs from the network's, weights whole
     moved: float  # the most that storing the weights small moves a logit by
@@ -145,11 +145,11 @@ def export_network(
     """Write a network as ONNX, and return how much the file's answers differ.
 
     Args:
-        network: maps ``OccInput`` to ``OccOutput``. It is asked in evaluation, and left as it was.
+        network: maps ``OccInput`` to ``OccOutput``. It is run in evaluation mode, then reset.
         path: the file.
         facts: what the file states: its grid, its picture's size, whether it wants depth.
-        weights: float, half or int8: how they are stored (``weight_storage.KINDS``).
-        seed: of the picture that both are asked about.
+        weights: float, half or int8: how they are stored (``KINDS``).
+        seed: of the image that both are given.
 
     Raises:
         OutputError: the file would say something else, or cannot be written.

@@ -27,7 +27,7 @@ EMBODIED_EMPTY, EMBODIED_CLASSES = 12, 13
 
 
 class SavedPredictions:
-    """Labels by key, read when they are asked for."""
+    """Labels by key, read on access."""
 
     def __init__(self, path: Path, order: str = "", classes: str = ""):
         """Find out what is there.

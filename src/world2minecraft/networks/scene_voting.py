@@ -1,7 +1,7 @@
 """Score whole scenes by single-frame predictions: each frame votes on the cells in its view.
 
 EmbodiedOcc keeps a memory of a scene and scores it at the end. A network that knows single frames
-has none: here each frame votes for the class that it says of the cells that it has in view, and the
+has none: here each frame votes for the class that it predicts of the cells in its view, and the
 most frequent counts, the lower id where two are even. The boxes must lie on one lattice of cells.
 """
 
@@ -21,7 +21,7 @@ MAX_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
 
 
 class SceneFrame(NamedTuple):
-    """What a frame says and what is true of it, where it looks."""
+    """The prediction and the truth of a frame, where it looks."""
 
     scene_id: str
     predicted: np.ndarray  # uint8 [X, Y, Z]

@@ -60,7 +60,7 @@ def _escaped(text: str) -> str:
 
 
 class PredictedFrame(NamedTuple):
-    """One frame: what is said of its cells, and what is true."""
+    """One frame: the prediction and the truth of its cells."""
 
     scene_id: str
     predicted: np.ndarray  # uint8 [X, Y, Z]
@@ -88,7 +88,7 @@ def protocol_scores(
         ``left_out``: name to reason.
 
     Raises:
-        UsageError: there is no frame, or a protocol that was asked for by name cannot be.
+        UsageError: there is no frame, or a protocol that was requested by name cannot be.
         UnknownNameError: there is no such protocol.
     """
     chosen = [protocol_named(name) for name in protocols or PROTOCOLS]

@@ -8,7 +8,7 @@ A run's folder::
     checkpoint.safetensors   what a stopped run goes on from
     metrics.csv              step, name, value; tensorboard/ has the same
     scores.json              of the best weights, by every protocol, on the test split
-    scores_last.json         of the last weights, where those were asked for
+    scores_last.json         of the last weights, where those were requested
     run.json                 what differs by nature: times, machine, versions
 """
 
@@ -236,7 +236,7 @@ def score_run(
 
     The best weights by validation, into scores.json; or the ``last`` step's, which no frame chose,
     into scores_last.json. A set without a test split is scored on the frames that it was validated
-    on, which flatters: ``split`` says so.
+    on, which flatters: ``split`` states so.
     """
     data, folder = trained.data, trained.folder
     network = load_trained_network(folder, config, device, last=last)

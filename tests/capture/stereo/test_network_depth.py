@@ -109,7 +109,7 @@ def test_without_points_registration_evens_the_scales_out(views, seed):
 
 
 @pytest.mark.parametrize("kind", ["metric", "inverse"])
-def test_each_map_is_laid_on_the_points_of_its_photo(views, kind):
+def test_each_map_is_fitted_to_the_points_of_its_photo(views, kind):
     network = Jittery(views, kind)
     maps = list(network_maps(photos_of(views), scene_of(views), network))
     for view, made in zip(views, maps, strict=True):
@@ -119,7 +119,7 @@ def test_each_map_is_laid_on_the_points_of_its_photo(views, kind):
     assert min(within_one_voxel(scan_of(as_views(views, maps)), scan_of(views))) > 0.97
 
 
-def test_a_photo_without_points_takes_the_usual_factor_and_is_evened_out(views):
+def test_a_photo_without_points_takes_the_median_factor(views):
     """Half of the photos have no point at all; nothing of the room's size is lost."""
     network = Jittery(views)
     scene = scene_of(views)
@@ -138,7 +138,7 @@ def test_a_photo_without_points_takes_the_usual_factor_and_is_evened_out(views):
     assert min(after) > 0.97 > before[0], f"{before} -> {after}"
 
 
-def test_no_scale_can_be_told_without_any_point(views):
+def test_without_any_point_there_is_no_scale(views):
     scene = scene_of(views)
     none = replace(
         scene,

@@ -57,7 +57,7 @@ def slow_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, no
 
 
 @pytest.mark.parametrize("radius", [1, 3])
-def test_costs_are_correlations_of_windows_seen_by_way_of_planes(radius):
+def test_costs_are_window_correlations_over_planes(radius):
     rng = np.random.default_rng(0)
     grey, sources = halves(rng, 9, 13), halves(rng, 3, 11, 14)
     sizes = np.array([[9, 13], [11, 14], [9, 13]])
@@ -93,7 +93,7 @@ def slow_paths(costs, small, large):
     return total
 
 
-def test_paths_carry_the_least_cost_of_what_lies_behind_them():
+def test_path_costs_match_their_definition():
     rng = np.random.default_rng(1)
     costs = rng.integers(0, 255, (6, 7, 9)).astype(np.uint8)
     np.testing.assert_array_equal(aggregate_costs(costs, 20.0, 90.0), slow_paths(costs, 20, 90))
@@ -125,7 +125,7 @@ def slow_confirm(depth, rays, others, to_others, cameras, tolerance):
     return votes, mean
 
 
-def test_others_confirm_what_they_see_at_the_same_distance():
+def test_consistency_counts_equal_depths():
     rng = np.random.default_rng(2)
     depth = rng.uniform(1.8, 2.2, (12, 16)).astype(np.float32)
     depth[rng.random((12, 16)) < 0.2] = 0
@@ -141,7 +141,7 @@ def test_others_confirm_what_they_see_at_the_same_distance():
     assert votes.max() > 1
 
 
-def test_islands_are_pieces_that_jumps_and_holes_cut_off():
+def test_speckles_are_cut_off_by_jumps_and_holes():
     rng = np.random.default_rng(5)
     levels = ndimage.zoom(rng.integers(1, 4, (6, 8)), 4, order=0)
     depth = np.where(rng.random(levels.shape) < 0.35, 0, levels).astype(np.float32)

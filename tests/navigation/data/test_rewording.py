@@ -74,9 +74,7 @@ def test_human_instructions_take_turns_and_can_be_deselected(folder, capsys):
     st.sampled_from(LEVELS),
 )
 @settings(max_examples=60, deadline=None, suppress_health_check=[])
-def test_route_instructions_are_not_replaced_by_goal_ones(
-    tmp_path_factory, words, level
-):
+def test_route_instructions_are_not_replaced_by_goal_ones(tmp_path_factory, words, level):
     made = read_set(_set_of(tmp_path_factory))
     told = tuple(Instruction(f"{n}.", *one) for n, one in enumerate(words))
     plain = Instruction("Own words.", level=level)

@@ -90,7 +90,7 @@ def stood_in(views, monkeypatch):
 
     monkeypatch.setattr(preparing, "find_poses", posed)
     monkeypatch.setattr(preparing, "check_poses", posed)
-    monkeypatch.setattr(preparing, "depth_maps", deep)
+    monkeypatch.setattr(preparing, "compute_depth_maps", deep)
     return calls
 
 

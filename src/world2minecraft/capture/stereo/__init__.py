@@ -1,6 +1,6 @@
 """Multi-view stereo: plane sweep, semi-global matching and consistency of depth maps."""
 
-from world2minecraft.capture.stereo.depth_maps import depth_maps
+from world2minecraft.capture.stereo.depth_maps import compute_depth_maps
 from world2minecraft.capture.stereo.monocular_depth import (
     DEPTH_MODELS,
     DepthModel,
@@ -13,7 +13,7 @@ __all__ = [
     "DEPTH_MODELS",
     "DepthModel",
     "StereoParameters",
-    "depth_maps",
+    "compute_depth_maps",
     "load_depth_model",
     "network_maps",
 ]

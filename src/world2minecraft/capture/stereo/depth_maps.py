@@ -95,7 +95,7 @@ def _neighbour_score(photo, other, to_other, points_m, depth_m, angle_deg) -> fl
     return float(worth.sum() / len(points_m) * (0.2 + 0.8 * min(1.0, shared / MIN_SHARED_POINTS)))
 
 
-def depth_maps(
+def compute_depth_maps(
     photos: PhotoStream,
     scene: SparseScene,
     parameters: StereoParameters | None = None,

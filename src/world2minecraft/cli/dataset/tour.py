@@ -142,7 +142,7 @@ def _write_recorded(
         folder, at=told, poses=poses, pattern=pattern, vertical_fov_deg=fov_deg or GAME_FOV_DEG
     )
     write_recorded_views(out, views, source.volume().block_to_room, source.scene_id)
-    kinds = Counter(view.told_by for view in views)
+    kinds = Counter(view.pose_source for view in views)
     by = ", ".join(f"{number} by {kind}" for kind, number in kinds.items())
     print(f"{out}: {len(views)} screenshots ({by}), x, y, z taken as that of the {at}")
     print(f"  look   w2m dataset sheet {out} --world {source.path}      pictures of the same poses")

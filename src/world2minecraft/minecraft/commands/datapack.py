@@ -63,7 +63,7 @@ def to_namespace(name: str) -> str:
     """Return a name as a pack's namespace may be: what none can hold of it becomes ``_``.
 
     Example:
-        >>> namespace_of("My Room"), namespace_of("minecraft"), to_namespace("")
+        >>> to_namespace("My Room"), to_namespace("minecraft"), to_namespace("")
         ('my_room', 'room', 'room')
     """
     lowered = re.sub(r"[^a-z0-9_.-]", "_", name.lower())

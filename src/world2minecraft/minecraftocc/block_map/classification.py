@@ -107,7 +107,7 @@ def _rule_json(rule: Rule) -> dict[str, Any]:
 def classify(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
     """Return a volume with the class of every block, and its objects numbered.
 
-    What the volume knew of classes and objects is not asked. Blocks of one class of objects that
+    The classes and objects that the volume has are ignored. Blocks of one class of objects that
     touch by a face are one object.
 
     Args:

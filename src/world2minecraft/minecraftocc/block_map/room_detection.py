@@ -2,7 +2,7 @@
 
 In: which blocks can be structure, and the scale. Out: a zone for each block. A floor is a wide
 flat top with a roof over it under which a person stands; walls are the columns that reach from it
-to the ceiling. No label is asked, and no block by its name.
+to the ceiling. Labels and names of blocks are not used.
 """
 
 from dataclasses import dataclass

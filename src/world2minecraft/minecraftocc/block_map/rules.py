@@ -72,7 +72,7 @@ class BlockMap:
     about: str
     blocks: Mapping[str, str]  # a full id -> a class or a kind
     words: tuple[Words, ...]
-    kinds: Mapping[str, tuple[Pattern, ...]]  # in the order in which they are asked
+    kinds: Mapping[str, tuple[Pattern, ...]]  # in the order in which they are matched
     whole: str  # what a full block is that nothing names; a class or a kind
     other: str  # and one that is not full
     structure: frozenset[str]  # the kinds that floors, walls and ceilings can be of

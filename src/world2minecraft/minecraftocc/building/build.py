@@ -1,7 +1,7 @@
 """Build a whole data set from its plan, or continue one, by one run at a time.
 
 Scenes are surveyed, images are allocated to them, shards are rendered and the index is written.
-Each scene is asked for its share of the images; what one cannot give is asked of those that gave
+Each scene gets its share of the images; what one cannot give is allocated to those that gave
 all. The same answers give the same shares, so an interrupted build comes to the same data set.
 """
 
@@ -64,11 +64,11 @@ def allocate_views(scenes: Iterable[SceneSpec], look: CountViews) -> list[SceneS
     """Return scenes with as many images as they have views, in their order.
 
     Args:
-        scenes: of any splits, each with the images that it is asked for.
-        look: called with scenes and how many images to ask each for; tells what they have.
+        scenes: of any splits, each with the images requested of it.
+        look: called with scenes and their requested images; gives how many views each has.
 
     Returns:
-        Of each split as many images as were asked for in all, or fewer where there are no more.
+        Of each split as many images as were requested in all, or fewer where there are no more.
     """
     requested = {scene.scene_id: scene for scene in scenes}
     wanted = {scene.split: 0 for scene in requested.values()}
@@ -276,7 +276,7 @@ class _Build:
         return found
 
     def _settled(self, scenes: list[SceneSpec]) -> tuple[SceneSpec, ...]:
-        """Check that there are as many views as were asked for; leave scenes without any out.
+        """Check that there are as many views as requested; leave scenes without any out.
 
         Raises:
             UsageError: a preset's numbers cannot be kept.

@@ -27,7 +27,7 @@ def load_given_views(
         camera: of poses that say none.
 
     Raises:
-        InputError: they cannot be read. UsageError: it is not said how.
+        InputError: they cannot be read. UsageError: it is not stated how.
     """
     if not given.is_screenshots:
         return _with_unique_names(read_views(given.path, block_to_room, camera))
@@ -68,7 +68,7 @@ def load_screenshot(path: Path, camera: Camera) -> np.ndarray:
 
 
 def _with_unique_names(views: list[PlannedView]) -> list[PlannedView]:
-    """Give tours names that keys may hold, and count frames anew where two are one."""
+    """Give tours names that keys may hold, and number frames again where two are the same."""
     plain = [
         replace(
             view, tour_id=re.sub(r"[^A-Za-z0-9_]+", "_", view.tour_id)[:MAX_TOUR_NAME] or "t000"

@@ -69,7 +69,7 @@ def survey_scene(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFac
 
     Raises:
         InputError: the scene cannot be read. UsageError: nobody can stand in it.
-        ConflictError: it has changed since it was looked at first.
+        ConflictError: it has changed since it was first surveyed.
     """
     began = time.process_time()
     folder, spec = Path(task.folder), task.spec

@@ -47,7 +47,7 @@ class InProcessEngine:
 class Engine(Protocol):
     """Calls a task with each of many items."""
 
-    notes: list[str]  # What went wrong and was mended, in sentences.
+    notes: list[str]  # What went wrong and was repaired, in sentences.
 
     def run(self, task: Task, items: Sequence[Any], tick: Tick) -> Iterator[tuple[int, Any]]:
         """Give each item's number and result as they are done; the first error ends all."""
@@ -63,7 +63,7 @@ def open_engine(name: str, jobs: int) -> AbstractContextManager[Engine]:
 
     Raises:
         UnknownNameError: there is no such engine. UsageError: the number is out of range.
-        MissingExtraError: Ray is asked for and is not installed.
+        MissingExtraError: Ray is requested and is not installed.
     """
     if not 1 <= jobs <= MAX_JOBS:
         raise UsageError(f"jobs may be 1 to {MAX_JOBS}, not {jobs}")

@@ -64,7 +64,7 @@ class _ParentGone(BaseException):
 
 def run_worker(pipe: Connection) -> None:
     """Do what comes through the pipe until it ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and ends us.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent gets it, and ends us.
     Thread(target=_end_with_parent, daemon=True).start()
     limit_threads()
 
@@ -188,7 +188,7 @@ class PoolEngine:
                 hand.number = number
 
     def _heard(self, hand: _Worker) -> ProgressMessage | ResultMessage | ErrorMessage | None:
-        """Return what a worker says; None where it has died."""
+        """Return a worker's message; None where it has died."""
         try:
             return hand.pipe.recv()
         except (EOFError, OSError):

@@ -2,7 +2,7 @@
 
 OUT stands for the loader's ``data`` folder: ``occscannet/`` holds the frames, ``scene_occ/`` the
 packages of scenes and the masks. A scene is put together from the boxes of its frames, all of
-which lie in one world, cell by cell: the first frame that knows a cell says what it is.
+which lie in one world, cell by cell: the first frame that knows a cell decides its label.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ class EmbodiedExporter:
         self._large: list[str] = []
 
     def is_done(self, key: str) -> bool:
-        """Return whether the frame is there; scenes are made anew where frames were added."""
+        """Return whether the frame is there; scenes are remade where frames were added."""
         return self.frames.is_done(key)
 
     def write(self, sample: OccSample) -> None:
@@ -70,7 +70,7 @@ class EmbodiedExporter:
             write_text(self.root / "scene_occ" / f"{split}_online.txt", lines)
 
     def notes(self) -> list[str]:
-        """Say what the format did not take as it was."""
+        """Return what the format could not hold unchanged."""
         lines = self.frames.notes()
         if self._large:
             size = "x".join(str(side) for side in OFFICIAL_CELLS)

@@ -38,7 +38,7 @@ class NpzExporter:
         write_json(self.root / "index.json", {"format": "world2minecraft-occ-npz", "keys": rows})
 
     def notes(self) -> list[str]:
-        """Say nothing: the format takes all as it is."""
+        """Return nothing: the format holds everything unchanged."""
         return []
 
     def _arrays(self, sample: OccSample) -> dict[str, np.ndarray]:

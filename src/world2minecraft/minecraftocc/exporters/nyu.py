@@ -76,7 +76,7 @@ class NyuExporter:
         """Write nothing: the loaders list the folders."""
 
     def notes(self) -> list[str]:
-        """Say what the format did not take as it was."""
+        """Return what the format could not hold unchanged."""
         texts = {
             "resampled": "pictures were resampled to 640x480, f = 518.8579",
             "no depth": "samples have no depth: MonoScene and NDC-Scene read them, "

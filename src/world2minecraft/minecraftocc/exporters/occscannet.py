@@ -101,7 +101,7 @@ class OccScanNetExporter:
             self._write_list(with_content, [row for row in of_split if row.occupied])
 
     def notes(self) -> list[str]:
-        """Say what the format did not take as it was."""
+        """Return what the format could not hold unchanged."""
         texts = {
             "pictures were cropped and resampled to 640x480": self._resampled,
             "samples have no depth, which every loader of this format opens": self._no_depth,

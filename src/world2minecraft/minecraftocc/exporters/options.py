@@ -67,7 +67,7 @@ class Exporter(Protocol):
         ...
 
     def notes(self) -> list[str]:
-        """Return sentences on what the format did not take as it was."""
+        """Return sentences on what the format could not hold unchanged."""
         ...
 
 

@@ -45,8 +45,8 @@ def encode_depth(depth_m: np.ndarray, code: DepthCode) -> bytes:
 def decode_depth(raw: np.ndarray, code: DepthCode) -> np.ndarray:
     """Return float32 [H, W] metres of stored values, 0 where there is none.
 
-    NYU's are told apart by their low three bits: turned millimetres have 0 or 1 there (depth under
-    16.4 m), true units of 1/8000 m have any.
+    NYU's two encodings differ in their low three bits: rotated millimetres have 0 or 1 there (depth
+    under 16.4 m), true units of 1/8000 m have any.
 
     Example:
         >>> decode_depth(np.array([[8000, 0, 16385]], np.uint16), "nyu").tolist()

@@ -275,7 +275,7 @@ class PickleMachine:
         self._name(module, name)
 
     def do_STACK_GLOBAL(self, argument: Any) -> None:
-        """Push one of the few names, said by the last two texts."""
+        """Push one of the few names, given by the last two texts."""
         name, module = self.pop(), self.pop()
         self._name(module, name)
 

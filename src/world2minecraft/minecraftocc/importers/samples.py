@@ -47,7 +47,7 @@ class ImportedSet:
     splits: dict[str, str]  # key to train, test or ""
     read: Callable[[str], OccSample]
     notes: tuple[str, ...] = field(default=())
-    sha256: str = ""  # The sum of all samples, where the data set tells it.
+    sha256: str = ""  # The sum of all samples, where the data set states it.
 
     def keys(self, split: str | None = None) -> list[str]:
         """Return the keys, of one split or of all."""

@@ -2,7 +2,7 @@
 
 A ray went through a cell where it was in it over more than ``CROSSED_M`` of depth before it met its
 surface. All pixels count, however many there are; and yet most cells cost one look: the pixel that
-a cell's middle falls on tells that it is free, or the depths around tell that all rays end before
+a cell's middle falls on shows that it is free, or the depths around show that all rays end before
 it. What is left is tested pixel by pixel.
 """
 
@@ -95,7 +95,7 @@ def _transform(matrix, x, y, z):
 
 @inlined
 def _outside_frustum(cells_to_camera, intrinsics, width, height, x, y, z):
-    """Tell whether a cell lies wholly beyond one side of what the camera sees."""
+    """Return whether a cell lies wholly beyond one side of what the camera sees."""
     low_u, high_u, low_v, high_v = 0.0, 0.0, 0.0, 0.0
     for axis in range(3):
         ex, ey, ez = (
@@ -146,7 +146,7 @@ def _pixels(shape, box):
 
 @lean
 def _any_tile_deeper(tiles, shape, box, nearest):
-    """Tell whether some tile of those that a box covers has a ray that ends beyond ``nearest``."""
+    """Return whether a tile that a box covers has a ray that ends beyond ``nearest``."""
     u0, u1, v0, v1 = _pixels(shape, box)
     if u1 < u0 or v1 < v0:
         return False
@@ -159,7 +159,7 @@ def _any_tile_deeper(tiles, shape, box, nearest):
 
 @lean
 def _any_ray_crosses(image, tiles, box, i, j, k, nearest):
-    """Tell whether some pixel's ray goes through a cell; nothing of it is nearer than ``nearest``.
+    """Return whether some pixel's ray crosses a cell; nothing of it is nearer than ``nearest``.
 
     Only pixels count that ``box`` (left, right, top, bottom) surrounds, and of those no tile whose
     rays all end before the cell.

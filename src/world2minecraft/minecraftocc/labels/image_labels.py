@@ -196,7 +196,7 @@ def gather_region(
 
 
 def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
-    """Tell whether a region's cells are the scene's, turned by quarter turns or not at all."""
+    """Return whether a region's cells are the scene's, turned by quarter turns or not at all."""
     to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
     return bool(np.abs(to_scene - np.round(to_scene)).max() < 1e-4)
 
@@ -252,7 +252,7 @@ def _nearest_occupied(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
 
     Args:
         fine: uint16 [X, Y, Z], not 0 where a cell holds something.
-        places: float64 [N, 3], in cells; the cell of each and those around it are looked at.
+        places: float64 [N, 3], in cells; the cell of each and those around it are searched.
     """
     best, gathered = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
     for step in np.ndindex(3, 3, 3):

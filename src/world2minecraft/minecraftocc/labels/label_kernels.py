@@ -263,7 +263,7 @@ def _aside(at, step):
 
 @lean
 def source_cells(to_box, shape, found):
-    """Tell which cell of a box the middle of each cell of a region lies in.
+    """Find which cell of a box the middle of each cell of a region lies in.
 
     Args:
         to_box: float64 [3, 4], region's cells to the box's.

@@ -117,7 +117,7 @@ class PictureCounts:
     class_voxels: np.ndarray  # int64 [12], cells in the frustum by class
     uncut_voxels: int  # occupied cells, in the frustum or not
     fine_pixels: Mapping[str, int] | None  # FineClass.name to pixels; None where not known
-    room: int | None = None  # Its number in the scene, where the sample tells it.
+    room: int | None = None  # Its number in the scene, where the sample states it.
 
 
 def picture_counts(sample: OccSample) -> PictureCounts:
@@ -175,8 +175,8 @@ class _FineSums:
 class _SceneSums:
     pictures: int = 0
     voxels: int = 0
-    rooms: int | None = None  # As told of the scene.
-    rooms_seen: set[int | None] = field(default_factory=set)  # As pictures tell.
+    rooms: int | None = None  # As stated for the scene.
+    rooms_seen: set[int | None] = field(default_factory=set)  # As pictures state.
 
     def count_rooms(self) -> int | None:
         """Return the rooms as told, or else those of the pictures if each tells its own."""
@@ -224,7 +224,7 @@ class StatisticsCounter:
         self._cells[scene_id].add(occ.region, occ.occupied & occ.in_frustum)
 
     def set_rooms(self, scene_id: str, rooms: int) -> None:
-        """Say how many rooms a scene has; one without a picture is no scene of the data set."""
+        """Set how many rooms a scene has; one without a picture is no scene of the data set."""
         if scene_id in self._scenes:
             self._scenes[scene_id].rooms = rooms
 

@@ -37,7 +37,7 @@ class SceneCount:
     pictures: int
     voxels: int  # as the paper counts
     distinct_cells: int | None = None  # None where they were not counted
-    rooms: int | None = None  # None where nobody said
+    rooms: int | None = None  # None where it is not known
 
 
 @dataclass(frozen=True)

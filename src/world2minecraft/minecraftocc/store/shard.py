@@ -125,7 +125,7 @@ def stored_samples(stream: BinaryIO, length: int, checked: bool = False) -> Iter
 
 
 def has_valid_checksums(stream: BinaryIO, sample: StoredSample) -> bool:
-    """Whether the members of a sample have the sums that its JSON tells."""
+    """Whether the members of a sample have the checksums that its JSON states."""
     checksums = sample.facts.get("sha256")
     others = [member for member in sample.members if member.kind != FACTS]
     if not isinstance(checksums, dict) or set(checksums) != {member.kind for member in others}:

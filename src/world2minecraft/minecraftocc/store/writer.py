@@ -68,7 +68,7 @@ def finish_store(
     Args:
         folder: the data set's.
         shards: names of all shards, in their order.
-        meta: what ``dataset.json`` tells further; ``images`` and ``scenes`` among it.
+        meta: what ``dataset.json`` holds further; ``images`` and ``scenes`` among it.
         rows: of ``shard_rows`` of each shard, in the same order.
 
     Raises:

@@ -36,9 +36,9 @@ from world2minecraft.rendering.views.cameras import GamePose
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.
-MIN_FRAMES = 3  # Of a tour, where more are asked for.
-MAX_SPACING_M = 0.6  # Between frames, where few are asked for,
-OVERSAMPLING = 1.5  # and so many times as many are looked at.
+MIN_FRAMES = 3  # Of a tour, where more are wanted.
+MAX_SPACING_M = 0.6  # Between frames, where few are wanted,
+OVERSAMPLING = 1.5  # and so many times as many are assessed.
 MAX_FRUITLESS_WALKS = 5  # A room is done when so many walks in turn find nothing new.
 EASING_FACTOR = 0.7  # Then views may be so much nearer to each other,
 MAX_EASINGS = 3  # so many times.
@@ -262,7 +262,7 @@ def _rooms(
 
 
 def _fill(tourists: list[RoomTour], count: int, progress: Progress) -> None:
-    """Let rooms find their shares; what one cannot give is asked of the others."""
+    """Let rooms find their shares; what one cannot give goes to the others."""
     progress("views", 0, count)
     left = count
     while left > 0:

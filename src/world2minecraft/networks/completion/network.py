@@ -1,7 +1,7 @@
 """The completion network: a 3D U-Net that works at half resolution and predicts at full.
 
 Two cells a side become one at its entry, so that a room costs an eighth. The last layer sees the
-full cells again beside what the body says of them; without it labels came in stripes of two cells.
+full cells again beside the features of the body; without it labels came in stripes of two cells.
 """
 
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ class Block(nn.Module):
 
 
 class Context(nn.Module):
-    """Adds what the whole room is like to each of its cells."""
+    """Adds features of the mean of all cells to each cell."""
 
     def __init__(self, channels: int):
         super().__init__()

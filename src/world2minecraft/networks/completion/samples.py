@@ -81,7 +81,7 @@ class Sample:
     sight: Sight
     truth: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
     kind: str  # of the look
-    hinted: bool  # whether the geometric labeller was asked: only where walls lie along the axes
+    hinted: bool  # whether the geometric labeller was used: only where walls lie along the axes
     false_share: float  # of the occupied cells that the truth knows, those that are empty in it
 
 

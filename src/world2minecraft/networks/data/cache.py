@@ -2,7 +2,7 @@
 
 To open a JPEG of 640x480 and to make cells coarser takes longer than a step of a small network; so
 it is done once a set, size and grid. The arrays are mapped, not read: a run holds only the frames
-that it looks at. They lie in the user's cache folder, and are made anew where the set has changed.
+that it looks at. They lie in the user's cache folder, and are remade where the set has changed.
 """
 
 import hashlib
@@ -46,7 +46,7 @@ class Frames(Protocol):
 
 
 class StreamedFrames:
-    """Frames made of their samples each time anew: slow, but nothing is kept."""
+    """Frames decoded from their samples on each access: slow, but nothing is stored."""
 
     def __init__(self, source: ImportedSet, rule: FrameRule):
         """Find out the scene of each sample, which takes a look at each."""

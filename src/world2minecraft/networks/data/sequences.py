@@ -1,6 +1,6 @@
 """Sequences: several frames of one scene as one sample, in the grid of the first.
 
-The others are looked at in the cells of the first one's box: their poses are carried into it, and
+The others are used in the cells of the first one's grid: their poses are carried into it, and
 nothing is resampled. Chosen are frames of the same scene that look into the box, where there are
 any; how many follows from the step, so that a network learns from one frame as from many.
 """
@@ -14,12 +14,12 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import Frame
 
-LOOK_AHEAD_M = 2.0  # So far before a camera lies what it looks at: a room's middle from its wall.
-TRIES_PER_FRAME = 4  # Frames that are looked at for each that is wanted.
+LOOK_AHEAD_M = 2.0  # Distance of what a camera looks at: a room's middle from its wall.
+TRIES_PER_FRAME = 4  # Frames that are tried for each that is wanted.
 
 
 class SequenceSampler:
-    """Finds frames of a scene beside one of them.
+    """Finds further frames of the scene of a frame.
 
     Args:
         frames: of a set.

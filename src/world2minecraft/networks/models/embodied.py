@@ -54,7 +54,7 @@ class SceneEvidence:
 
     @property
     def weight(self) -> Tensor:
-        """How much was said of each cell, [B, X, Y, Z]; 0 where nobody looked."""
+        """The summed weight of each cell, [B, X, Y, Z]; 0 where no frame looked."""
         return self.values[:, 0]
 
     @property
@@ -64,7 +64,7 @@ class SceneEvidence:
 
     @property
     def votes(self) -> Tensor:
-        """What each cell was said to be, [B, 12, X, Y, Z]."""
+        """The class votes of each cell, [B, 12, X, Y, Z]."""
         return self.values[:, VOTES_AT:FEATURES_AT]
 
     def __add__(self, other: "SceneEvidence") -> "SceneEvidence":
@@ -83,7 +83,7 @@ class SceneEvidence:
 class SizeConfig:
     """What a size decides."""
 
-    channels: int  # of a cell while a frame is looked at
+    channels: int  # of a cell while a frame is processed
     features: int  # that are kept of a cell
     reading: int  # channels of the network that reads the scene
     depth_channels: int
@@ -236,7 +236,7 @@ class SceneStream:
 
     @property
     def evidence(self) -> SceneEvidence:
-        """All that was said so far."""
+        """The evidence so far."""
         return SceneEvidence(self._values)
 
     @torch.no_grad()

@@ -1,6 +1,6 @@
 """ISO (Yu et al., ECCV 2024): MonoScene with features weighted by predicted depth.
 
-A depth branch says for each pixel how likely its surface lies in each of 64 bins; where a cell
+A depth branch predicts for each pixel how likely its surface lies in each of 64 bins; where a cell
 takes its pixel's feature, it takes it by the likelihood of its own depth besides (dual projection).
 
 What differs from the paper: the depth that the branch looks at is whatever the input has (of a

@@ -48,9 +48,9 @@ class Stage:
     maps: Sequence[Tensor]  # [B, C, h, w] of each level
     query_pixel: Tensor  # [B, Q, 2]: row, column as shares
     query_cell: Tensor  # [B, Q, 3]
-    query_mark: Tensor  # [1, Q, C], what tells one query from another
+    query_mark: Tensor  # [1, Q, C], distinguishes one query from another
     cell_place: Tensor  # [B, N, 3]
-    cell_mark: Tensor  # [1, N, C], what tells one cell from another
+    cell_mark: Tensor  # [1, N, C], distinguishes one cell from another
     in_view: Tensor  # bool [B, N]
     shape: tuple[int, int, int]
 

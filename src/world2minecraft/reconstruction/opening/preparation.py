@@ -17,7 +17,7 @@ from world2minecraft.capture.photo_stream import CapturePhotos, photos_of_captur
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm import check_poses, find_poses
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.capture.stereo import depth_maps, load_depth_model, network_maps
+from world2minecraft.capture.stereo import compute_depth_maps, load_depth_model, network_maps
 from world2minecraft.capture.validation import ValidatedCapture, validate
 from world2minecraft.core.errors import (
     CaptureError,
@@ -193,7 +193,7 @@ def _with_stereo(
 ) -> Iterator[View]:
     guide = load_depth_model(chosen.depth_model) if chosen.depth_model else None
     if not chosen.stereo.network_alone:
-        maps = depth_maps(photos, scene, chosen.stereo, progress, guide)
+        maps = compute_depth_maps(photos, scene, chosen.stereo, progress, guide)
     elif guide is None:
         raise UsageError("stereo.network_alone=true needs the network: add --depth hf:ORG/NAME")
     else:

@@ -112,7 +112,7 @@ def test_depth_of_another_size(room, app):
 
 
 @pytest.mark.parametrize(("app", "module"), [("record3d", "lzfse"), ("stray", "av")])
-def test_what_is_not_installed_is_told(room, monkeypatch, app, module):
+def test_a_missing_library_is_named(room, monkeypatch, app, module):
     folder = room(app)
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(MissingExtraError, match=r"pip install 'world2minecraft\[capture\]'"):

@@ -153,7 +153,7 @@ def test_the_front_camera_of_record3d_has_no_poses(tmp_path, shots):
     assert "front camera" in capture.notes[0]
 
 
-def test_a_record3d_world_that_starts_with_no_turn_has_no_known_up(tmp_path, shots):
+def test_record3d_relative_to_its_first_pose_has_no_known_up(tmp_path, shots):
     first = np.linalg.inv(shots["record3d"][0].pose)
     flip = np.diag([1.0, -1, -1, 1])
     for shot in (moved := [type(s)(**vars(s)) for s in shots["record3d"]]):
@@ -268,7 +268,7 @@ def test_the_3d_scanner_app_keeps_pictures_of_some_frames(tmp_path, shots):
     assert capture.notes == ("8 frames have depth but no picture; they are left out",)
 
 
-def test_what_was_found_is_told(tmp_path, shots):
+def test_notes_report_what_was_found(tmp_path, shots):
     write_polycam(tmp_path, shots["polycam"])
     summary = describe_capture(tmp_path)
     assert (summary.source, summary.frames, summary.usable) == ("polycam", 12, 12)

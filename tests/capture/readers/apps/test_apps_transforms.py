@@ -57,7 +57,7 @@ def test_nerfcaptures_depth_has_its_own_key_and_unit(tmp_path, shots):
         assert (view.colour_camera, view.depth_camera) == (WIDE, DEEP)
 
 
-def test_depth_that_is_named_but_not_there_is_told(tmp_path, shots):
+def test_missing_depth_files_are_reported(tmp_path, shots):
     """NeRFCapture's own export names depth images and does not write them."""
     _write(tmp_path, shots, {}, "depth_path", depths=False, depth_integer_scale=1.0)
     judged = validate_capture(tmp_path, ScanOptions())
@@ -67,7 +67,7 @@ def test_depth_that_is_named_but_not_there_is_told(tmp_path, shots):
     assert judged.capture.scale == "metric"
 
 
-def test_a_mask_says_which_pixels_are_meant(tmp_path, shots):
+def test_a_mask_selects_pixels(tmp_path, shots):
     _write(tmp_path, shots, {"mask_path": "mask.png"})
     mask = np.zeros((120, 160), np.uint8)
     mask[:, 80:] = 255

@@ -44,7 +44,7 @@ def test_a_zip_of_it_is_the_same(tmp_path, views, same_views):
     same_views(open_scan(zipped(tmp_path, tmp_path / "a.zip")), views)
 
 
-def test_one_frame_is_a_capture_and_its_extrinsics_tell_what_is_up(tmp_path, views):
+def test_one_frame_is_a_capture_with_up_from_its_extrinsics(tmp_path, views):
     pitch = np.eye(4)
     angle = np.radians(20)
     pitch[1:3, 1:3] = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]

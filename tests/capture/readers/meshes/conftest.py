@@ -1,7 +1,7 @@
 """The box room of the scan tests once more, as triangles and points."""
 
 import pytest
-from solid_rooms import room_quads
+from mesh_rooms import room_quads
 
 
 @pytest.fixture(scope="session")
