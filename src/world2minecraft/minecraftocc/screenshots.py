@@ -293,7 +293,8 @@ def read_screenshots(
 
     Raises:
         UsageError: ``at`` is not given, the pattern is invalid. InputError: the folder has no
-            picture, or no pose for one. DamagedFileError, LimitError: a file is not what it should be.
+            picture, or no pose for one. DamagedFileError, LimitError: a file is not
+            what it should be.
     """
     if at not in ("feet", "eye"):
         raise UsageError(

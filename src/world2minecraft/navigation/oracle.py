@@ -10,6 +10,7 @@ corners. Files that hold expert moves name ``ORACLE_VERSION``.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from world2minecraft.navigation.moves import (
 from world2minecraft.navigation.scene import VlnScene, distance_from_field
 from world2minecraft.navigation.values import Move, MoveSet, Stance
 
-SHARE = 0.98  # Between places the field is too long by little: by so much at most.
+HEURISTIC_FACTOR = 0.98  # Between places the field is too long by little: by so much at most.
 ORACLE_VERSION = "w2m-oracle-2"
 GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
 GOAL_STEPS = 0.75  # or so many steps, where steps are long.
@@ -35,48 +36,54 @@ FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the f
 MAX_NODES = 400_000
 
 
+class SearchRules(NamedTuple):
+    """The lengths and limits of a search."""
+
+    step_m: float  # the length of a step
+    goal_m: float  # how near to the goal ends the search
+    turn_m: float  # what a turn by one heading costs, in metres
+    fineness: float  # how many places along a step are told apart
+    max_nodes: int  # nodes to try
+
+
 @njit
-def search_path(solid, corner, floor, field, begin, ways, size, step_m, goal_m, turn_m, fine, most):
+def search_path(solid, corner, floor, field, start, steps, size, rules):
     """Return the headings, int64 [T], of the steps from a place to a goal, and whether one is.
 
     Args:
         solid: the blocks.
         corner: the world place of their first cell.
-        floor: ``Floor`` of the graph.
+        floor: ``FloorTable`` of the graph.
         field: metres from each place to the goal.
-        begin: float64 [3], feet.
-        ways: float64 [K, 2], the step along each heading in blocks; 0 is the first heading.
-        size: the body.
-        step_m: the length of a step.
-        goal_m: how near to the goal ends the search.
-        turn_m: what a turn by one heading counts, in metres.
-        fine: how many places a step is as long as that are told apart.
-        most: nodes to try.
+        start: float64 [3], feet.
+        steps: float64 [K, 2], the step along each heading in blocks; 0 is the first heading.
+        size: the body, ``BodySize``.
+        rules: ``SearchRules``.
     """
-    count = len(ways)
-    feet = np.empty((most, 3))
-    cost, before = np.empty(most), np.empty(most, np.int32)
-    turned, keys = np.zeros(most, np.int32), np.empty(most)
-    heap = np.empty(most, np.int32)
-    seen = np.full(1 << 20, -1, np.int64)
-    cell = np.sqrt(ways[0, 0] ** 2 + ways[0, 1] ** 2) / fine
-    feet[0] = begin
-    cost[0], before[0], used, waiting = 0.0, -1, 1, 1
+    count, limit = len(steps), rules.max_nodes
+    feet = np.empty((limit, 3))
+    cost, parent = np.empty(limit), np.empty(limit, np.int32)
+    headings, keys = np.zeros(limit, np.int32), np.empty(limit)
+    heap = np.empty(limit, np.int32)
+    visited = np.full(1 << 20, -1, np.int64)
+    cell = np.sqrt(steps[0, 0] ** 2 + steps[0, 1] ** 2) / rules.fineness
+    feet[0] = start
+    cost[0], parent[0], used, waiting = 0.0, -1, 1, 1
     heap[0], keys[0] = 0, 0.0
     while waiting > 0:
         here = heap[0]
         waiting = _heap_pop(heap, keys, waiting)
-        if _visit(seen, feet[here], cell):
+        if _visit(visited, feet[here], cell):
             continue
         x, y, z = feet[here]
-        if distance_from_field(floor, field, x, y, z) <= goal_m:
-            return _headings(before, turned, here), True
+        if distance_from_field(floor, field, x, y, z) <= rules.goal_m:
+            return _headings_to(parent, headings, here), True
         for n in range(count):
-            if used == most:
+            if used == limit:
                 return np.zeros(0, np.int64), False
-            way = (turned[here] + n) % count
+            heading = (headings[here] + n) % count
             to_x, to_y, to_z, stopped = move_body(
-                solid, corner, x, y, z, ways[way, 0], ways[way, 1], size, False
+                solid, corner, x, y, z, steps[heading, 0], steps[heading, 1], size, False
             )
             if stopped:
                 continue
@@ -84,22 +91,23 @@ def search_path(solid, corner, floor, field, begin, ways, size, step_m, goal_m, 
             if not np.isfinite(left):
                 continue
             feet[used, 0], feet[used, 1], feet[used, 2] = to_x, to_y, to_z
-            cost[used] = cost[here] + step_m + turn_m * min(n, count - n)
-            before[used], turned[used] = here, way
-            keys[used] = cost[used] + SHARE * left
+            cost[used] = cost[here] + rules.step_m + rules.turn_m * min(n, count - n)
+            parent[used], headings[used] = here, heading
+            keys[used] = cost[used] + HEURISTIC_FACTOR * left
             waiting = _heap_push(heap, keys, waiting, used)
             used += 1
     return np.zeros(0, np.int64), False
 
 
 @njit
-def _headings(before, turned, last):
+def _headings_to(parent, headings, last):
+    """Return the headings from the start to a node, int64 [T]."""
     length, here = 0, last
-    while before[here] >= 0:
-        length, here = length + 1, before[here]
+    while parent[here] >= 0:
+        length, here = length + 1, parent[here]
     result, here = np.empty(length, np.int64), last
     for n in range(length - 1, -1, -1):
-        result[n], here = turned[here], before[here]
+        result[n], here = headings[here], parent[here]
     return result
 
 
@@ -195,30 +203,30 @@ def plan_expert_path(
         return None
     step = forward_blocks(scene, how)
     count = max(1, round(360 / how.turn_deg))
-    turned = [wrap_yaw(stance.yaw_deg + n * how.turn_deg) for n in range(1, count)]
-    ways = np.array([heading_vector(yaw) for yaw in (stance.yaw_deg, *turned)]) * step
+    yaws = [wrap_yaw(stance.yaw_deg + n * how.turn_deg) for n in range(1, count)]
+    steps = np.array([heading_vector(yaw) for yaw in (stance.yaw_deg, *yaws)]) * step
     step_m = step * scene.metres_per_block
-    near_m = max(GOAL_M, GOAL_STEPS * step_m)
-    for fine in FINENESS:
+    goal_m = max(GOAL_M, GOAL_STEPS * step_m)
+    for fineness in FINENESS:
         headings, found = search_path(
-            scene.solid, scene.corner, scene.floor, field, np.array(stance.feet), ways,
-            body_size(scene), step_m, near_m, TURN_M, fine, MAX_NODES,
+            scene.solid, scene.corner, scene.floor, field, np.array(stance.feet), steps,
+            body_size(scene), SearchRules(step_m, goal_m, TURN_M, fineness, MAX_NODES),
         )  # fmt: skip
         if found:
-            way = _make_path(scene, stance, _moves_of_headings(headings.tolist(), count), how)
-            return _turn_to_face(scene, way, facing, how) if way and facing else way
+            path = _make_path(scene, stance, _moves_of_headings(headings.tolist(), count), how)
+            return _turn_to_face(scene, path, facing, how) if path and facing else path
     return None
 
 
 def _moves_of_headings(headings: list[int], count: int) -> list[Move]:
     """Return the moves of steps along headings, of which 0 is where one looks."""
     moves, now = [], 0
-    for way in headings:
-        right = (way - now) % count
+    for heading in headings:
+        right = (heading - now) % count
         left = count - right
         moves += [Move.RIGHT] * right if right <= left else [Move.LEFT] * left
         moves.append(Move.FORWARD)
-        now = way
+        now = heading
     return [*moves, Move.STOP]
 
 

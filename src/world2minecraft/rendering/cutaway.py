@@ -1,9 +1,9 @@
-"""What to leave out of a room so that one can look into it.
+"""Cut a volume open so that one can look into its rooms.
 
-The ceiling goes; of the walls on the near sides only a low rim stays, with whatever hangs on them
-gone too, and walls between rooms end at breast height. A house of several storeys is taken apart:
-its storeys stand side by side. Nothing is decided by names of blocks, only by the classes and
-places in the volume.
+The ceiling is removed; of the near walls only a low rim stays, without what hangs on them, and
+walls between rooms end at breast height. The storeys of a house are placed side by side. Entities
+are removed or moved with their blocks. Only classes and places of the volume decide, never names of
+blocks.
 """
 
 from collections.abc import Sequence
@@ -18,9 +18,17 @@ from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.entities import display_cubes, owner_of
 
-# Entities of a volume that is cut open: what goes with the blocks, and where the rest moves.
-
 MAX_CUT_SHARE = 0.5  # An object goes when more than this share of its blocks does.
+WALL_RIM_M = 0.25  # So much of a near wall stays, to show where it is.
+WALL_MOUNT_DEPTH_M = 0.12  # What hangs on a near wall reaches this far into the room,
+WALL_MOUNT_HEIGHT_M = 1.0  # and hangs above this height; lower things stand on the floor.
+PARTITION_HEIGHT_M = 1.1  # So much of a wall between two rooms stays.
+MIN_ROOM_M2 = 1.0
+MIN_ROOM_WIDTH_M = 0.4  # A strip of floor so narrow is no room.
+MIN_STOREY_M = 1.9  # Floors lie at least this far over one another,
+MIN_STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
+STOREY_GAP_M = 1.5  # Between storeys that stand side by side.
+_WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
 def remaining_entities(volume: BlockVolume, drop: np.ndarray) -> tuple[Entity, ...]:
@@ -77,18 +85,6 @@ def _cell_of(entity: Entity, volume: BlockVolume) -> np.ndarray:
         middle = (drawn[0].cube_to_world @ [0.5, 0.5, 0.5, 1.0])[:3]
     cell = np.floor(middle - volume.corner).astype(np.int64)
     return np.clip(cell, 0, np.array(volume.states.shape) - 1)
-
-
-WALL_RIM_M = 0.25  # So much of a near wall stays, to show where it is.
-WALL_MOUNT_DEPTH_M = 0.12  # What hangs on a near wall reaches this far into the room,
-WALL_MOUNT_HEIGHT_M = 1.0  # and hangs above this height; lower things stand on the floor.
-PARTITION_HEIGHT_M = 1.1  # So much of a wall between two rooms stays.
-MIN_ROOM_M2 = 1.0
-MIN_ROOM_WIDTH_M = 0.4  # A strip of floor so narrow is no room.
-MIN_STOREY_M = 1.9  # Floors lie at least this far over one another,
-MIN_STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
-STOREY_GAP_M = 1.5  # Between storeys that stand side by side.
-_WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
 def without_ceiling(volume: BlockVolume) -> BlockVolume:

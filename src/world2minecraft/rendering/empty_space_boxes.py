@@ -1,18 +1,20 @@
-"""Empty boxes where cells change: the boxes that an edit touches, and no others, are made anew."""
+"""Cover the air of a grid by large empty boxes, each of which a ray crosses in one step.
+
+Every cell of air belongs to a box of air that holds it, as large as could be found; boxes may
+overlap. A ray crosses a furnished room in two or three steps, however fine the blocks are, and a
+packet of rays that leaves a box by one of its faces has hit nothing inside it. After an edit only
+the boxes that it touches are replaced.
+"""
 
 import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.rendering.grid_traversal import fill_distances
 
-# Empty boxes: the air of a grid as large boxes that a ray crosses in one step each.
-#
-# Every cell of air belongs to a box of air that holds it, as large as could be found; boxes may
-# overlap. A ray crosses a furnished room in two or three steps, however fine the blocks are, and a
-# bundle of rays that leaves a box by one of its faces can have met nothing inside it.
-
 MAX_SIDE_CELLS = 96  # A side; a box of the open sky need not be larger.
 _AIR = 0  # What ``solid`` holds for air; other values are taken over as they are.
+_ORPHAN = -9  # Air that has no box for a moment.
+_MAX_GROWTH = 4  # A table of boxes that grew so many times is made anew.
 
 
 def find_empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -122,10 +124,6 @@ def _claim_cells(space, volumes, box, row):
             for k in range(box[2], box[5]):
                 if space[i, j, k] < 0 or volumes[space[i, j, k]] < volumes[row]:
                     space[i, j, k] = row
-
-
-_ORPHAN = -9  # Air that has no box for a moment.
-_MAX_GROWTH = 4  # A table of boxes that grew so many times is made anew.
 
 
 def update_empty_boxes(

@@ -1,4 +1,4 @@
-"""Diagnostics: each reason is found where it is, stated in a sentence, and gone after the repair."""
+"""Diagnostics: each reason is found where it is, stated in words, and gone after the repair."""
 
 from dataclasses import replace
 

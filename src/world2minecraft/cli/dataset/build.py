@@ -107,9 +107,8 @@ def _print_summary(folder: Path, report: "BuildReport") -> None:
         print(f"note: {note}")
     splits = ", ".join(f"{count:,} {split}" for split, count in report.images.items())
     total, shards = sum(report.images.values()), report.shards
-    print(
-        f"{folder}: {total:,} images ({splits}) in {shards:,} shards, {format_duration(report.seconds)}"
-    )
+    seconds = format_duration(report.seconds)
+    print(f"{folder}: {total:,} images ({splits}) in {shards:,} shards, {seconds}")
     if report.made:
         each = report.milliseconds
         stages = ", ".join(f"{title} {each[stage]:.0f}" for stage, title in TITLES.items())

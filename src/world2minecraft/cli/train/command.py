@@ -77,9 +77,8 @@ def print_summary(out: Path, config: "RunConfig", state: Any, scores: dict[str, 
 
     micro = scores["protocols"]["monoscene"]["micro"]
     stopped = ", stopped early" if state.stopped else ""
-    print(
-        f"{state.step:,} steps in {format_duration(state.seconds)}{stopped}; best at {state.best_step:,}"
-    )
+    seconds = format_duration(state.seconds)
+    print(f"{state.step:,} steps in {seconds}{stopped}; best at {state.best_step:,}")
     print(
         f"IoU {100 * micro['iou']:.2f}, mIoU {100 * micro['miou']:.2f} by monoscene on the "
         f"{scores['split']} frames ({out / 'scores.json'} has all protocols)"

@@ -1,6 +1,6 @@
 """Multi-head attention, and deformable attention on maps and volumes.
 
-Of maps and volumes alike, by ``sampling.sample``, so that no compiled operator is needed. Places
+Works on maps and volumes alike, by ``sample_grid``, so that no compiled operator is needed. Places
 are shares of each axis, 0 to 1, in the order of the axes.
 """
 

@@ -2,7 +2,7 @@
 
 The coarsest cells are gathered into mega-voxels of 2x2x2. For each relation a matrix states how far
 each cell has it with each mega-voxel; by that matrix the mega-voxels' features come to the cells.
-The relations are supervised: alike, unlike, both empty, one empty (see ``losses.relations``).
+The relations are supervised: alike, unlike, both empty, one empty (see ``losses.relation_loss``).
 """
 
 import torch

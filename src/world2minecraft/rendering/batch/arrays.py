@@ -1,6 +1,7 @@
-"""The arrays of a batch: made once, filled as often as one likes.
+"""The arrays of a batch, and the kernel that draws the pictures of many poses into them.
 
-``BatchArrays`` is what a user sees, ``BatchPixels`` the same memory as the kernel wants it.
+``BatchArrays`` is what a user sees, ``BatchPixels`` the same memory as the kernel reads it. Arrays
+are allocated once and filled as often as needed.
 """
 
 from collections.abc import Collection, Iterator
@@ -16,7 +17,30 @@ from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 
-# The kernel of batches: pictures of many poses in one call, without Python between them.
+MAX_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
+MAX_PICTURES = 1_000_000
+EMPTY = np.empty(0)
+Size = tuple[int, int]  # height, width
+# Of each array: its output, its name in the kernel, its dtype, and numbers a pixel.
+_PLAN = {
+    "depth_m": ("depth", "depth", np.float32, ()),
+    "range_m": ("range", "distance", np.float32, ()),
+    "block_index": ("block", "block", np.int32, ()),
+    "face": ("face", "face", np.uint8, ()),
+    "cube_index": ("cube", "thing", np.int32, ()),
+    "colour": ("colour", "colour", np.uint8, (3,)),
+    "semantic": ("semantic", "semantic", np.uint8, ()),
+    "instance": ("instance", "instance", np.uint16, ()),
+    "opaque_depth_m": ("opaque", "opaque_depth", np.float32, ()),
+    "opaque_index": ("opaque", "opaque_index", np.int32, ()),
+    "opaque_cube_index": ("opaque", "opaque_thing", np.int32, ()),
+    "normal": ("normal", "normal", np.float32, (3,)),
+}
+_ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel writes these for everyone.
+BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
+# What ``render_volume`` makes where nothing is said, and what it makes always.
+PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
+ArraySpec = tuple[tuple[int, ...], np.dtype]
 
 
 class BatchPixels(NamedTuple):
@@ -91,13 +115,6 @@ def picture_row(array, n, slot, count):
     return n if len(array) == count else min(slot, len(array) - 1)
 
 
-MAX_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
-MAX_PICTURES = 1_000_000
-EMPTY = np.empty(0)
-
-Size = tuple[int, int]  # height, width
-
-
 @dataclass(frozen=True, eq=False)
 class BatchArrays:
     """What N looks at a volume give; arrays that were not asked for are None.
@@ -134,29 +151,6 @@ class BatchArrays:
         for field in fields(self):
             if (array := getattr(self, field.name)) is not None:
                 yield field.name, array
-
-
-# Of each array: its output, its name in the kernel, its dtype, and numbers a pixel.
-_PLAN = {
-    "depth_m": ("depth", "depth", np.float32, ()),
-    "range_m": ("range", "distance", np.float32, ()),
-    "block_index": ("block", "block", np.int32, ()),
-    "face": ("face", "face", np.uint8, ()),
-    "cube_index": ("cube", "thing", np.int32, ()),
-    "colour": ("colour", "colour", np.uint8, (3,)),
-    "semantic": ("semantic", "semantic", np.uint8, ()),
-    "instance": ("instance", "instance", np.uint16, ()),
-    "opaque_depth_m": ("opaque", "opaque_depth", np.float32, ()),
-    "opaque_index": ("opaque", "opaque_index", np.int32, ()),
-    "opaque_cube_index": ("opaque", "opaque_thing", np.int32, ()),
-    "normal": ("normal", "normal", np.float32, (3,)),
-}
-_ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel writes these for everyone.
-BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
-# What ``render_volume`` makes where nothing is said, and what it makes always.
-PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
-
-ArraySpec = tuple[tuple[int, ...], np.dtype]
 
 
 def array_specs(

@@ -1,9 +1,12 @@
-"""Processes that share one scene in memory and take its pictures.
+"""``RenderPool``: processes that share one scene in memory and take its pictures.
 
 The scene's arrays are written to shared memory once. Each process has a pipe of its own, so that
-one that is killed locks nobody out; pictures come back through a ring of slots of shared memory,
-so that memory is bounded however many poses there are. All is taken away again at the end, also
-after an error, after Ctrl-C, and when a process dies.
+one that is killed locks nobody out. Pictures come back through a ring of slots of shared memory, so
+that memory is bounded however many poses there are. All of it is freed at the end, also after an
+error, after Ctrl-C, and when a process dies.
+
+``concurrent.futures`` does not fit: ``ProcessPoolExecutor`` sends results through a pipe, pickled,
+and does not bound the results that nobody has taken yet.
 """
 
 import pickle
@@ -52,10 +55,11 @@ from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
-# The slots that pictures of a pool come back through, and how poses are cut into tasks.
-
 TASK_PX = 1 << 16  # A task has so many pixels at least: a message takes 0.1 ms.
 MAX_TASK_PICTURES = 64  # Pictures.
+MAX_WORKERS = 256
+QUEUED_TASKS = 2  # Tasks that each worker has, so that it never waits for the next.
+UNIT_EXPOSURE = LightSettings(exposure=1.0)
 
 
 class SlotRing:
@@ -115,15 +119,6 @@ def split_into_tasks(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
             last += 1
         yield first, last
         first = last
-
-
-# Not by concurrent.futures: ProcessPoolExecutor sends results through a pipe, pickled, and sets no
-# bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
-
-
-MAX_WORKERS = 256
-QUEUED_TASKS = 2  # Tasks that each worker has, so that it never waits for the next.
-UNIT_EXPOSURE = LightSettings(exposure=1.0)
 
 
 class RenderPool:

@@ -1,4 +1,8 @@
-"""A stream of pictures: those that come are drawn while those that went are written."""
+"""A stream of pictures: the next are drawn while the last are encoded and written.
+
+Kernels, encoders and files release Python's lock, so plain threads are enough. Queues are bounded,
+order is kept, and an error is raised where the next item would be returned.
+"""
 
 from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator, Sequence
@@ -21,17 +25,14 @@ from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, exposure_of
 from world2minecraft.rendering.views.cameras import Shot
 
-# Work that overlaps: things are made while those before them are used or written.
-#
-# Nothing here knows of pictures. Kernels, encoders and files let go of Python's lock, so plain
-# threads are enough. What waits between two hands is bounded, order is kept, and an error comes out
-# where the next thing would.
-
 Thing = TypeVar("Thing")
 Made = TypeVar("Made")
 
 SPARE = 2  # Things that may wait beside those that are made or written.
 POLL_S = 0.05  # How often a thread that waits looks whether it shall stop.
+Pictures = Generator[tuple[int, Picture], None, None]
+Write = Callable[[int, Shot, Picture], Any]
+MAX_WRITERS = 256
 
 
 def prefetch(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
@@ -111,12 +112,6 @@ def _raise_first(waiting: deque[Future[Made]]) -> None:
     for one in waiting:
         if one.done() and (error := one.exception()) is not None:
             raise error
-
-
-Pictures = Generator[tuple[int, Picture], None, None]
-Write = Callable[[int, Shot, Picture], Any]
-
-MAX_WRITERS = 256
 
 
 def render_stream(

@@ -1,7 +1,7 @@
-"""What a process of a pool does: it joins the scene in shared memory and draws what it is told.
+"""The worker processes of a pool: how they start, what they do, and how they end.
 
-It gets ``SceneMessage``, ``Job`` and ``Task`` through a pipe, draws into the slot that the task
-names, and answers each task with a ``Reply``. It ends with its pipe.
+A worker gets ``SceneMessage``, ``Job`` and ``Task`` through a pipe, draws into the slot that the
+task names, and answers each task with a ``Reply``. It ends with its pipe.
 """
 
 import pickle
@@ -26,6 +26,7 @@ from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene_tables import SceneTables
 
 Make = Callable[[int, Picture], Any]  # Number of the picture, picture; may be sent as a pickle.
+EXIT_TIMEOUT_S = 5.0  # For a worker to end by itself.
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,11 +161,6 @@ def picklable_error(error: Exception) -> Exception:
         return error.with_traceback(None)  # Its frames hold shared memory.
     told = "".join(traceback.format_exception_only(error)).strip()
     return WorkerError(f"a worker failed: {told}")
-
-
-# The worker processes of a pool: how they are started, and ended in any case.
-
-EXIT_TIMEOUT_S = 5.0  # For a worker to end by itself.
 
 
 @dataclass(eq=False)

@@ -1,4 +1,21 @@
-"""From a block state to its model: the rule that fits, its parts, and how the state turns them."""
+"""From a block state to its model: the rule that fits, its parts, and how the state rotates them.
+
+A model is written once, for north or for up, and rotated to the state. Matrices are float64 [4, 4]
+and carry points of the block to points of the block, about its middle. Lengths in the data files
+are sixteenths of a block. Keys of a part:
+
+- ``when``: property values, ``a|b`` for either, a list of such for any of them.
+- ``boxes``: x0 y0 z0 x1 y1 z1, flat where two are equal; or ``cross``: two upright pictures from
+  corner to corner, [half width, bottom, top]; or ``hash``: four upright pictures, [bottom, top].
+- ``skin``, ``skins``: as of a rule.
+- ``uv``: "place" (where the face lies in the block), "fit" (the whole texture), or a table of faces
+  to [u0, v0, u1, v1] or those words.
+- ``spin``: a table of faces to 90, 180 or 270 degrees, clockwise.
+- ``sides``: the boxes are for north, drawn for each side whose property has the value; ``faces``:
+  for up and down too.
+- ``tilt``: [axis, degrees, x, y, z], a rotation about a point, or a list of such.
+- ``glow``: it emits light.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -22,14 +39,20 @@ from world2minecraft.rendering.block_models.face_pictures import has_texture
 from world2minecraft.rendering.block_models.rules import ModelRule, rule_for
 from world2minecraft.rendering.block_models.texture_recipes import Values, recipe_of, values_of
 
-# Turning elements: a model is written once, for north or for up, and turned to what a state says.
-#
-# Matrices are float64 [4, 4] and carry points of the block to points of the block, about its middle.
-
 # Clockwise from above, from the side that models are written for.
 QUARTERS = ("north", "east", "south", "west")
 MIDDLE = (0.5, 0.5, 0.5)
 _NORMALS = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]])
+PLAIN = "plain self"
+WHOLE = (0.0, 0.0, 16.0, 16.0)
+_GROUPS = {
+    "west": "side",
+    "east": "side",
+    "north": "side",
+    "south": "side",
+    "up": "end",
+    "down": "end",
+}
 
 
 def rotation_about(
@@ -108,34 +131,6 @@ def rotate_element(element: Element, matrix: np.ndarray) -> Element:
         high=(float(high[0]), float(high[1]), float(high[2])),
         faces=tuple(faces),
     )
-
-
-# The parts of a model: boxes, flat pictures and crossed ones, as the data files have them.
-#
-# In: a part of a rule and the properties of a state. Out: ``Element`` values. Lengths are sixteenths
-# of a block. Keys of a part:
-#
-# - ``when``: property values, ``a|b`` for either, a list of such for any of them.
-# - ``boxes``: x0 y0 z0 x1 y1 z1, flat where two are equal; or ``cross``: two upright pictures from
-#   corner to corner, [half width, bottom, top]; or ``hash``: four upright pictures, [bottom, top].
-# - ``skin``, ``skins``: as of a rule. ``uv``: "place" (where the face lies in the block), "fit" (the
-#   whole texture), or a table of faces to [u0, v0, u1, v1] or those words. ``spin``: a table of faces
-#   to 90, 180 or 270 degrees, clockwise.
-# - ``sides``: the boxes are for north, drawn for each side whose property has the value; ``faces``:
-#   for up and down too.
-# - ``tilt``: [axis, degrees, x, y, z], a turn about a point, or a list of such.
-# - ``glow``: it shines by itself.
-
-PLAIN = "plain self"
-WHOLE = (0.0, 0.0, 16.0, 16.0)
-_GROUPS = {
-    "west": "side",
-    "east": "side",
-    "north": "side",
-    "south": "side",
-    "up": "end",
-    "down": "end",
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,9 @@
-"""A device with the compiled shader: made once for each adapter of a process."""
+"""GPU adapters, and the device with the compiled shader: made once for each adapter of a process.
+
+wgpu is imported only when a GPU is asked for. A software adapter draws on the CPU, slower than our
+own kernel; it is used only by name, for tests: ``W2M_GPU_ADAPTER=software``, or any part of an
+adapter's name.
+"""
 
 import os
 import tempfile
@@ -18,12 +23,16 @@ from world2minecraft.rendering.gpu.scene_buffers import LAYOUT, buffer_bytes
 from world2minecraft.rendering.gpu.uniforms import AT_CORNERS, AT_ENCODE, struct_text
 from world2minecraft.rendering.scene import BlockScene
 
-# The shader's text: the parts of this folder, and the constants that Python knows.
-
 PARTS = ("rays", "elements", "shade", "picture")
 # In the order of their bindings.
 BINDINGS = ("parameters", "cells", "light", "tables", "texels", "labels", "tone", "views", "out")
 _TYPES = {"cells": "i32", "views": "View"}
+ADAPTER_VARIABLE = "W2M_GPU_ADAPTER"
+SOFTWARE = "software"
+_SOFTWARE_NAMES = ("llvmpipe", "lavapipe", "swiftshader", "softpipe", "microsoft basic render")
+_ORDER = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
+BACKENDS = ("Vulkan", "Metal", "D3D12")  # OpenGL has no compute shaders worth asking for.
+_LIMITS = ("max-buffer-size", "max-storage-buffer-binding-size")
 
 
 def shader_text() -> str:
@@ -38,19 +47,6 @@ def shader_text() -> str:
         bindings += f"@group(0) @binding({place}) var<storage, {access}> {name}: {kind};\n"
     parts = [(folder / f"{name}.wgsl").read_text(encoding="utf-8") for name in PARTS]
     return "\n".join([constants, struct_text(), bindings, *parts])
-
-
-# Which graphics card draws: found by wgpu, which is imported only when someone asks.
-#
-# A software adapter draws on the CPU, slower than our own kernel; it is taken only by name, for
-# tests: ``W2M_GPU_ADAPTER=software``, or any part of an adapter's name.
-
-ADAPTER_VARIABLE = "W2M_GPU_ADAPTER"
-SOFTWARE = "software"
-_SOFTWARE_NAMES = ("llvmpipe", "lavapipe", "swiftshader", "softpipe", "microsoft basic render")
-_ORDER = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
-BACKENDS = ("Vulkan", "Metal", "D3D12")  # OpenGL has no compute shaders worth asking for.
-_LIMITS = ("max-buffer-size", "max-storage-buffer-binding-size")
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,9 @@ from world2minecraft.rendering.ray_caster.shading import ShadingParameters
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY, Backdrop, shading_parameters
 
-# What the shader wrote becomes the arrays of a picture.
+MAX_IN_FLIGHT = 2  # Submissions under way: one is drawn while another is read.
+MAX_FREE = MAX_IN_FLIGHT  # Sets of buffers that are kept for the next call.
+LOST = "{} stopped answering: {}; use --device cpu"
 
 
 def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: PlaneLayout) -> None:
@@ -76,11 +78,6 @@ def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: Plane
         arrays.opaque_thing[rows] = whole[layout.opaque + 2]
     for axis in range(3) if layout.normal >= 0 else ():
         arrays.normal[rows, :, axis] = real[layout.normal + axis]
-
-
-MAX_IN_FLIGHT = 2  # Submissions under way: one is drawn while another is read.
-MAX_FREE = MAX_IN_FLIGHT  # Sets of buffers that are kept for the next call.
-LOST = "{} stopped answering: {}; use --device cpu"
 
 
 class GpuRenderer:

@@ -1,4 +1,16 @@
-"""The light of one volume: sky light, block light and the lattice that pictures read."""
+"""The light of one volume: sky light, block light and the light lattice that pictures read.
+
+The light lattice holds, for every corner of every layer of cells, the light that a face shows
+there. ``lattice`` is uint16 [3, X + 2, Y + 2, Z + 2]: for axis 0, entry [0, i + 1, y, z] belongs to
+the layer of cells x = i (from -1 to X) and to the corner (y, z) in it, between the four cells
+(i, y - 1 to y, z - 1 to z); axis 1 has [1, x, j + 1, z], axis 2 [2, x, y, k + 1]. A face at its
+cell's boundary reads the layer in front, one inside its cell the cell's own.
+
+Bits 0 to 5 hold sky light in quarters of a level, 0 to 60: the mean over those of the four cells
+that are not solid. Bits 6 to 11 hold block light in the same unit. Bits 12 and 13 count the solid
+ones, 0 to 3, but two that touch only at the corner count 3, because they leave nothing between
+them.
+"""
 
 from dataclasses import dataclass
 
@@ -13,19 +25,9 @@ from world2minecraft.rendering.light.propagation import (
     rounded_reach,
 )
 
-# The light lattice: for every corner of every layer of cells, the light that a face shows there.
-#
-# ``lattice`` uint16 [3, X + 2, Y + 2, Z + 2]: for axis 0, entry [0, i + 1, y, z] belongs to the layer
-# of cells x = i (from -1 to X) and to the corner (y, z) in it, between the four cells (i, y - 1 to y,
-# z - 1 to z); axis 1 has [1, x, j + 1, z], axis 2 [2, x, y, k + 1]. A face at its cell's boundary
-# reads the layer in front, one inside its cell the cell's own.
-#
-# Bits 0 to 5 hold sky light in quarters of a level, 0 to 60: the mean over those of the four cells
-# that are not solid. Bits 6 to 11 hold block light alike. Bits 12 and 13 count the solid ones, 0 to
-# 3, but two that touch only at the corner count 3, because they leave nothing between them.
-
 BLOCK_SHIFT, COUNT_SHIFT = 6, 12
 _ONE, _BLOCK = 1 << 20, 1 << 10  # A packed cell: one, block light, sky light; 0 where solid.
+MAX_STATES = 65_535
 
 
 def quarter_level_table(reach: float) -> np.ndarray:
@@ -88,9 +90,6 @@ def _corner(a, b, c, d, table):
         solid = 3
     sky, block = table[count, total & 1023], table[count, (total >> np.uint32(10)) & 1023]
     return sky | (block << BLOCK_SHIFT) | (solid << COUNT_SHIFT)
-
-
-MAX_STATES = 65_535
 
 
 @dataclass(eq=False)

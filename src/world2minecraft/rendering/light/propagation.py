@@ -25,8 +25,6 @@ from world2minecraft.minecraft.rules.light import (
     neighbour_steps,
 )
 
-# What block states are to light: what each gives, and which way it lets light through.
-
 # States whose shape holds light back face by face; the game's own list, in its words.
 SHAPED = (
     "*_slab", "*_stairs", "snow", "farmland", "dirt_path", "piston", "sticky_piston",
@@ -37,6 +35,8 @@ SHAPED = (
 CLEAR_CUBES = ("glass", "*_glass", "barrier", "copper_grate", "*_copper_grate")
 WET = ("water", "lava", "kelp", "kelp_plant", "seagrass", "tall_seagrass", "bubble_column")
 HIDDEN_LAMP = "minecraft:light"
+BRIGHTEST = 15
+MAX_REACH = 16.0  # 15 * 16 units just fit a byte.
 
 
 @lru_cache(maxsize=1 << 16)
@@ -96,10 +96,6 @@ def _covers(boxes: np.ndarray) -> int:
                 inside = np.all(box[others] <= low) and np.all(box[3:][others] >= low + 0.5)
                 word |= int(inside) << (4 * side + quarter)
     return word
-
-
-BRIGHTEST = 15
-MAX_REACH = 16.0  # 15 * 16 units just fit a byte.
 
 
 def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.ndarray:

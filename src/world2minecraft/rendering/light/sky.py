@@ -11,11 +11,24 @@ import numpy as np
 
 from world2minecraft.core.jit import inlined
 
-# What a ray sees that meets nothing: the sky by its direction, with the sun in it.
-
 HALO = 0.35  # The sun's share in the sky around it.
 DISC_COSINE = 0.9990  # 2.6 degrees: larger than the true sun, as in the game.
 DISC = 4.0
+SUN_TILT_DEG = 30.0  # How far south of straight overhead the sun passes: shadows want a direction.
+MIN_SUN_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
+# hour: light, shade, sun, zenith, horizon
+_NIGHT = ((0.050, 0.066, 0.115), (0.040, 0.053, 0.095), (0.030, 0.040, 0.065),
+          (0.006, 0.010, 0.026), (0.020, 0.030, 0.062))  # fmt: skip
+_DAWN = ((0.520, 0.450, 0.430), (0.280, 0.270, 0.340), (0.880, 0.500, 0.260),
+         (0.130, 0.200, 0.420), (0.900, 0.560, 0.380))  # fmt: skip
+_DUSK = ((0.540, 0.430, 0.400), (0.280, 0.260, 0.330), (0.950, 0.460, 0.200),
+         (0.120, 0.160, 0.380), (0.920, 0.450, 0.250))  # fmt: skip
+_DAY = ((1.000, 0.980, 0.950), (0.380, 0.430, 0.530), (1.060, 0.970, 0.820),
+        (0.140, 0.330, 0.780), (0.560, 0.740, 0.940))  # fmt: skip
+_MOMENTS = (
+    (0.0, _NIGHT), (5.0, _NIGHT), (6.4, _DAWN), (8.5, _DAY), (15.5, _DAY), (17.6, _DUSK),
+    (19.2, _NIGHT), (24.0, _NIGHT),
+)  # fmt: skip
 
 
 class Background(NamedTuple):
@@ -68,10 +81,6 @@ def background_light(dx, dy, dz, background):
     return r, g, b
 
 
-SUN_TILT_DEG = 30.0  # How far south of straight overhead the sun passes: shadows want a direction.
-MIN_SUN_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
-
-
 @dataclass(frozen=True)
 class Sky:
     """The sky at an hour. Colours are linear."""
@@ -82,21 +91,6 @@ class Sky:
     zenith: tuple[float, float, float]
     horizon: tuple[float, float, float]
     sun_direction: tuple[float, float, float]  # unit, block axes: x east, y up, z south
-
-
-# hour: light, shade, sun, zenith, horizon
-_NIGHT = ((0.050, 0.066, 0.115), (0.040, 0.053, 0.095), (0.030, 0.040, 0.065),
-          (0.006, 0.010, 0.026), (0.020, 0.030, 0.062))  # fmt: skip
-_DAWN = ((0.520, 0.450, 0.430), (0.280, 0.270, 0.340), (0.880, 0.500, 0.260),
-         (0.130, 0.200, 0.420), (0.900, 0.560, 0.380))  # fmt: skip
-_DUSK = ((0.540, 0.430, 0.400), (0.280, 0.260, 0.330), (0.950, 0.460, 0.200),
-         (0.120, 0.160, 0.380), (0.920, 0.450, 0.250))  # fmt: skip
-_DAY = ((1.000, 0.980, 0.950), (0.380, 0.430, 0.530), (1.060, 0.970, 0.820),
-        (0.140, 0.330, 0.780), (0.560, 0.740, 0.940))  # fmt: skip
-_MOMENTS = (
-    (0.0, _NIGHT), (5.0, _NIGHT), (6.4, _DAWN), (8.5, _DAY), (15.5, _DAY), (17.6, _DUSK),
-    (19.2, _NIGHT), (24.0, _NIGHT),
-)  # fmt: skip
 
 
 def sky_at(hour: float) -> Sky:

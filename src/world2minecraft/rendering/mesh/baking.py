@@ -1,8 +1,8 @@
-"""A block volume becomes quads: faces that can be seen, with texture, tint and light.
+"""Bake a block volume to quads: visible faces with texture, tint and light.
 
-Full cubes hide what lies against them and are joined where they look alike; everything else is
-one quad a face. What can be hidden as a whole (a class, or what a cut of ``cuts`` takes away) keeps
-the faces behind it.
+Full cubes hide what lies against them, and their faces are merged where they look alike; everything
+else is one quad per face. What can be hidden as a whole (a class, or what one of the ways to cut the
+volume open removes) keeps the faces behind it. Light is that of the light lattice at the corners.
 """
 
 from dataclasses import dataclass
@@ -35,10 +35,14 @@ from world2minecraft.rendering.scene import bake_model
 from world2minecraft.rendering.scene_baking import Baker, joins_neighbours, kind_of, models_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL
 
-# Faces of full cubes that lie side by side and look alike become one quad.
-
 # For each side, the two axes along it.
 ALONG = np.array([[1, 2], [1, 2], [0, 2], [0, 2], [0, 1], [0, 1]])
+# Bits 0 to 3: the walls near an eye that stands towards (block x, block z) of these signs.
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
+CEILING, PARTITIONS = 1 << 4, 1 << 5
+_NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
+OPEN = np.array([60, 0, 0], np.uint8)  # Daylight and free corners: faces that a cut lays bare.
+NO_STATE = NO_COVER = 65_535
 
 
 class Rectangles(NamedTuple):
@@ -86,13 +90,6 @@ def _join_runs(keys: list[np.ndarray], may: np.ndarray) -> tuple[np.ndarray, np.
     return order[starts], np.diff(starts, append=len(order))
 
 
-# What is taken away so that one looks into a room: a bit for each way to cut it open.
-
-# Bits 0 to 3: the walls near an eye that stands towards (block x, block z) of these signs.
-CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
-CEILING, PARTITIONS = 1 << 4, 1 << 5
-
-
 def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
     """Return the cuts that take each block away, and each display entity.
 
@@ -113,12 +110,6 @@ def cut_bits(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
         gone = [id(one) not in kept for one in volume.entities if display_cubes((one,))]
         things |= np.array(gone, np.uint8) << bit
     return blocks, things
-
-
-# The light at the corners of quads: what rays read of the light lattice, at given places.
-
-_NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
-OPEN = np.array([60, 0, 0], np.uint8)  # Daylight and free corners: faces that a cut lays bare.
 
 
 def sample_lattice(
@@ -161,9 +152,6 @@ def _parts(words: np.ndarray) -> np.ndarray:
     return np.stack([words & 63, (words >> BLOCK_SHIFT) & 63, words >> COUNT_SHIFT], axis=1).astype(
         np.float64
     )
-
-
-NO_STATE = NO_COVER = 65_535
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,8 +31,6 @@ CODECS = {
     ".webm": ["-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-row-mt", "1",
               "-pix_fmt", "yuv420p"],
 }  # fmt: skip
-
-
 FrameWriter = Callable[[np.ndarray], None]  # Takes a frame, uint8 [H, W, 3], all of one size.
 
 

@@ -1,8 +1,10 @@
-"""How a surface sends light on: a matt lobe by the cosine, and a glossy one of small mirrors.
+"""The surface that a path hits, and how it scatters light: a matt and a glossy lobe.
 
-The glossy lobe is the microfacet model of Trowbridge and Reitz (GGX) with Smith's shadowing, its
-mirrors drawn among those that are seen. Rough surfaces that are no metal have no gloss at all: it
-would cost rays and show nothing.
+``PATH`` is the record of one path that the kernels of a band of rows share; lengths are cells of
+the grid, directions unit vectors, colours linear. The matt lobe follows the cosine. The glossy lobe
+is the microfacet model of Trowbridge and Reitz (GGX) with Smith's shadowing; visible normals are
+sampled. Rough surfaces that are not metal have no gloss at all: it would cost rays and show
+nothing.
 """
 
 import numpy as np
@@ -12,10 +14,6 @@ from world2minecraft.rendering.path_tracing.sky_light import tangent_frame
 from world2minecraft.rendering.ray_caster.ray import SOLID, texel_at, transform
 from world2minecraft.rendering.ray_caster.shading import normal_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, PANE, TURN
-
-# What a path knows of itself: one record that the kernels of a band of rows pass around.
-#
-# Lengths are cells of the grid, directions unit vectors, colours linear.
 
 # Where the light of a path goes: found at its first surface that is no glass.
 UNDECIDED, MATT, GLOSS = 0, 1, 2
@@ -50,6 +48,11 @@ PATH = np.dtype(
     ],
     align=True,
 )  # fmt: skip
+_FLAT = 128  # A normal map's middle.
+MIN_WIDTH = 0.02  # Of the glossy lobe: what is smoother is followed as if it were this.
+SHARP_WIDTH = 0.05  # Below it lamps are found by following the gloss alone.
+_DULL, _FADE = 0.50, 0.15  # Width from which no gloss is left, and how it fades before.
+_MIRROR = 0.04  # What glass and lacquer mirror straight ahead.
 
 
 def new_path() -> np.ndarray:
@@ -61,11 +64,6 @@ def new_path() -> np.ndarray:
 def copy_vector(to, vector):
     """Copy three numbers; numba's own way would want to allocate."""
     to[0], to[1], to[2] = vector[0], vector[1], vector[2]
-
-
-# What a path meets: the place, its normal, and what its texture says there.
-
-_FLAT = 128  # A normal map's middle.
 
 
 @inlined
@@ -144,12 +142,6 @@ def apply_normal_map(tables, turn, m, p, q, s):
         return
     for axis in range(3):
         s.normal[axis] /= length
-
-
-MIN_WIDTH = 0.02  # Of the glossy lobe: what is smoother is followed as if it were this.
-SHARP_WIDTH = 0.05  # Below it lamps are found by following the gloss alone.
-_DULL, _FADE = 0.50, 0.15  # Width from which no gloss is left, and how it fades before.
-_MIRROR = 0.04  # What glass and lacquer mirror straight ahead.
 
 
 @inlined

@@ -1,4 +1,4 @@
-"""A build on a neutral ground that turns once around: the picture that shows a build as a thing."""
+"""A build on a neutral ground, with a soft shadow, that turns once around."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -21,14 +21,15 @@ from world2minecraft.rendering.shading_parameters import NEUTRAL
 from world2minecraft.rendering.views.cameras import Shot
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
 
-# A neutral ground under a build that is shown alone, with a soft shadow where it stands.
-
 GROUND = (233.0, 231.0, 227.0)  # A warm light grey, darker towards the picture's corners.
 CORNER_SHADE = 0.10
 # Shadows by their softness in shares of the build's size, and how dark they are.
 SHADOWS = ((0.014, 0.46), (0.07, 0.36))
 LOW_SHARE = 0.35  # What hangs higher than this share of the build casts a fainter shadow.
 EDGE_SHARE = 0.25  # Of the build's size: so far around it the shadow is kept.
+FOV_DEG = 24.0  # Narrow: nearly parallel edges read as a model.
+OPEN_ELEVATION_DEG = 44.0  # Into a room, over its furniture.
+CLOSED_ELEVATION_DEG = 26.0  # A house, its roof and its walls.
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,11 +100,6 @@ def studio_of(volume: BlockVolume) -> Studio:
         per_block=float(per_block),
         block_to_room=volume.block_to_room,
     )
-
-
-FOV_DEG = 24.0  # Narrow: nearly parallel edges read as a model.
-OPEN_ELEVATION_DEG = 44.0  # Into a room, over its furniture.
-CLOSED_ELEVATION_DEG = 26.0  # A house, its roof and its walls.
 
 
 def turntable(

@@ -1,6 +1,9 @@
-"""Quarter turns of elements: boxes stay aligned, faces change places, textures turn or stay.
+"""Elements of model files: read, rotated by quarter turns, and merged where they share a box.
 
-All matrices carry points of the block ([0, 1] on each axis) and turn about its middle.
+All matrices carry points of the block ([0, 1] on each axis) and rotate about its middle. A quarter
+turn keeps boxes aligned: faces change places, textures turn or stay. Elements that fill the same
+box become one, their textures laid one over another: a grass block is a cube of earth with a
+second, tinted cube at the very same place, and as one box it stays a full cube.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -27,12 +30,10 @@ from world2minecraft.rendering.resource_packs.json_validation import (
 )
 from world2minecraft.rendering.resource_packs.tints import Tint
 
-# Elements that fill the same box become one, their textures laid one over another.
-#
-# A grass block is a cube of earth with a second, tinted cube at the very same place. One box with
-# joined textures leaves no doubt which of the two is seen, and a full cube stays a full cube.
-
 OVER, TIMES = "+", "*"  # In names of joined textures: a*rrggbb+b; no resource's name has them.
+_NORMALS = np.array([np.cross(u, v) for u, v in FACE_AXES])  # All inward, as v grows down.
+_BLOCK = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+LOWEST, HIGHEST = -16.0, 32.0  # Sixteenths of a block; the game refuses others.
 
 
 def merge_coincident(elements: Sequence[Element]) -> tuple[Element, ...]:
@@ -73,10 +74,6 @@ def _tinted_name(face: ElementFace) -> str:
     if face.tint is None:
         return face.texture
     return face.texture + TIMES + "".join(f"{value:02x}" for value in face.tint)
-
-
-_NORMALS = np.array([np.cross(u, v) for u, v in FACE_AXES])  # All inward, as v grows down.
-_BLOCK = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 
 @lru_cache(maxsize=64)
@@ -187,11 +184,6 @@ def _lock(side: int, matrix_bytes: bytes) -> np.ndarray:
     to_block[:3, 2] = -(axes.T @ before[:, 3])
     to_block[3, 2] = 1
     return after @ matrix @ to_block
-
-
-# One element of a model's file becomes an ``Element``: a box, its faces, its own rotation.
-
-LOWEST, HIGHEST = -16.0, 32.0  # Sixteenths of a block; the game refuses others.
 
 
 def element_of(

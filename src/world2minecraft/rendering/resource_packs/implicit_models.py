@@ -1,8 +1,10 @@
-"""Packs of textures alone: the boxes that are seen of a state, with the textures of its name.
+"""Models of packs that have textures alone: visible boxes with the textures that a name implies.
 
-Most resource packs only paint the game's own models anew. Where nobody gave the client jar that has
-those models, the boxes of ``minecraft/visual_shapes.py`` wear the textures that a block's name implies:
-``oak_stairs`` those of ``oak_planks``, a log its rings at the ends, a furnace its front.
+Most resource packs only repaint the game's own models. Without the client jar that has those
+models, the boxes of ``minecraft/visual_shapes.py`` get the textures of a block's name:
+``oak_stairs`` those of ``oak_planks``, a log its rings at the ends, a furnace its front. The game
+draws water and lava in code; here they are a box as high as the level, still above, and flowing at
+the sides.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,15 +30,30 @@ from world2minecraft.rendering.resource_packs.elements import (
 from world2minecraft.rendering.resource_packs.tints import Tint
 from world2minecraft.rendering.texture import Texture
 
-# Water and lava, which the game draws in code: a box as high as the level, with a pack's textures.
-#
-# A still one shows its still texture above; what flows shows the flowing one at its sides.
-
 FLUIDS = ("minecraft:water", "minecraft:lava")
 FULL = 8 / 9  # The height of a source, blocks; each level below it is a ninth lower.
 LAVA_LIGHT = 15
 # A frame of the flowing texture is two blocks wide and high; the first quarter is one block.
 _FLOW_SCALE = 0.5
+# Endings of names that say a shape, and those of what it may be made of.
+SHAPES = ("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate")
+MADE_OF = ("", "s", "_planks", "_block", "_block_side")
+OTHER_ENDINGS = {"_wood": "_log", "_hyphae": "_stem", "_carpet": "_wool", "_block": ""}
+COVERS = ("waxed_", "infested_")  # What looks as without it.
+OTHER_NAMES = {
+    "smooth_sandstone": "sandstone_top",
+    "smooth_red_sandstone": "red_sandstone_top",
+    "smooth_quartz": "quartz_block_bottom",
+}
+# Families of ``visual_boxes.json`` whose textures lie on their boxes as on a whole block.
+BOXES = (
+    *("fence", "fence gate", "wall", "carpet", "pressure plate", "button", "torch", "ladder"),
+    *("cactus", "snow", "whole blocks that one sinks into"),
+)
+CROSSES = ("sapling", "flower", "tuft", "mushroom", "tall plant", "cobweb", "stalk")
+FACINGS = {"up": (270, 0), "down": (90, 0), "north": (0, 0), "east": (0, 90)}
+AXES = {"x": (90, 90), "y": (0, 0), "z": (90, 0)}
+Names = Callable[[str], str | None]  # A picture's name without its folder to the texture's, or None
 
 
 def fluid_model(
@@ -73,27 +90,8 @@ def _face(side: int, high: tuple[float, float, float], still: str, flow: str, ti
     return ElementFace(flow if flows else still, uv * _FLOW_SCALE if flows else uv, tint)
 
 
-# Endings of names that say a shape, and those of what it may be made of.
-SHAPES = ("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate")
 SHAPES += ("pane", "carpet")
-MADE_OF = ("", "s", "_planks", "_block", "_block_side")
-OTHER_ENDINGS = {"_wood": "_log", "_hyphae": "_stem", "_carpet": "_wool", "_block": ""}
-COVERS = ("waxed_", "infested_")  # What looks as without it.
-OTHER_NAMES = {
-    "smooth_sandstone": "sandstone_top",
-    "smooth_red_sandstone": "red_sandstone_top",
-    "smooth_quartz": "quartz_block_bottom",
-}
-# Families of ``visual_boxes.json`` whose textures lie on their boxes as on a whole block.
-BOXES = (
-    *("fence", "fence gate", "wall", "carpet", "pressure plate", "button", "torch", "ladder"),
-    *("cactus", "snow", "whole blocks that one sinks into"),
-)
-CROSSES = ("sapling", "flower", "tuft", "mushroom", "tall plant", "cobweb", "stalk")
-FACINGS = {"up": (270, 0), "down": (90, 0), "north": (0, 0), "east": (0, 90)}
 FACINGS |= {"south": (0, 180), "west": (0, 270)}
-AXES = {"x": (90, 90), "y": (0, 0), "z": (90, 0)}
-Names = Callable[[str], str | None]  # A picture's name without its folder to the texture's, or None
 
 
 def implied_model(

@@ -1,4 +1,8 @@
-"""A model's file and its parents become one: elements, textures, and whether corners darken."""
+"""Blockstates and model files: the models of a state, each merged with its parents.
+
+Where a file leaves the choice to chance (a list with weights), the heaviest is taken, the first of
+equals: a model belongs to a state here, not to a place, so that all blocks of a state look alike.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,13 +19,11 @@ from world2minecraft.rendering.resource_packs.json_validation import (
 )
 from world2minecraft.rendering.resource_packs.pack_files import PackStack
 
-# A blockstates file and a block's properties become the models that are drawn, each turned.
-#
-# Where a file leaves the choice to chance (a list with weights), the heaviest is taken, the first of
-# equals: a look belongs to a state here, not to a place, so that all blocks of a state look alike.
-
 MAX_CASES = 4096  # Of a multipart; a game's redstone wire has about 20.
 MAX_CONDITION_DEPTH = 16  # Of conditions within conditions.
+MAX_PARENTS = 32  # The game's deepest chain has 5.
+MAX_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
+_CURE = "give the client jar of the game before the pack"
 
 
 @dataclass(frozen=True)
@@ -113,11 +115,6 @@ def _heaviest(entry: Any) -> ModelPart:
         *(as_quarter_turn(entry.get(axis, 0), axis) for axis in "xyz"),
         uv_lock=entry.get("uvlock", False) is True,
     )
-
-
-MAX_PARENTS = 32  # The game's deepest chain has 5.
-MAX_ELEMENTS = 2048  # Of one model; large furniture of mods has some hundred.
-_CURE = "give the client jar of the game before the pack"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,8 @@
-"""Packs in a stack: a file's name becomes its bytes or its JSON, from the highest that has it.
+"""Files of resource packs, alone and stacked: bytes or JSON from the highest pack that has a name.
 
-A file that cannot be read is written down in ``problems``, and the pack below is asked.
+A pack is a folder, a zip or a jar. Nothing is unpacked to disk, and a name that a pack holds is
+only a key here, so that no name can lead out of it. Sizes are checked before bytes are read. A file
+that cannot be read is recorded in ``problems``, and the pack below is used.
 """
 
 import json
@@ -18,11 +20,6 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.rendering.resource_packs.json_validation import as_number, parse_resource_name
 
-# One pack, opened: a folder, a zip or a jar. In: a path. Out: its files by their names.
-#
-# Nothing is unpacked to disk, and a name that a pack's file holds is only a key here, so that no
-# name can lead out of it. Sizes are checked before bytes are read.
-
 MAX_FILES = 400_000  # A client jar has about 30,000; a large pack of mods 150,000.
 MAX_DIRECTORY_BYTES = 128 << 20  # Of a zip's own list of files.
 MAX_RATIO = 200  # Unpacked to packed, of files over a megabyte; JSON packs to a thirtieth.
@@ -33,6 +30,11 @@ WHAT_A_PACK_IS = (
     "a pack is a folder, zip or jar with assets/minecraft/textures (or models, or blockstates) in "
     "it, such as resourcepacks/MyPack.zip or versions/1.21.4/1.21.4.jar of the game's folder"
 )
+MAX_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
+MAX_TOTAL_JSON_BYTES = 256 << 20  # The game's models and blockstates have 10 MB together.
+MAX_PROBLEMS = 48  # What one can still read; the rest is counted.
+# The format of resource packs whose rules are followed, that of 1.21.11: it chooses overlays.
+RESOURCE_FORMAT = 75
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,13 +173,6 @@ def _hint(source: Path, inner: list[str]) -> str:
     if (source / "manifest.json").is_file():
         return ", but one for Bedrock, which is made differently"
     return ", but a data pack" if (source / "data").is_dir() else ""
-
-
-MAX_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
-MAX_TOTAL_JSON_BYTES = 256 << 20  # The game's models and blockstates have 10 MB together.
-MAX_PROBLEMS = 48  # What one can still read; the rest is counted.
-# The format of resource packs whose rules are followed, that of 1.21.11: it chooses overlays.
-RESOURCE_FORMAT = 75
 
 
 class PackStack:

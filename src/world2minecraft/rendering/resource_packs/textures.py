@@ -1,4 +1,9 @@
-"""Names of textures become ``Texture`` values: read, cut, squared, joined, with labPBR maps."""
+"""Textures of resource packs: PNG decoding, resampling, labPBR maps, and overlays.
+
+Of an animation the first frame is read, resampled to a square of a power of two. Two files beside a
+texture hold labPBR 1.3 maps: ``NAME_n.png`` the relief, ``NAME_s.png`` the material; older layouts
+of ``_s`` look the same on disk and are read in the same way.
+"""
 
 import io
 import re
@@ -21,10 +26,21 @@ from world2minecraft.rendering.resource_packs.json_validation import (
 from world2minecraft.rendering.resource_packs.pack_files import PackStack
 from world2minecraft.rendering.texture import MAX_SIDE_PX, Texture
 
-# Textures laid one over another, each times a colour: what joined elements are drawn with.
-
 # The maps of a texture, and what stands for one that a layer lacks where another has it.
 FLAT = {"normal": (128, 128, 255), "roughness": 204, "metal": 0, "emission": 0}
+FIRST_METAL = 230  # Of the green channel: below it is the reflectance of what is no metal.
+NO_EMISSION = 255  # Of alpha; 254 is full.
+MAX_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
+_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
+MAX_PNG_BYTES = 32 << 20
+MAX_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
+MIN_PX, MAX_PX = 16, 128  # The sides that the renderer's textures have.
+SAMPLE = 100  # How many textures are looked at for their usual size.
+CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
+_CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
+# A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
+MIN_CLEAR_SHARE = 0.15
+HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts as it.
 
 
 def overlay_textures(layers: Sequence[tuple[Texture, tuple[int, ...]]]) -> Texture:
@@ -99,15 +115,6 @@ def _blend_over(below: Texture, above: Texture) -> Texture:
     return replace(below, colour=colour, translucent=is_clear, **maps)
 
 
-# The maps of labPBR beside a texture: ``NAME_n.png`` its relief, ``NAME_s.png`` its material.
-#
-# In: their pixels. Out: the maps that a ``Texture`` holds. Older layouts of ``_s`` look the same on
-# disk and are read as labPBR 1.3 all the same.
-
-FIRST_METAL = 230  # Of the green channel: below it is the reflectance of what is no metal.
-NO_EMISSION = 255  # Of alpha; 254 is full.
-
-
 def normal_map(pixels: np.ndarray) -> np.ndarray:
     """Return uint8 [N, N, 3] tangent-space normals of ``_n`` pixels, uint8 [N, N, 4].
 
@@ -132,12 +139,6 @@ def material_maps(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
     alpha = pixels[..., 3].astype(np.uint16)
     emission = np.where(alpha == NO_EMISSION, 0, (alpha * 255 + 127) // 254).astype(np.uint8)
     return roughness, metal, emission
-
-
-# PNG bytes become pixels: the first frame of an animation, as a square of a power of two.
-
-MAX_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
-_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 
 
 def png_size(data: bytes) -> tuple[int, int]:
@@ -237,17 +238,6 @@ def _area_weights(count: int, side_px: int) -> np.ndarray:
     low, high = edges[:-1, None], edges[1:, None]
     old = np.arange(count)[None, :]
     return np.clip(np.minimum(high, old + 1) - np.maximum(low, old), 0, None) / (high - low)
-
-
-MAX_PNG_BYTES = 32 << 20
-MAX_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
-MIN_PX, MAX_PX = 16, 128  # The sides that the renderer's textures have.
-SAMPLE = 100  # How many textures are looked at for their usual size.
-CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
-_CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
-# A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
-MIN_CLEAR_SHARE = 0.15
-HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts as it.
 
 
 def names_clear_material(name: str) -> bool:

@@ -17,9 +17,19 @@ from world2minecraft.rendering.textures.stencil import draw, paints_of
 from world2minecraft.rendering.textures.surface import Surface
 from world2minecraft.rendering.textures.wood import fibre
 
-# What closes an opening: glass, doors, ladders.
-
 GLINTS = ((7.0, 1.0, 2.5, 5.5), (9.0, 1.0, 3.0, 5.0), (23.0, 1.0, 10.5, 13.5))
+CHAIN = """
+......ml........ ......ml........ .....m..l....... .....m..l.......
+.....m..l....... .....d..m....... ......dm........ ......ml........
+......ml........ .....m..l....... .....m..l....... .....m..l.......
+.....d..m....... ......dm........ ......dm........ ......ml........
+"""
+RAIL = """
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+"""
 
 
 def glass(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -84,20 +94,6 @@ def ladder(canvas: Canvas, recipe: Recipe) -> Surface:
             tone + 0.06 * relief(canvas, height) - 0.08 * smooth(np.abs(place - 2), 0.6, 1.0) * rung
         )
     return Surface(tone + 0.02 * noise(canvas, 8, 8, 9), height, alpha=rung | rails, roughness=0.7)
-
-
-CHAIN = """
-......ml........ ......ml........ .....m..l....... .....m..l.......
-.....m..l....... .....d..m....... ......dm........ ......ml........
-......ml........ .....m..l....... .....m..l....... .....m..l.......
-.....d..m....... ......dm........ ......dm........ ......ml........
-"""
-RAIL = """
-..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
-..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
-..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
-..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
-"""
 
 
 def metal(canvas: Canvas, recipe: Recipe) -> Surface:

@@ -18,8 +18,6 @@ from world2minecraft.rendering.textures.recipe import Recipe
 from world2minecraft.rendering.textures.stencil import draw, paints_of
 from world2minecraft.rendering.textures.surface import Surface
 
-# Sprites of plants as letters, drawn for this program; ``stencil`` says what a letter means.
-
 FLOWERS = {
     "poppy": """
 ................ ................ ................ ................
@@ -104,7 +102,12 @@ MUSHROOM = """
 """
 
 
-# Leaves scattered over a canvas, one over another; they tile.
+BLADES = {
+    "grass": (9, 13.0, 3.0),
+    "crop": (6, 14.5, 1.0),
+    "short": (8, 7.0, 2.0),
+    "reed": (3, 16.0, 0.3),
+}
 
 
 class Stamps(NamedTuple):
@@ -134,14 +137,6 @@ def scatter(canvas: Canvas, count: int, length: float, width: float, salt: int) 
         identity[inside] = index
         along[inside], across[inside] = first[inside], second[inside]
     return Stamps(identity, along, across)
-
-
-BLADES = {
-    "grass": (9, 13.0, 3.0),
-    "crop": (6, 14.5, 1.0),
-    "short": (8, 7.0, 2.0),
-    "reed": (3, 16.0, 0.3),
-}
 
 
 def leaves(canvas: Canvas, recipe: Recipe) -> Surface:

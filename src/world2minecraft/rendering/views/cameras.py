@@ -1,4 +1,4 @@
-"""Where a camera is: the game's pose, and the shot that a renderer takes from it."""
+"""Cameras from a field of view or intrinsics, the game's poses, and the shots taken from them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,10 +18,9 @@ from world2minecraft.core.coordinates import (
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 
-# A camera from a picture's size and one of: vertical FOV, horizontal FOV, intrinsics.
-
 GAME_FOV_DEG = 70.0  # The game's usual field of view; the game's is vertical.
 MAX_FOV_DEG = 170.0  # Wider, and a flat picture shows little but its edges.
+MAX_COORDINATE = 30_000_000  # The game's world ends there.
 
 
 def camera_of(
@@ -90,9 +89,6 @@ def _intrinsics_values(intrinsics: np.ndarray | Sequence[float]) -> list[float]:
     if np.abs(flat).max() > 1e-9:
         raise ValueError("K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]")
     return [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
-
-
-MAX_COORDINATE = 30_000_000  # The game's world ends there.
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""What one sees around places: how far rays go, and what they end at.
+"""What is visible around places: which cells block the view, and how far rays go.
 
-Rays march through cells in short strides, all at once; where they cut a corner a little short,
-no view is worse for it.
+Rays march through cells in short strides, all at once; where they cut a corner a little short, no
+view is worse for it. ``minecraft.physics.walk_graph`` says where a person may stand.
 """
 
 from dataclasses import dataclass
@@ -15,12 +15,10 @@ from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.physics.walk_graph import is_door
 from world2minecraft.minecraft.visual_shapes import visual_boxes
 
-# What hides the view in a volume, and which cells have something above: one truth a cell.
-#
-# Where a person may stand, and the ways between, is told by ``minecraft.physics.walk_graph``.
-
 ROOF = 0.2  # Blocks: what is lower, such as a carpet, is no roof.
 SIGHT_SHARE = 0.3  # Of a cell's side: what is narrower hides little.
+MAX_VIEW_M = 12.0  # Rays end there.
+STRIDE_BLOCKS = 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +58,6 @@ def _measures(state: str) -> tuple[float, float]:
         return top, 0.0
     size = seen[:, 3:].max(axis=0) - seen[:, :3].min(axis=0)
     return top, float(np.sort(size)[1])
-
-
-MAX_VIEW_M = 12.0  # Rays end there.
-STRIDE_BLOCKS = 0.35
 
 
 class ViewRays(NamedTuple):

@@ -1,4 +1,8 @@
-"""A walk through the rooms of a volume at eye height, as smooth as a hand-held camera on a rail."""
+"""Plan a walk through the rooms of a volume at eye height, as smooth as a camera on a rail.
+
+One looks ahead and into the rooms, never long at a near wall: all headings of all places are rated
+by rays, and the best sequence of them, in which turning costs too, is found by dynamic programming.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -18,11 +22,6 @@ from world2minecraft.rendering.views.visibility import (
     view_blockers_of,
 )
 
-# Where one looks along a way: ahead and into the rooms, never long at a wall that is near.
-#
-# All headings of all places are rated by rays; the best sequence of them, in which turning costs
-# too, is found exactly by going through the places once.
-
 HEADINGS = 72  # Five degrees apart.
 PITCHES_DEG = (-4.0, 8.0, 22.0)  # Of the rays, down is positive.
 NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
@@ -33,6 +32,14 @@ WALL_COST = 0.8  # less for a wall before one's nose, within
 WALL_M = 1.1
 TURN_COST = 0.035  # Of five degrees.
 MAX_TURN = 5  # Headings from one place to the next.
+SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
+SMOOTH_M = 0.45  # Corners are rounded so much,
+TURN_SMOOTH_M = 0.5  # and turns of the head.
+WALK_M_S, TURN_DEG_S = 1.0, 50.0  # One slows down to turn.
+MAX_DURATION_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
+PITCH_DEG = 9.0  # Furniture lies lower than the eye.
+MIN_STILL_RATE = 0.08  # Of stills, where a view is bad; 1 where it is good.
+MIN_WALK_M = 0.4  # A way that is shorter is none: one turns round on the spot.
 
 
 def best_headings(
@@ -93,16 +100,6 @@ def _best_sequence(rating: np.ndarray) -> np.ndarray:
     for n in range(len(rating) - 1, 0, -1):
         sequence[n - 1] = came[n, sequence[n]]
     return sequence
-
-
-SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
-SMOOTH_M = 0.45  # Corners are rounded so much,
-TURN_SMOOTH_M = 0.5  # and turns of the head.
-WALK_M_S, TURN_DEG_S = 1.0, 50.0  # One slows down to turn.
-MAX_DURATION_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
-PITCH_DEG = 9.0  # Furniture lies lower than the eye.
-MIN_STILL_RATE = 0.08  # Of stills, where a view is bad; 1 where it is good.
-MIN_WALK_M = 0.4  # A way that is shorter is none: one turns round on the spot.
 
 
 @dataclass(frozen=True, eq=False)
