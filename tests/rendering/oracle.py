@@ -1,9 +1,9 @@
 """A slow, readable caster in float64 that tells what a picture must hold.
 
-It knows block states, models (``rendering.block_elements``) and nothing of the kernel: no tables, no empty
-boxes, no tiles. Every ray goes from cell to cell, and in each is tested against every element of
-the cell's block, all rays that are in the same kind of block at once. Elements that reach beyond
-their block, and those of display entities, are tested against every ray.
+It knows block states, models (``rendering.block_elements``) and nothing of the kernel: no tables,
+no empty boxes, no tiles. Every ray goes from cell to cell, and in each is tested against every
+element of the cell's block, all rays that are in the same kind of block at once. Elements that
+reach beyond their block, and those of display entities, are tested against every ray.
 
 The rules: a surface is the face by which a ray enters an element from outside; an element that
 holds the camera is not seen; a face without texture is not there; a texel with alpha under 128 is a

@@ -1,6 +1,7 @@
 """A picture of each feature, kept: what changes how worlds look changes one of these.
 
-``W2M_GOLDEN=write pytest tests/rendering/test_render_golden.py`` writes them anew; look at them then.
+``W2M_GOLDEN=write pytest tests/rendering/test_render_golden.py`` writes them again; look at them
+then.
 """
 
 import os

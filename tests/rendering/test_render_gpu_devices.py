@@ -87,7 +87,7 @@ def test_gpu_says_which_adapters_there_are(machine, monkeypatch):
     assert str(caught.value) == "no GPU adapter is named 'other'; there are: Some Card 4000"
 
 
-def test_without_wgpu_gpu_names_the_extra_and_auto_draws_on_the_cpu(machine, monkeypatch, scene):
+def test_without_wgpu_gpu_fails_and_auto_uses_the_cpu(machine, monkeypatch, scene):
     machine(CARD)
     monkeypatch.setattr("world2minecraft.rendering.gpu.device.find_spec", lambda name: None)
     with pytest.raises(MissingExtraError) as caught:

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from block_models_for_tests import FewLooks
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from looks_for_tests import FewLooks
 from scenes import random_volume
-from test_render_cubes import random_entity
+from test_render_display_entities import random_entity
 
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering import scene_tables as tables_module
@@ -56,7 +56,7 @@ def test_cells_say_what_space_and_looks_say():
     assert np.array_equal((code >> 1)[words < 0], tables.looks[words < 0])
 
 
-def test_turned_elements_carry_points_as_before_from_their_anchors():
+def test_rotated_elements_keep_points_relative_to_anchors():
     tables = scene_of().tables
     scene = packing.pack_scene(scene_of())
     elements = scene.tables[scene.offsets["at_elements"] : scene.offsets["at_turns"]]

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from benchmarks.render_scenes import RandomLooks, random_models, storeys
 from benchmarks.render_scenes import poses as poses_in
+from block_models_for_tests import FewLooks
 from gpu_for_tests import CAMERA, EVERYTHING, adapter_name, assert_alike
-from looks_for_tests import FewLooks
 from scenes import random_pose, random_volume, volume_of
-from test_render_cubes import random_entity
+from test_render_display_entities import random_entity
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.rendering import LightSettings, prepare_scene, render_parallel, render_volume

@@ -29,7 +29,7 @@ def test_open_air_by_day_is_as_it_is():
     assert exposure_of(states) == pytest.approx(1.1, abs=0.1)
 
 
-def test_the_sun_s_shadow_does_not_change_the_exposure_of_the_open():
+def test_sun_shadow_keeps_the_exposure_outdoors():
     states = np.zeros((8, 4, 8), np.uint16)
     states[:, 0] = 1
     assert exposure_of(states, sun_shadow=True) == pytest.approx(exposure_of(states))

@@ -69,7 +69,7 @@ def test_light_spreads_by_the_game_s_rules(seed):
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 10_000), st.integers(1, 8))
-def test_a_reach_takes_light_further_and_keeps_what_it_was_near_its_source(seed, reach):
+def test_a_larger_reach_extends_light_from_its_source(seed, reach):
     states = random_world(seed)
     near, far = light_field(states, PALETTE), light_field(states, PALETTE, reach)
     assert (far.sky_light / reach >= near.sky_light).all()

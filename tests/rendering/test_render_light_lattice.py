@@ -79,7 +79,7 @@ def test_a_face_reads_its_four_corners(side):
         assert look_up(field.lattice, side, cell, step, p, q) == pytest.approx(tuple(expected))
 
 
-def test_a_face_in_the_open_is_lit_in_full_and_a_corner_of_walls_is_dimmed():
+def test_open_faces_are_fully_lit_and_corners_dimmed():
     states = np.zeros((3, 3, 3), np.uint16)
     states[:, 0] = 1
     field = light_field(states, PALETTE)

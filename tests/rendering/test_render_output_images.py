@@ -104,7 +104,7 @@ def test_depth_is_kept_to_half_a_millimetre(depth):
     np.testing.assert_allclose(back[depth > 0], depth[depth > 0], atol=0.5001e-3)
 
 
-def test_depth_png_ends_at_its_largest_number_and_never_says_nothing_for_something():
+def test_depth_png_saturates_and_keeps_near_depths_nonzero():
     depth = np.array([[0, 1e-5, 65.0, 70.0]], np.float32)
     assert np.asarray(image(depth_bytes(depth, ".png"))).tolist() == [[0, 1, 65000, 65535]]
     assert np.asarray(image(depth_bytes(depth, ".png", 500))).tolist() == [[0, 1, 32500, 35000]]

@@ -185,7 +185,7 @@ def test_a_broken_file_falls_through_to_the_pack_below(tmp_path):
     assert looks.problems[1] == "assets/minecraft/textures/block/thing.png of bad: is no PNG"
 
 
-def test_a_texture_that_no_pack_has_leaves_the_block_to_the_next_source(tmp_path):
+def test_a_missing_texture_leaves_the_block_to_the_next_source(tmp_path):
     files = cube_files("thing", RED)
     del files[PICTURE.format("thing")]
     assert problem(tmp_path, files) == (

@@ -111,11 +111,11 @@ def test_a_renamed_plant_is_found_by_either_name(tmp_path):
 
 
 @pytest.mark.parametrize("state", ["chest", "red_bed", "oak_sign", "dirt", "water"])
-def test_what_has_no_texture_or_is_drawn_in_code_is_left_to_the_next(tmp_path, state):
+def test_blocks_without_textures_are_left_to_the_next_source(tmp_path, state):
     assert model_of(tmp_path, state, "chest", "red_bed", "oak_sign", "oak_planks") is None
 
 
-def test_a_model_that_lacks_its_parent_wears_its_texture_all_the_same(tmp_path):
+def test_a_model_without_its_parent_keeps_its_texture(tmp_path):
     files = {
         PICTURE.format("stone"): RED,
         "assets/minecraft/blockstates/stone.json": {"variants": {"": {"model": "block/stone"}}},

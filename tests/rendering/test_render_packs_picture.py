@@ -87,7 +87,7 @@ def test_each_side_shows_its_texture(tmp_path, turn, side, shown):
     assert picture.depth_m[24, 32] == pytest.approx(3.5, abs=0.01)
 
 
-def test_rays_pass_the_holes_of_a_cut_out_and_meet_what_is_behind(tmp_path):
+def test_rays_pass_cutout_holes_and_hit_what_is_behind(tmp_path):
     bars = plain(230, 230, 230)
     bars[4:12, 4:12] = 0
     files = cube_files("bars", bars) | cube_files("wall", plain(220, 30, 30))
@@ -108,7 +108,7 @@ def test_glass_of_a_pack_is_met_first_and_seen_through(tmp_path):
     assert red > green + 30 and blue > green + 10
 
 
-def test_a_cross_of_a_plant_is_seen_from_all_sides_and_through_its_holes(tmp_path):
+def test_plant_crosses_are_visible_from_all_sides(tmp_path):
     tuft = np.zeros((16, 16, 4), np.uint8)
     tuft[8:] = (255, 255, 255, 255)
     files = {PICTURE.format("fern"): tuft}  # No model: that of a plant is implied.

@@ -167,7 +167,7 @@ def test_half_clear_pixels_of_clear_stuff_are_translucent(tmp_path, name, alpha,
     assert texture.translucent is translucent
 
 
-def test_a_clear_block_makes_its_textures_clear_whatever_they_are_called(tmp_path):
+def test_a_clear_block_makes_its_textures_clear(tmp_path):
     files = cube_files("tinted_glass", RED)
     files["assets/minecraft/models/block/tinted_glass.json"]["textures"] = {"all": "block/pale"}
     files[PICTURE.format("pale")] = plain(90, 90, 90, 120)

@@ -208,7 +208,7 @@ def test_four_quarter_turns_are_none_and_each_keeps_volume():
     np.testing.assert_allclose(np.linalg.matrix_power(once, 12), np.eye(4), atol=1e-12)
 
 
-def test_an_element_of_its_own_turn_keeps_its_box_and_gets_the_product():
+def test_a_rotated_element_keeps_its_box_and_multiplies_turns():
     raw = raw_element([0.8, 0, 8], [15.2, 16, 8])
     raw["rotation"] = {"origin": [8, 8, 8], "axis": "y", "angle": 45, "rescale": True}
     element = made(raw)

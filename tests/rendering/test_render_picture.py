@@ -43,7 +43,7 @@ def test_every_ray_meets_a_closed_room():
         assert (picture.block_index >= 0).all()
 
 
-def test_a_turned_scene_gives_the_same_picture_to_a_turned_camera():
+def test_rotating_scene_and_camera_keeps_the_picture():
     rng = np.random.default_rng(6)
     volume = random_volume(rng, (8, 6, 8))
     turned = turn_volume(volume, 1)
@@ -118,7 +118,7 @@ def test_an_enormous_picture_is_refused_before_memory_is_taken():
         render_volume(closed_room(), camera, np.eye(4))
 
 
-def test_a_red_block_is_drawn_red_and_corners_are_darker_than_middles():
+def test_a_red_block_is_red_with_darker_corners():
     states = np.zeros((9, 9, 9), np.int64)
     states[:, 0, :] = 6
     states[4, 1, 4] = 1

@@ -96,7 +96,7 @@ def test_the_plan_has_room_x_to_the_right_and_room_y_up():
     assert v < 0.3 * image.shape[0]
 
 
-def test_a_preview_shows_floor_and_furniture_and_leaves_a_quiet_edge():
+def test_a_preview_shows_floor_furniture_and_a_margin():
     image = preview(furnished(), 240, 180)
     assert image.shape == (180, 240, 3)
     assert redness(image).sum() > 100

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from block_models_for_tests import FewLooks
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from looks_for_tests import FewLooks
 from scenes import CAMERA, random_pose, random_volume, volume_of
 
 from world2minecraft.core.coordinates import apply, look_at
@@ -148,7 +148,7 @@ def test_a_turned_plate_is_met_where_it_is_and_gives_its_normal():
     assert abs(normal[2]) == pytest.approx(np.sqrt(0.5))
 
 
-def test_what_reaches_out_of_its_block_is_drawn_and_named_after_it():
+def test_overhanging_elements_belong_to_their_block():
     volume = row_of(0, 0, 1, 0, 0)
     picture = look_along(volume, FewLooks({1: "tall"}))
     cells = set(picture.block_index[picture.block_index >= 0].tolist())

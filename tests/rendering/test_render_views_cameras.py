@@ -25,7 +25,7 @@ def test_the_vertical_fov_is_from_edge_to_edge(width, height, fov):
 
 
 @given(sizes, sizes, fovs)
-def test_the_horizontal_fov_is_the_vertical_one_of_the_picture_on_its_side(width, height, fov):
+def test_horizontal_fov_is_vertical_fov_rotated(width, height, fov):
     lying = camera_of(width, height, horizontal_fov_deg=fov)
     standing = camera_of(height, width, vertical_fov_deg=fov)
     assert lying.fx_px == standing.fy_px

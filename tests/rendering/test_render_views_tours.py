@@ -85,7 +85,7 @@ def test_an_orbit_goes_around_once_at_one_height():
 # What hides the view.
 
 
-def test_walls_hide_and_doors_do_not_and_what_is_under_a_ceiling_is_roofed():
+def test_walls_block_views_doors_do_not_ceilings_roof():
     hiding = view_blockers_of(house())
     assert hiding.hides[0].all() and not hiding.hides[1:5, 1:4, 1:5].any()
     assert not hiding.hides[5, 1:3, 2].any()
@@ -131,7 +131,7 @@ def test_a_moving_tour_is_smooth():
     assert np.linalg.norm(steps, axis=1).max() < 1.0 / 24 * 1.6
 
 
-def test_a_tour_looks_into_the_room_and_not_at_the_wall_before_it():
+def test_a_tour_looks_into_the_room_not_at_a_near_wall():
     volume = house(door=False)
     scene = prepare_scene(volume)
     poses = [shot.camera_to_room for shot in plan_tour(volume, CAMERA, 8).shots]

@@ -61,7 +61,7 @@ def test_the_middle_of_an_empty_ground_has_its_colour():
     assert (seen[0, 0] < seen[18, 24]).all()
 
 
-def test_a_turntable_shows_the_build_on_the_ground_from_all_sides():
+def test_a_turntable_shows_the_build_from_all_sides():
     volume = room()
     pictures = list(turntable(volume, CAMERA, 4, options=DrawOptions(samples=2)))
     assert len(pictures) == 4

@@ -111,7 +111,7 @@ def recolour_design(
     blocks: Sequence[DesignBlock],
     cells: np.ndarray,
     materials: Mapping[str, Material],
-    hue: ObjectColours,
+    own_colours: ObjectColours,
     class_id: int,
     palette: Palette,
     parameters: BuildParameters,
@@ -120,15 +120,15 @@ def recolour_design(
 
     Args:
         blocks: N blocks.
-        cells: int [N, 3], where they stand in the box of ``hue``.
+        cells: int [N, 3], where they stand in the box of ``own_colours``.
         materials: what each role is made of; blocks of other roles stay.
-        hue: the object's colours.
+        own_colours: the object's colours.
         class_id: the object's class.
         palette: the blocks that plain roles may become.
         parameters: how colours are weighed.
     """
     states = [block.state for block in blocks]
-    if hue.paint is None and not hue.known.any():
+    if own_colours.paint is None and not own_colours.known.any():
         return states
     groups: dict[Material, list[int]] = {}
     for index, block in enumerate(blocks):
@@ -137,17 +137,19 @@ def recolour_design(
             groups.setdefault(material, []).append(index)
     for material, indices in groups.items():
         own, at = [states[index] for index in indices], cells[indices]
-        colour = _colour(at, hue)
+        colour = _colour(at, own_colours)
         if material.kind == "cloth" and all(map(is_full_cube, own)):
             renewed = [_cube_of(colour, own[0], palette.blocks[class_id], parameters)] * len(own)
         elif material.kind not in (PLAIN, FIXED):
-            renewed = _restated(own, material.kind, colour, parameters)
+            renewed = _change_material(own, material.kind, colour, parameters)
         elif material.kind == FIXED and not _is_far(material, colour, parameters.lightness_weight):
             renewed = own
-        elif hue.paint is None and all(map(is_full_cube, own)):
-            renewed = _painted(at, hue, class_id, palette, parameters)
+        elif own_colours.paint is None and all(map(is_full_cube, own)):
+            renewed = _paint_blocks(at, own_colours, class_id, palette, parameters)
         else:
-            renewed = own if material.kind == FIXED else _restated(own, PLAIN, colour, parameters)
+            renewed = (
+                own if material.kind == FIXED else _change_material(own, PLAIN, colour, parameters)
+            )
         for index, state in zip(indices, renewed, strict=True):
             states[index] = state
     return states
@@ -160,7 +162,7 @@ def _cube_of(
 
     Cloth comes in sixteen colours, and no cube looks woven.
     """
-    own = _restated([wool], "cloth", colour, parameters)
+    own = _change_material([wool], "cloth", colour, parameters)
     offered = [*own, *choices]
     handicaps = np.array([0.0] + [OTHER_CLOTH] * len(choices))
     costs = colour_costs(colour[None], offered, parameters.lightness_weight, handicaps, FADED)
@@ -173,39 +175,41 @@ def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> 
     return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
 
 
-def _colour(cells: np.ndarray, hue: ObjectColours) -> np.ndarray:
+def _colour(cells: np.ndarray, own_colours: ObjectColours) -> np.ndarray:
     """Return the median colour, float32 [3], of cells; that of the whole object where none is."""
-    if hue.paint is not None:
-        return hue.paint
+    if own_colours.paint is not None:
+        return own_colours.paint
     at = tuple(cells.T)
-    usable = hue.known[at]
-    chosen = hue.colours[at][usable] if usable.any() else hue.colours[hue.known]
+    usable = own_colours.known[at]
+    chosen = (
+        own_colours.colours[at][usable] if usable.any() else own_colours.colours[own_colours.known]
+    )
     clear = np.hypot(chosen[:, 1], chosen[:, 2]) >= CLEAR_CHROMA
     if clear.mean() >= CLEAR_SHARE:  # Shade and what shines through take a colour's hue away.
         chosen = chosen[clear]
     return np.median(chosen, axis=0).astype(np.float32)
 
 
-def _painted(
+def _paint_blocks(
     cells: np.ndarray,
-    hue: ObjectColours,
+    own_colours: ObjectColours,
     class_id: int,
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
     """Return full blocks of the palette for cells, each as its own colour asks, but calmly."""
-    mask = np.zeros(hue.known.shape, bool)
+    mask = np.zeros(own_colours.known.shape, bool)
     mask[tuple(cells.T)] = True
-    known = hue.known & mask if (hue.known & mask).any() else hue.known
+    known = own_colours.known & mask if (own_colours.known & mask).any() else own_colours.known
     limit = min(PLAIN_PAINTS, parameters.object_colours)
     choice = BlockChoice(class_id, palette, parameters, limit)
     renewed = np.empty(mask.shape, object)
     within = mask | known
-    renewed[within] = paint_surface(within, hue.colours, known, choice)
+    renewed[within] = paint_surface(within, own_colours.colours, known, choice)
     return renewed[tuple(cells.T)].tolist()
 
 
-def _restated(
+def _change_material(
     states: list[str], kind: str, colour: np.ndarray, parameters: BuildParameters
 ) -> list[str]:
     """Return states in the material nearest to a colour; those of no known kind stay."""
@@ -260,7 +264,7 @@ def design_box(
     size = np.array([along, across, up])
     middle = lattice.coordinates_of(placement.center_m)
     bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
-    axis, out = placement.quarter_turns % 2, _standing_out(design, placement, lattice)
+    axis, out = placement.quarter_turns % 2, _protrusion(design, placement, lattice)
     solid = size - np.where(np.arange(3) == axis, out, 0)
     low = np.floor(np.array([*(middle[:2] - solid[:2] / 2), bottom]) + 0.5).astype(int)
     if placement.quarter_turns >= 2:  # The front looks to where coordinates fall.
@@ -283,13 +287,13 @@ def body_box(
 
     An object's front colours the front of its body, not the handles before it.
     """
-    axis, out = placement.quarter_turns % 2, _standing_out(design, placement, lattice)
+    axis, out = placement.quarter_turns % 2, _protrusion(design, placement, lattice)
     along = np.arange(3) == axis
     start = low + np.where(along & (placement.quarter_turns >= 2), out, 0)
     return start, size - np.where(along, out, 0)
 
 
-def _standing_out(design: BlockDesign, placement: Placement, lattice: Lattice) -> int:
+def _protrusion(design: BlockDesign, placement: Placement, lattice: Lattice) -> int:
     """Return by how many blocks a design stands out to its front alone."""
     own = block_size(placement.size_m, lattice.blocks_per_metre)
     along, _, across = design.size
@@ -317,7 +321,7 @@ def place_design(
     design: BlockDesign,
     low: np.ndarray,
     thing: ObjectLabel,
-    hue: ObjectColours,
+    own_colours: ObjectColours,
     palette: Palette,
     within: np.ndarray,
     parameters: BuildParameters | None = None,
@@ -329,14 +333,14 @@ def place_design(
         design: blocks with offsets in block axes.
         low: int [3], its first block on the canvas, in room axes.
         thing: the object's class and instance.
-        hue: the object's colours in its box of blocks.
+        own_colours: the object's colours in its box of blocks.
         palette: the blocks that may replace the design's own full ones.
         within: bool [X, Y, Z], where things may stand.
         parameters: how colours are weighed.
     """
     shape = canvas.states.shape
     local = _cells_of(design)
-    states = _states(design, local, thing, hue, palette, parameters or BuildParameters())
+    states = _states(design, local, thing, own_colours, palette, parameters or BuildParameters())
     for cell, state in zip(local.tolist(), states, strict=True):
         at = tuple((low + cell).tolist())
         if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
@@ -349,17 +353,23 @@ def _states(
     design: BlockDesign,
     cells: np.ndarray,
     thing: ObjectLabel,
-    hue: ObjectColours,
+    own_colours: ObjectColours,
     palette: Palette,
     parameters: BuildParameters,
 ) -> list[str]:
     if design.materials:
         blocks, materials = design.blocks, design.materials
-        return recolour_design(blocks, cells, materials, hue, thing.class_id, palette, parameters)
-    median = np.median(hue.colours[hue.known], axis=0) if hue.known.any() else hue.paint
+        return recolour_design(
+            blocks, cells, materials, own_colours, thing.class_id, palette, parameters
+        )
+    median = (
+        np.median(own_colours.colours[own_colours.known], axis=0)
+        if own_colours.known.any()
+        else own_colours.paint
+    )
     states = []
     for cell, block in zip(cells.tolist(), design.blocks, strict=True):
-        colour = hue.colours[tuple(cell)] if hue.known[tuple(cell)] else median
+        colour = own_colours.colours[tuple(cell)] if own_colours.known[tuple(cell)] else median
         states.append(
             block.state if colour is None else _in_colour(block.state, colour, thing, palette)
         )

@@ -383,14 +383,14 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
 
 
 def make_solids(
-    placements: Sequence[Placement], held: Mapping[int, np.ndarray], coats: ColourSource
+    placements: Sequence[Placement], held: Mapping[int, np.ndarray], colour_source: ColourSource
 ) -> dict[int, Solid]:
     """Return what placements are fitted to, copies alike, by the id of each."""
     solids: dict[int, Solid] = {}
     for one in placements:
         if len(held[id(one)]):
-            cells, _ = coats.with_tops(held[id(one)])
-            inner = enclosed_cells(cells, coats.grid, one.class_id)
+            cells, _ = colour_source.with_tops(held[id(one)])
+            inner = enclosed_cells(cells, colour_source.grid, one.class_id)
             solids[id(one)] = make_solid(cells, inner, one.quarter_turns)
     return share_solids(solids, {id(one): one.class_id for one in placements})
 
@@ -399,7 +399,7 @@ def good_fits(
     placements: Sequence[Placement],
     held: Mapping[int, np.ndarray],
     solids: Mapping[int, Solid],
-    coats: ColourSource,
+    colour_source: ColourSource,
     lattice: Lattice,
     kinds_of: Callable[[np.ndarray, Placement], frozenset[str]],
 ) -> dict[int, CellsDesign]:
@@ -409,19 +409,19 @@ def good_fits(
     missed by more than the least IoU, goes to the library instead; so do all chairs of a kind
     where one does, for they are to be equal.
     """
-    side = coats.grid.voxel_m * lattice.blocks_per_metre
+    side = colour_source.grid.voxel_m * lattice.blocks_per_metre
     made: dict[int, CellsDesign] = {}
     lost: set[str] = set()
     for one in (one for one in placements if one.template != OWN_CELLS and id(one) in solids):
-        cells, hues = coats.with_tops(held[id(one)])
-        kinds = kinds_for_sheet(kinds_of(hues, one), solids[id(one)], side)
+        cells, samples = colour_source.with_tops(held[id(one)])
+        kinds = kinds_for_sheet(kinds_of(samples, one), solids[id(one)], side)
         if not kinds & BULKY:
             fit = None
         else:
             fit = fit_cells(
                 cells,
                 solids[id(one)],
-                coats.grid,
+                colour_source.grid,
                 lattice,
                 kinds,
                 shift=True,

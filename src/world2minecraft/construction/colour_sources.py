@@ -67,16 +67,16 @@ class ColourSource:
         The snapped design stands up to half a block off the object; its front must take the
         colours of the object's front all the same.
         """
-        cells, hues = self.with_tops(cells)
+        cells, samples = self.with_tops(cells)
         size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
         centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
         share = (centres - placement.center_m) / size + 0.5
         near = (np.abs(share - 0.5) <= 0.5 + self.grid.voxel_m / size).all(1)
         blocks = np.floor(share[near] * np.array(shape)).astype(int)
-        return ColourSamples(hues[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
+        return ColourSamples(samples[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
 
-    def colours_of(self, hues: "ColourSamples") -> tuple[np.ndarray, np.ndarray]:
+    def colours_of(self, samples: "ColourSamples") -> tuple[np.ndarray, np.ndarray]:
         """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
-        at = tuple(hues.cells.T)
+        at = tuple(samples.cells.T)
         usable = self.coloured[at] & self.exposed[at]
         return self.colours[at], usable if usable.any() else self.coloured[at]

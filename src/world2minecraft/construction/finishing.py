@@ -83,7 +83,7 @@ def restrict_to_palette(canvas: Canvas, palette: Palette) -> None:
     gone = (changed == 0) & (canvas.states > 0)
     canvas.states[:] = changed
     canvas.semantic[gone] = canvas.instance[gone] = 0
-    canvas.entities[:] = [_restricted(entity, palette) for entity in canvas.entities]
+    canvas.entities[:] = [_restrict_entity(entity, palette) for entity in canvas.entities]
 
 
 def nearest_allowed(state: str, palette: Palette) -> str:
@@ -122,7 +122,7 @@ def _nearest(state: str, choices: list[str]) -> str:
     return choices[int(nearest_oklab(wanted, offered)[0])]
 
 
-def _restricted(entity: Entity, palette: Palette) -> Entity:
+def _restrict_entity(entity: Entity, palette: Palette) -> Entity:
     if entity.id != BLOCK_DISPLAY:
         return entity
     held: Mapping[str, Any] = entity.nbt["block_state"]

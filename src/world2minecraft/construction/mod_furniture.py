@@ -52,7 +52,7 @@ def mod_furniture(
     piece = next(fitting, None)
     if piece is None:
         return None
-    blocks = _joined(piece, _laid_out(piece, size, colour))
+    blocks = _join_neighbours(piece, _lay_out(piece, size, colour))
     spans = (Span(1, 1, 1), Span(1, 1, 1), Span(1, 1, 1))
     whole = Template(found.name, found.class_id, spans, lambda *_: [], lambda *_: blocks)
     return lay_template(whole, size, None, placement.quarter_turns)
@@ -114,9 +114,7 @@ def _fits(piece: FurniturePiece, size: BlockSize) -> bool:
     return limits[0] and (piece.fill == "row" or limits[1]) and limits[2]
 
 
-def _laid_out(
-    piece: FurniturePiece, size: BlockSize, colour: np.ndarray | None
-) -> list[LocalBlock]:
+def _lay_out(piece: FurniturePiece, size: BlockSize, colour: np.ndarray | None) -> list[LocalBlock]:
     """Return the blocks of a piece that looks east, each in the colour of the object."""
     deep, wide, high = {
         "one": (1, 1, 1),
@@ -129,7 +127,7 @@ def _laid_out(
         properties = dict(cell.properties)
         if piece.facing is not None:
             properties["facing"] = FACINGS[piece.facing]
-        state = str(BlockState(_coloured(cell.id, colour), properties))
+        state = str(BlockState(_choose_material(cell.id, colour), properties))
         i0, j0, k0 = cell.at
         blocks += [
             LocalBlock((i0 + i, j0 + j, k0 + k), state, "body")
@@ -140,7 +138,7 @@ def _laid_out(
     return blocks
 
 
-def _coloured(name: str, colour: np.ndarray | None) -> str:
+def _choose_material(name: str, colour: np.ndarray | None) -> str:
     """Return a block's name with its wood or dye nearest to a colour."""
     for word, kinds, sample in (("{wood}", WOODS, "_planks"), ("{dye}", DYES, "_wool")):
         if word not in name:
@@ -153,7 +151,7 @@ def _coloured(name: str, colour: np.ndarray | None) -> str:
     return name
 
 
-def _joined(piece: FurniturePiece, blocks: list[LocalBlock]) -> list[LocalBlock]:
+def _join_neighbours(piece: FurniturePiece, blocks: list[LocalBlock]) -> list[LocalBlock]:
     """Return blocks that look east with the properties by which they join those beside them.
 
     Commands would compute these at the next update; a written world gets none.

@@ -78,7 +78,7 @@ class ObjectBuilder:
     ):
         grid, colours, coloured, palette, parameters = source
         free = (grid.labels == 0) & (grid.source != UNSEEN)
-        self.coats = ColourSource(grid, colours, coloured, parameters.close_tops)
+        self.colour_source = ColourSource(grid, colours, coloured, parameters.close_tops)
         self.open_share = volume_shares(free, grid, canvas.lattice)
         self.within = within_storeys(canvas, footprints)
         self.canvas, self.grid, self.palette = canvas, grid, palette
@@ -86,11 +86,11 @@ class ObjectBuilder:
         self.parameters = parameters
         self.lattice = canvas.lattice
         self.cell_blocks = grid.voxel_m * self.lattice.blocks_per_metre
-        self.dresser = ShapePainter(palette, parameters)
+        self.shape_painter = ShapePainter(palette, parameters)
         self.fitted = np.zeros(grid.shape, bool)  # Cells that some fit has shown or left out.
         self.plates = PlateBuilder(canvas, palette)
         self.paints = chair_paints(
-            grid, colours, coloured & self.coats.exposed, parameters.lightness_weight
+            grid, colours, coloured & self.colour_source.exposed, parameters.lightness_weight
         )
 
     def put_all(self, placements: Sequence[Placement]) -> None:
@@ -99,14 +99,14 @@ class ObjectBuilder:
             self.plates.put_worktops(self.grid, self.colours, self.coloured)
         voxels = self.parameters.style == "voxels"
         if not voxels and self.lattice.blocks_per_metre < FINE_SCALE:
-            placements = substitute_templates(placements, self._cells_of, self.coats)
+            placements = substitute_templates(placements, self._cells_of, self.colour_source)
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
-        solids = make_solids(own, held, self.coats)
+        solids = make_solids(own, held, self.colour_source)
         well = {}
         if voxels:
             kinds = self._kinds_of_placement
-            well = good_fits(placements, held, solids, self.coats, self.lattice, kinds)
+            well = good_fits(placements, held, solids, self.colour_source, self.lattice, kinds)
         for placement in sorted(placements, key=placement_order):
             cells = held[id(placement)]
             known = placement.template != CELLS
@@ -116,7 +116,7 @@ class ObjectBuilder:
                 solid = solids.get(id(placement))
                 self.put_cells(cells, placement.class_id, placement.object_id, solid)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
-        rest &= ~self._shown() & ~self._represented(placements) & ~self.fitted
+        rest &= ~self._shown_cells() & ~self._represented_cells(placements) & ~self.fitted
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             cells, number = np.argwhere(rest & (keys == key)), key & 0xFFFF
@@ -145,10 +145,10 @@ class ObjectBuilder:
         free = (self.canvas.states == 0) & self.within
         place = best_place(blocks, counts, free)
         if place is not None:
-            hues = ColourSamples(cells, np.broadcast_to(place, cells.shape))
-            self._put_shapes(single_block_design(place), hues, ObjectLabel(class_id, number))
+            samples = ColourSamples(cells, np.broadcast_to(place, cells.shape))
+            self._put_shapes(single_block_design(place), samples, ObjectLabel(class_id, number))
 
-    def _represented(self, placements: Sequence[Placement]) -> np.ndarray:
+    def _represented_cells(self, placements: Sequence[Placement]) -> np.ndarray:
         """Return the cells, bool [X, Y, Z], that a design of few blocks represents well enough.
 
         Beside a chair of one or two blocks what is left of its cells would be a lump.
@@ -159,7 +159,7 @@ class ObjectBuilder:
         designed = {one.object_id for one in placements} - own
         return np.isin(self.grid.instance, sorted(designed & set(np.unique(self.canvas.instance))))
 
-    def _shown(self) -> np.ndarray:
+    def _shown_cells(self) -> np.ndarray:
         """Return the cells, bool [X, Y, Z], that lie in or beside a block of their own object."""
         cells = np.argwhere(np.isin(self.grid.labels, OBJECT_CLASSES))
         numbers = self.grid.instance[tuple(cells.T)]
@@ -183,10 +183,10 @@ class ObjectBuilder:
 
     def _put_fit(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
         """Set a fit of an object's own cells."""
-        cells, hues = self.coats.with_tops(cells)
+        cells, samples = self.colour_source.with_tops(cells)
         self.fitted[tuple(cells.T)] = True
         thing = ObjectLabel(placement.class_id, placement.object_id)
-        self._put_design(made.design, ColourSamples(hues, made.blocks), thing)
+        self._put_design(made.design, ColourSamples(samples, made.blocks), thing)
 
     def put_cells(
         self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
@@ -194,10 +194,10 @@ class ObjectBuilder:
         """Set an object from its own cells; ``solid`` is what they are fitted to, where known."""
         if not len(cells):
             return
-        cells, hues = self.coats.with_tops(cells)
+        cells, samples = self.colour_source.with_tops(cells)
         thing = ObjectLabel(class_id, number)
         solid = solid or make_solid(cells, enclosed_cells(cells, self.grid, class_id), 0)
-        kinds = kinds_for_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
+        kinds = kinds_for_sheet(self._kinds(samples, thing), solid, self.cell_blocks)
         if kinds & BULKY:
             made = fit_cells(
                 cells,
@@ -215,7 +215,7 @@ class ObjectBuilder:
             shape = resample_cells(cells, self.grid, self.lattice, share, shift=number > 0)
             design, blocks = design_of_halves(shape.low, shape.halves), shape.blocks
         self.fitted[tuple(cells.T)] = True
-        self._put_design(design, ColourSamples(hues, blocks), thing)
+        self._put_design(design, ColourSamples(samples, blocks), thing)
 
     def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
         """Whether nothing that is built lies under an object that may hang on a wall."""
@@ -224,7 +224,7 @@ class ObjectBuilder:
         under = self.canvas.states[tuple((lowest - [0, 0, 1]).T)] > 0
         return class_id in WALL_MOUNTED and not under.any()
 
-    def _put_design(self, design: Design, hues: ColourSamples, thing: ObjectLabel) -> None:
+    def _put_design(self, design: Design, samples: ColourSamples, thing: ObjectLabel) -> None:
         """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
         window = self._window(design)
         filled = design.filled[window.box]
@@ -234,11 +234,11 @@ class ObjectBuilder:
             # Crumbs of furniture stay where they are.
             if thing.instance and thing.class_id in LATE_RANKS:
                 step = self._step(design.filled, design.low)
-                design, hues = design.moved(step), hues._replace(blocks=hues.blocks + step)
+                design, samples = design.moved(step), samples._replace(blocks=samples.blocks + step)
                 window = self._window(design)
             numbers = design.numbers[window.box] * window.free
             numbers = remove_loose_blocks(numbers, design.shapes, window.held)
-        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
+        self._put_shapes(design.cut(window.low, window.box, numbers), samples, thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
         """Set a template by its vanilla design at small scales, else by its parts.
@@ -260,14 +260,14 @@ class ObjectBuilder:
             design = design_of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design)
         guessed = not forced and placement.iou < SURE_IOU
-        if guessed and self._contradicted(design, window) > self._limit(placement):
+        if guessed and self._free_share(design, window) > self._limit(placement):
             return False
         design = design.moved(self._step(design.filled, design.low))
         self.plates.plate_over(design, thing.instance)
         window = self._window(design)
-        hues = self.coats.stretched(cells, placement, design.low, design.numbers.shape)
+        samples = self.colour_source.stretched(cells, placement, design.low, design.numbers.shape)
         numbers = design.numbers[window.box] * window.free
-        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
+        self._put_shapes(design.cut(window.low, window.box, numbers), samples, thing)
         return True
 
     def _put_idiom(
@@ -287,11 +287,13 @@ class ObjectBuilder:
                 return False
             low = low + self._step(filled, low, held=placement.iou >= SURE_IOU)
         start, solid = body_box(found, placement, self.lattice, low, size)
-        hues = self.coats.stretched(cells, placement, start, solid.tolist())
-        seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self.coats.colours_of(hues))
-        hue = ObjectColours(*seen, self.paints.get(thing.instance))
+        samples = self.colour_source.stretched(cells, placement, start, solid.tolist())
+        seen = block_colours(
+            tuple(size.tolist()), samples.blocks - low, *self.colour_source.colours_of(samples)
+        )
+        own_colours = ObjectColours(*seen, self.paints.get(thing.instance))
         place_design(
-            self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters
+            self.canvas, found, low, thing, own_colours, self.palette, self.within, self.parameters
         )
         self.fitted[tuple(cells.T)] = True
         return True
@@ -315,9 +317,9 @@ class ObjectBuilder:
         """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
         paint = self.paints.get(thing.instance)
         if paint is not None:
-            return self.dresser.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
-        colours, usable = self.coats.colours_of(ColourSamples(cells, cells))
-        kinds = self.dresser.kinds(colours[usable], thing.class_id)
+            return self.shape_painter.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
+        colours, usable = self.colour_source.colours_of(ColourSamples(cells, cells))
+        kinds = self.shape_painter.kinds(colours[usable], thing.class_id)
         coarse = self.lattice.blocks_per_metre < FINE_SCALE
         return kinds & PLAIN if coarse and thing.class_id in CLOSED else kinds
 
@@ -332,7 +334,7 @@ class ObjectBuilder:
         opened = np.zeros_like(free) if held else self.open_share > OPEN
         return best_step(filled, low, free, opened, stands)
 
-    def _contradicted(self, design: Design, window: CanvasWindow) -> float:
+    def _free_share(self, design: Design, window: CanvasWindow) -> float:
         """Return the share of a design's blocks that were seen free, but for what they show.
 
         A thin panel leaves most of its block free.
@@ -351,7 +353,7 @@ class ObjectBuilder:
         blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
         return blocks
 
-    def _put_shapes(self, design: Design, hues: ColourSamples, thing: "ObjectLabel") -> None:
+    def _put_shapes(self, design: Design, samples: ColourSamples, thing: "ObjectLabel") -> None:
         """Paint a design and set it.
 
         A block without a colour of its own takes that of its part: a seat's that of the seat.
@@ -359,7 +361,9 @@ class ObjectBuilder:
         filled, low = design.filled, design.low
         if not filled.any():
             return
-        tinted, known = block_colours(filled.shape, hues.blocks - low, *self.coats.colours_of(hues))
+        tinted, known = block_colours(
+            filled.shape, samples.blocks - low, *self.colour_source.colours_of(samples)
+        )
         default = block_colour(self.palette.defaults[thing.class_id])
         colours = tinted.copy()
         for group in np.unique(design.part[filled]):
@@ -369,7 +373,7 @@ class ObjectBuilder:
         paint = self.paints.get(thing.instance)
         if paint is not None:
             colours[filled], known = paint, filled
-        states = self.dresser.states(design, colours, filled & known.any(), thing.class_id)
+        states = self.shape_painter.states(design, colours, filled & known.any(), thing.class_id)
         at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
         names, index = np.unique(states.astype(str), return_inverse=True)
         ids = self.canvas.ids_of(names.tolist())[index]

@@ -206,7 +206,7 @@ def parse_palette(raw: Any) -> Palette:
         raise ValueError("a palette needs a name, such as name: nordic")
     whole = dict(keys)
     if "extends" in keys or "blocks" in keys:
-        whole = _extended(keys)
+        whole = _extend(keys)
     only = _only(keys.get("blocks"))
     groups = {
         group: tuple(_cube(block) for block in _names(f"group {group}", blocks))
@@ -233,14 +233,14 @@ def parse_palette(raw: Any) -> Palette:
     )
 
 
-def _extended(keys: Mapping[str, Any]) -> dict[str, Any]:
+def _extend(keys: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a palette over those of the one it begins from."""
     base = keys.get("extends", "vanilla")
     if base not in PALETTE_FILES:
         raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, not {base!r}")
     below = json.loads(shipped_palette_text(base))
     if "extends" in below:
-        below = _extended(below)
+        below = _extend(below)
     result = dict(below)
     for key, value in keys.items():
         both = isinstance(value, dict) and isinstance(below.get(key), dict)

@@ -26,20 +26,20 @@ GREEN_HUE_DEG, GREEN_CHROMA = (105.0, 165.0), 0.04  # Oklab; leaves in sun and s
 def substitute_templates(
     placements: Sequence[Placement],
     cells_of: Callable[[Placement], np.ndarray],
-    coats: ColourSource,
+    colour_source: ColourSource,
 ) -> list[Placement]:
     """Return the placements, those that their cells would not show by a design of the library.
 
     Args:
         placements: of a whole room.
         cells_of: gives the cells, int [N, 3], of a placement.
-        coats: their colours.
+        colour_source: their colours.
     """
     count = Counter(one.object_id for one in placements)
     renewed = []
     for one in placements:
         cells = cells_of(one)
-        colours, usable = coats.colours_of(ColourSamples(cells, cells))
+        colours, usable = colour_source.colours_of(ColourSamples(cells, cells))
         colour = np.median(colours[usable], axis=0) if usable.any() else None
         renewed.append(substitute_template(one, count[one.object_id] == 1, colour))
     return renewed
@@ -55,7 +55,7 @@ def substitute_template(placement: Placement, alone: bool, colour: np.ndarray | 
     """
     if placement.template != OWN_CELLS or not alone:
         return placement
-    offered = [one for one in _offered(placement.class_id, colour) if _fits(one, placement)]
+    offered = [one for one in _candidates(placement.class_id, colour) if _fits(one, placement)]
     if not offered:
         return placement
     ious = {other.template: other.iou for other in reversed(placement.alternatives)}
@@ -63,7 +63,7 @@ def substitute_template(placement: Placement, alone: bool, colour: np.ndarray | 
     return replace(placement, template=best.name, parameters={})
 
 
-def _offered(class_id: int, colour: np.ndarray | None) -> Sequence[Template]:
+def _candidates(class_id: int, colour: np.ndarray | None) -> Sequence[Template]:
     if class_id in KNOWN_BY_SHAPE:
         return templates_of_class(class_id)
     return (template(PLANT),) if class_id == SemanticClass.OBJS and is_green(colour) else ()

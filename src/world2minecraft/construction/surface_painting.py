@@ -171,14 +171,14 @@ def paint(
     costs = colour_costs(colours, offered, lightness_weight, extra[few], fading)
     parts = smooth_blocks(costs, positions, calm_step)
     weight = lightness_weight if match_weight is None else match_weight
-    parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
-    matched = _matched(parts, colours, candidates, weight, extra, fading)
+    parts = _merge_similar(parts, colours, len(few), lightness_weight, SAME_PAINT)
+    matched = _nearest_candidates(parts, colours, candidates, weight, extra, fading)
     shown = srgb_to_oklab(colours_of([str(candidates[index]) for index in matched]))
-    parts = _joined(parts, shown[parts], len(few), lightness_weight, noticed)
-    return _matched(parts, colours, candidates, weight, extra, fading)[parts]
+    parts = _merge_similar(parts, shown[parts], len(few), lightness_weight, noticed)
+    return _nearest_candidates(parts, colours, candidates, weight, extra, fading)[parts]
 
 
-def _matched(
+def _nearest_candidates(
     parts: np.ndarray,
     colours: np.ndarray,
     candidates: Sequence[str],
@@ -191,7 +191,7 @@ def _matched(
     return colour_costs(medians, candidates, weight, handicaps, fading).argmin(1)
 
 
-def _joined(
+def _merge_similar(
     parts: np.ndarray, colours: np.ndarray, count: int, lightness_weight: float, noticed: float
 ) -> np.ndarray:
     """Return the parts, int [N], a smaller one named as a larger one that looks like it."""
@@ -311,7 +311,7 @@ def paint_surface(
     default = palette.defaults[class_id]
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
-    choices = _unlike(only or palette.blocks[class_id], beside)
+    choices = _distinct_choices(only or palette.blocks[class_id], beside)
     preferred = palette.preferred[class_id] or choices
     handicaps = np.array([parameters.preference * (block not in preferred) for block in choices])
     if used:
@@ -332,7 +332,7 @@ def paint_surface(
     return np.array(choices, object)[index]
 
 
-def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]:
+def _distinct_choices(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]:
     """Return the choices that one can tell from some blocks; all where none is left."""
     if not beside:
         return choices

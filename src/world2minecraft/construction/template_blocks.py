@@ -150,7 +150,7 @@ def half_block_design(
     for index in order:
         if parts[index].role == "seat":
             _rest_on_posts(index + 1, owner, posts)
-    return _turned(owner, posts, np.array([*start, base]), placement.quarter_turns)
+    return _rotate(owner, posts, np.array([*start, base]), placement.quarter_turns)
 
 
 def _plan(
@@ -199,7 +199,7 @@ def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
     owner[:, :, level][mask] = above[mask]
 
 
-def _turned(owner, posts, low, quarter_turns) -> HalfBlockDesign:
+def _rotate(owner, posts, low, quarter_turns) -> HalfBlockDesign:
     owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
     halves = halves_from_layers(owner > 0)
     upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]

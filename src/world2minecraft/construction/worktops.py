@@ -54,7 +54,7 @@ def missing_top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarra
     """
     low, box = _box(grid, cells)
     steps, free = _steps(grid, box)
-    body, joined = _joined_to(grid, cells, low, steps)
+    body, joined = _body_and_steps(grid, cells, low, steps)
     upper = body & np.concatenate([free[:, :, 1:], np.zeros_like(free[:, :, :1])], axis=2)
     flat = upper & ~np.concatenate([np.zeros_like(body[:, :, :1]), body[:, :, :-1]], axis=2)
     upper = flat if flat.any() else upper  # The edge over a front mixes both their colours.
@@ -68,7 +68,7 @@ def step_cells(grid: OccupancyGrid, cells: np.ndarray) -> np.ndarray:
     """Return the unseen cells, int [N, 3], that close the top of an object with cells [M, 3]."""
     low, box = _box(grid, cells)
     steps, _ = _steps(grid, box)
-    return np.argwhere(_joined_to(grid, cells, low, steps)[1]) + low
+    return np.argwhere(_body_and_steps(grid, cells, low, steps)[1]) + low
 
 
 def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slice, ...]]:
@@ -79,7 +79,7 @@ def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slic
     return low, tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
 
 
-def _joined_to(
+def _body_and_steps(
     grid: OccupancyGrid, cells: np.ndarray, low: np.ndarray, steps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return an object's own tall cells and the steps that join it, bool in the box of steps."""
@@ -87,7 +87,7 @@ def _joined_to(
     body = np.zeros(steps.shape, bool)
     tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= MIN_RIM_M
     body[tuple((cells[tall] - low).T)] = True
-    return body, _joined(steps, dilate(body, (0, 0, RIM_LAYERS)), reach)
+    return body, _steps_at_rim(steps, dilate(body, (0, 0, RIM_LAYERS)), reach)
 
 
 def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -99,7 +99,7 @@ def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.
     return steps, free
 
 
-def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
+def _steps_at_rim(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
     """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
     flat = np.zeros((3, 3, 3), bool)
     flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]

@@ -92,7 +92,7 @@ def commit_step(
     Raises:
         OutputError: a file cannot be written; then the world is as it was.
     """
-    touched = [_touched(world, path, data) for path, data in sorted(files.items())]
+    touched = [_describe_change(world, path, data) for path, data in sorted(files.items())]
     wanted = [entry for entry in touched if entry.before != entry.after]
     if not wanted:
         return None
@@ -275,7 +275,7 @@ def _check_path(world: Path, name: Any, manifest: Path) -> None:
         raise DamagedFileError(manifest, f"names {name}, which is a link out of the world")
 
 
-def _touched(world: Path, name: str, data: bytes | None) -> FileChange:
+def _describe_change(world: Path, name: str, data: bytes | None) -> FileChange:
     _check_path(world, name, world / name)
     path = world / name
     after = None if data is None else hashlib.sha256(data).hexdigest()

@@ -140,7 +140,7 @@ class RecordFile:
                     stream.flush()
                     os.fsync(stream.fileno())
                 except OSError:
-                    _cut(stream.fileno(), self.end)
+                    _truncate(stream.fileno(), self.end)
                     raise
             if is_new:
                 sync_folder(self.path.parent)
@@ -189,7 +189,7 @@ def sync_folder(folder: Path) -> None:
     os.close(handle)
 
 
-def _cut(handle: int, size: int) -> None:
+def _truncate(handle: int, size: int) -> None:
     """Take away what a failed write left; where that fails too, it is cut off when read."""
     with contextlib.suppress(OSError):
         os.ftruncate(handle, size)

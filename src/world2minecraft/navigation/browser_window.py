@@ -124,8 +124,8 @@ class Window:
         number = int(after[:12]) if after.isascii() and after.isdigit() else -1
         with self._changed:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
-            told = {"number": self._number, "text": self._text, "open": self._is_open}
-        return json.dumps(told).encode()
+            message = {"number": self._number, "text": self._text, "open": self._is_open}
+        return json.dumps(message).encode()
 
 
 def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
@@ -133,31 +133,31 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:  # The library's name.
-            asked = self._asked()
-            if asked is None:
+            request = self._authorized_request()
+            if request is None:
                 return
-            if asked[0] == "/":
+            if request[0] == "/":
                 self._send("text/html; charset=utf-8", window.page())
-            elif asked[0] == "/frames":
+            elif request[0] == "/frames":
                 self._stream()
-            elif asked[0] == "/text":
-                self._send("application/json", window.words(asked[1].get("after", [""])[0]))
+            elif request[0] == "/text":
+                self._send("application/json", window.words(request[1].get("after", [""])[0]))
             else:
                 self.send_error(404)
 
         def do_POST(self) -> None:
-            asked = self._asked()
-            if asked is None:
+            request = self._authorized_request()
+            if request is None:
                 return
-            key = asked[1].get("key", [""])[0][:16]
-            if asked[0] == "/key" and key and not window.keys.full():
+            key = request[1].get("key", [""])[0][:16]
+            if request[0] == "/key" and key and not window.keys.full():
                 window.keys.put_nowait(key)
             self._send("text/plain", b"")
 
         def log_message(self, format: str, *args: Any) -> None:
             """Say nothing: it would print the token."""
 
-        def _asked(self) -> tuple[str, dict[str, list[str]]] | None:
+        def _authorized_request(self) -> tuple[str, dict[str, list[str]]] | None:
             parts = urlsplit(self.path)
             words = parse_qs(parts.query)
             if window.knows(words.get("token", [""])[0]):

@@ -122,8 +122,8 @@ def landmarks_of(
         room_of: the room's number of a place in metres, float64 [3].
     """
     codes, names = designs
-    held = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
-    order = held[np.argsort(volume.instance.reshape(-1)[held], kind="stable")]
+    owned = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
+    order = owned[np.argsort(volume.instance.reshape(-1)[owned], kind="stable")]
     numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
     found = []
     for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=True):
@@ -195,9 +195,9 @@ def _phrase(one: Landmark, nouns: Counter, coloured: Counter, anchors: Sequence[
     if coloured[one.colour, one.noun] == 1 and not set(one.noun.split()) & set(_COLOURS):
         return f"{one.colour} {one.noun}"
     same = [other for other in anchors if other.room == one.room]
-    apart = [float(np.linalg.norm(_gap(one, other))) for other in same]
-    if apart and min(apart) <= BESIDE_M:
-        return f"{one.noun} beside the {same[int(np.argmin(apart))].noun}"
+    gaps = [float(np.linalg.norm(_gap(one, other))) for other in same]
+    if gaps and min(gaps) <= BESIDE_M:
+        return f"{one.noun} beside the {same[int(np.argmin(gaps))].noun}"
     return one.noun
 
 

@@ -126,9 +126,9 @@ def _doors(graph: WalkGraph, number: np.ndarray, count: int) -> list[list[Door]]
     return found
 
 
-def _clusters(points: np.ndarray, apart: float) -> list[np.ndarray]:
+def _clusters(points: np.ndarray, max_gap: float) -> list[np.ndarray]:
     """Return points in groups of those that hang together by less than a distance."""
-    near = KDTree(points).query_pairs(apart + 1e-6, output_type="ndarray")
+    near = KDTree(points).query_pairs(max_gap + 1e-6, output_type="ndarray")
     links = coo_matrix((np.ones(len(near)), tuple(near.T)), (len(points), len(points)))
     total, group = connected_components(links, directed=False)
     return [np.flatnonzero(group == one) for one in range(total)]

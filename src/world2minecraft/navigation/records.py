@@ -129,10 +129,10 @@ def check_item(item: Item) -> None:
         raise UsageError(f"composition: must be base or extend, not {item.composition!r}")
     if len(item.options) < 2:
         raise UsageError(f"options: a choice has two or more, not {len(item.options)}")
-    shown, said = ("image", "text") if item.task == "next_view" else ("text", "image")
+    shown, hidden = ("image", "text") if item.task == "next_view" else ("text", "image")
     for option in item.options:
         _check_text(f"option {option.label}", option.text or option.label)
-        if not getattr(option, shown) or getattr(option, said):
+        if not getattr(option, shown) or getattr(option, hidden):
             raise UsageError(f"option {option.label}: of a {item.task} item has {shown} alone")
     if len(item.images) > MAX_IMAGES:
         raise UsageError(f"shows {len(item.images)} images; at most {MAX_IMAGES} are read")

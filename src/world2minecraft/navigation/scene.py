@@ -206,9 +206,9 @@ class VlnScene:
     @property
     def start(self) -> Stance:
         """Where a player of the world begins, moved to the nearest place of the rooms."""
-        said = self.source.start()
+        spawn = self.source.start()
         rooms = self.graph.feet[self.main_places]
-        target = rooms.mean(axis=0) if said is None else np.array(said)
+        target = rooms.mean(axis=0) if spawn is None else np.array(spawn)
         x, y, z = rooms[((rooms - target) ** 2).sum(axis=1).argmin()]
         return Stance(float(x), float(y), float(z))
 
@@ -282,8 +282,8 @@ class VlnScene:
         if np.isfinite(over) or not np.isfinite(field).any():
             return float(over)
         nearest = self.corner_graph.nearest(feet)  # Off the floor: on furniture, or in the air.
-        apart = np.linalg.norm(self.corner_graph.feet[nearest] - np.asarray(feet))
-        return float(field[nearest] + apart * self.metres_per_block)
+        offset = np.linalg.norm(self.corner_graph.feet[nearest] - np.asarray(feet))
+        return float(field[nearest] + offset * self.metres_per_block)
 
     def room_at(self, feet: tuple[float, float, float]) -> int:
         """Return the number of the room that a place is in, -1 for none."""

@@ -35,8 +35,8 @@ def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
         >>> simplify_path(np.array([[0, 0], [1, 0.01], [2, 0], [2, 3]]), 0.25).tolist()
         [0, 2, 3]
     """
-    kept = np.zeros(len(path), bool)
-    kept[[0, -1]] = True
+    retained = np.zeros(len(path), bool)
+    retained[[0, -1]] = True
     open_spans = [(0, len(path) - 1)]
     while open_spans:
         first, last = open_spans.pop()
@@ -46,9 +46,9 @@ def simplify_path(path: np.ndarray, epsilon: float = EPSILON_M) -> np.ndarray:
         farthest = int(away.argmax())
         if away[farthest] > epsilon:
             middle = first + 1 + farthest
-            kept[middle] = True
+            retained[middle] = True
             open_spans += [(first, middle), (middle, last)]
-    return np.flatnonzero(kept)
+    return np.flatnonzero(retained)
 
 
 def _distances_from_segment(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ def room_picture(room: Room, width_px: int = 1280, height_px: int | None = None)
 
 
 def _storey_picture(room: Room, floor_z_m: float, width_px: int, height_px: int) -> np.ndarray:
-    opened = _opened(room, floor_z_m)
+    opened = _open_storey(room, floor_z_m)
     scene = prepare_photos(opened)
     size = (width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
     camera, pose = _camera(opened, "house" if len(room.layouts) > 1 else "room", *size)
@@ -48,7 +48,7 @@ def _storey_picture(room: Room, floor_z_m: float, width_px: int, height_px: int)
     return ((blocks.sum(axis=(1, 3)) + 2) // 4).astype(np.uint8)
 
 
-def _opened(room: Room, floor_z_m: float) -> Room:
+def _open_storey(room: Room, floor_z_m: float) -> Room:
     """Return one storey without what hides its inside."""
     storey = [layout for layout in room.layouts if layout.floor_z_m == floor_z_m]
     slab = round(-room.origin_m[2] / room.voxel_m)

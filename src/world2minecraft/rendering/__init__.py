@@ -1,4 +1,4 @@
-"""Block volumes to images: colour, depth and ids by casting rays; no display, no mesh.
+"""Render block volumes: colour, depth and ids by casting rays, without display or mesh.
 
 ``render_volume`` takes a picture through a camera of the room, ``preview`` and ``plan_view`` show
 a whole room, ``cast_voxels`` scans a fine grid. Whoever takes many pictures of one volume makes

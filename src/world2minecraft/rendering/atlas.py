@@ -1,7 +1,7 @@
-"""Textures as the kernels read them: one size for all, with mip levels, in one array.
+"""A texture atlas: all textures of a scene at one size, with mip levels, in one array.
 
 Level 0 is the finest. The levels of a texture lie one after another: n*n texels, then a quarter as
-many, down to one. Colours are averaged in linear light and weighed by alpha, so that leaves do not
+many, down to one. Colours are averaged in linear light and weighted by alpha, so that leaves do not
 darken towards the rim of their holes.
 """
 
@@ -83,7 +83,7 @@ def _texel_rows(texture: Texture, side_px: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def _material_channels(texture: Texture) -> np.ndarray:
-    """Return uint8 [N, N, 5] of what a texture says beside its colour."""
+    """Return uint8 [N, N, 5] of the material channels of a texture."""
     size = texture.colour.shape[0]
     result = np.broadcast_to(_FLAT, (size, size, 5)).copy()
     if texture.normal is not None:

@@ -1,6 +1,6 @@
-"""What a block is drawn as: boxes with a texture on each face, the same for every source of looks.
+"""Block models: elements, boxes with a texture on each face, the same for every source.
 
-Our own models, those of a resource pack and display entities all become ``Element`` values; the
+Built-in models, those of a resource pack and display entities all become ``Element`` values; the
 kernels read nothing else. Coordinates are those of the block: x east, y up, z south, the block
 spans [0, 1]; an element may reach beyond it.
 
@@ -31,7 +31,7 @@ FACE_AXES = (
 
 @dataclass(frozen=True, eq=False)
 class ElementFace:
-    """The look of one face: a texture's name, where it lies, and what its colour is times.
+    """One face: a texture's name, where it lies, and the colour that multiplies it.
 
     ``uv`` float64 [2, 4] is explained above; ``tint`` is sRGB, 0 to 255.
     """
@@ -68,7 +68,7 @@ class BlockModel:
 
 
 class ModelSource(Protocol):
-    """Where looks come from: our own set, a resource pack, or several stacked."""
+    """A source of block models and textures: built-in ones, a resource pack, or a stack."""
 
     def model(self, state: str) -> BlockModel | None:
         """Return the model of a block state's text, or None where this source has none."""
@@ -126,7 +126,7 @@ def _rect_in_block(side: int, low, high) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True, eq=False)
 class ModelSourceStack:
-    """Several sources of looks; the first that has one counts."""
+    """Several sources of models; the first that has one counts."""
 
     sources: tuple[ModelSource, ...] = field(default=())
 

@@ -103,7 +103,7 @@ def ceiling_level(semantic: np.ndarray) -> int | None:
     counts = (semantic == SemanticClass.CEILING).sum(axis=(0, 2))
     if not counts.any():
         return None
-    # Drops and beams lie under the flat part; half of the fullest layer tells them apart.
+    # Drops and beams lie under the flat part; half of the fullest layer separates them.
     return int(np.flatnonzero(counts >= counts.max() / 2)[0])
 
 
@@ -114,10 +114,10 @@ def split_storeys(volume: BlockVolume) -> list[BlockVolume]:
     """
     counts = (volume.semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
     least = max(MIN_STOREY_SHARE * counts.max(initial=0), 1)
-    apart = MIN_STOREY_M * volume.blocks_per_metre
+    spacing = MIN_STOREY_M * volume.blocks_per_metre
     floors: list[int] = []
     for level in np.flatnonzero(counts >= least).tolist():
-        if floors and level - floors[-1] < apart:
+        if floors and level - floors[-1] < spacing:
             continue
         floors.append(level)
     if len(floors) < 2:

@@ -1,7 +1,7 @@
-"""A scene that changes: blocks are set in place, and the next picture shows them.
+"""A scene whose blocks can be edited in place; the next picture shows them.
 
-No mesh is made anew and no flood is run anew: the cell, the empty boxes and the light around it
-are. For environments in which an agent builds, and for an editor.
+Only the cell, the empty boxes and the light around it are updated, never the whole scene. For
+environments in which an agent builds, and for an editor.
 """
 
 from collections.abc import Sequence

@@ -14,7 +14,7 @@ from world2minecraft.rendering.grid_traversal import fill_distances
 MAX_SIDE_CELLS = 96  # A side; a box of the open sky need not be larger.
 _AIR = 0  # What ``solid`` holds for air; other values are taken over as they are.
 _ORPHAN = -9  # Air that has no box for a moment.
-_MAX_GROWTH = 4  # A table of boxes that grew so many times is made anew.
+_MAX_GROWTH = 4  # A table that grew by this factor is rebuilt.
 
 
 def find_empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

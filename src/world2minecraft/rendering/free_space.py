@@ -1,4 +1,4 @@
-"""Observed free space: the cells of air that the rays of a picture have crossed."""
+"""Observed free space: the cells of air that the rays of a picture cross."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
-"""Boxes that stand anywhere: display entities, and parts of blocks that reach beyond their cell.
+"""Boxes outside the block grid: display entities, and parts of blocks that leave their cell.
 
 Such an element is in the grid's coordinates and is listed in every cell that it reaches. A cell
-with such guests has a look of its own: the elements of its block, then those of its guests. The
+that one reaches has a row of its own: the elements of its block, then the freestanding ones. The
 grid grows by what reaches out of it.
 """
 

@@ -1,4 +1,4 @@
-"""One ray through a fine grid of full cubes: the core of every virtual scan.
+"""Traverse a fine grid of full cubes by one ray: the core of every virtual scan.
 
 ``cells`` says what a ray meets, one byte a cell, because such grids are large: 0 a full cube, and
 n >= 1 air whose nearest cube is n cells away (in the Chebyshev metric), so that a ray crosses

@@ -21,7 +21,7 @@ MAX_SAMPLES = 8
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What one look at a volume gives; arrays that were not asked for are None.
+    """The outputs of one picture; arrays that were not requested are None.
 
     The first surface counts, be it glass; a hole in a texture is none. Where a ray meets nothing,
     depth and range are 0, ``block_index`` is -1, ``face`` is 255, ``semantic`` and ``instance``
@@ -129,7 +129,7 @@ def _draw(
 
 
 def check_request(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
-    """Raise ``ValueError`` where a picture cannot be asked for so; see ``render_volume``."""
+    """Raise ``ValueError`` where the request is invalid; see ``render_volume``."""
     unknown = sorted(set(outputs) - set(OUTPUTS))
     if unknown:
         raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")

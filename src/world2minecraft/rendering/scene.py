@@ -1,4 +1,4 @@
-"""A block volume made ready for rays: the arrays of ``SceneTables``, and what its cells are.
+"""Prepare a block volume for rays: the arrays of ``SceneTables``, and what its cells are.
 
 Making it costs one sweep over the volume; whoever takes many pictures of one volume makes the
 scene once and passes it in the volume's place.
@@ -46,7 +46,7 @@ class BlockScene:
     """What pictures of a volume are taken of."""
 
     tables: SceneTables
-    material: np.ndarray  # uint8 [L, M, 5], see render.atlas
+    material: np.ndarray  # uint8 [L, M, 5], see rendering.atlas
     side_px: int  # of a texture
     semantic: np.ndarray  # uint8 [X, Y, Z]
     instance: np.ndarray  # uint16 [X, Y, Z]
@@ -55,7 +55,9 @@ class BlockScene:
     cells_per_metre: float
     light: LightField
     exposure: float | None = None  # of all its pictures; None: by what lies around the camera
-    exposures: dict[object, float] = field(default_factory=dict)  # found so far, see render.lamps
+    exposures: dict[object, float] = field(
+        default_factory=dict
+    )  # found so far, see rendering.shading_parameters
 
 
 def prepare_scene(

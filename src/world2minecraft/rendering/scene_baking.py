@@ -1,8 +1,8 @@
-"""Looks become arrays: the elements of a palette, and of boxes that stand free of the blocks.
+"""Bake block models to arrays: the element tables of ``SceneTables``.
 
-In: models of a ``ModelSource``. Out: the element tables of ``SceneTables``. An element that reaches
-beyond its block, as the cloth of a banner does, is left to ``rendering.freestanding_boxes``, which lists
-it in each cell that it reaches.
+Elements come from the models of a ``ModelSource``. Those that reach beyond their block, as the
+cloth of a banner does, are left to ``rendering.freestanding_boxes``, which lists them in each cell
+that they reach.
 """
 
 from collections.abc import Sequence

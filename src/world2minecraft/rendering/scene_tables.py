@@ -1,10 +1,10 @@
-"""What the kernels read of a scene: plain arrays with the names that all of them use.
+"""The arrays of a scene as all kernels read them.
 
-A cell is air, a full opaque cube, or a list of elements; ``rendering.empty_space_boxes`` explains the air.
-``looks`` tells the list: row r has the elements ``refs[look_start[r]:look_start[r + 1]]``. Palette
-entry p has row p; a cell that a standing box reaches (a display entity, a banner's cloth) has a
-row of its own. Elements are explained in ``rendering.block_elements``, textures' mip levels in
-``rendering.atlas``, the light in ``rendering.light.light_field``.
+A cell is air, a full opaque cube, or a list of elements; ``rendering.empty_space_boxes`` explains
+the air. ``looks`` is the row of the list: row r has the elements ``refs[look_start[r]:look_start[r
++ 1]]``. Palette entry p has row p; a cell that a standing box reaches (a display entity, a
+banner's cloth) has a row of its own. Elements are explained in ``rendering.block_elements``,
+textures' mip levels in ``rendering.atlas``, the light in ``rendering.light.light_field``.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""A texture: colours, and what a path tracer and a relief light want besides."""
+"""A texture: colours, and the material maps that a path tracer reads."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,6 +1,6 @@
-"""Kernels side by side: one set of threads for the whole program, made when first needed.
+"""Run kernels in parallel on one pool of threads, made when first needed.
 
-Compiled kernels let go of Python's lock and keep nothing between calls, so they may run on any
+Compiled kernels release Python's lock and keep nothing between calls, so they may run on any
 number of threads, and any number of threads may call them at once. What they must not share is
 their scratch memory and the rows that they write; each work has its own.
 """

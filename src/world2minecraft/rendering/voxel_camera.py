@@ -1,4 +1,4 @@
-"""Virtual scans: what a camera meets in a fine grid of full cubes, such as a 2 cm room."""
+"""Virtual depth cameras: cast rays into a fine grid of full cubes, such as a 2 cm room."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class VoxelHits(NamedTuple):
 class VoxelScene:
     """A grid of cubes made ready for rays."""
 
-    cells: np.ndarray  # uint8 [X, Y, Z], see render.trace
+    cells: np.ndarray  # uint8 [X, Y, Z], see rendering.grid_traversal
     semantic: np.ndarray  # uint8 [X, Y, Z]
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells
     cells_per_metre: float

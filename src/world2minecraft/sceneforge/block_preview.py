@@ -38,8 +38,8 @@ class BuildOptions:
     def __post_init__(self):
         low, high = SCALE_RANGE
         if not low <= self.blocks_per_metre <= high:
-            asked = f"blocks_per_metre must be {low} to {high:.0f}, not {self.blocks_per_metre}"
-            raise UsageError(f"{asked}; try 1, 2, 4 or 12.5")
+            text = f"blocks_per_metre must be {low} to {high:.0f}, not {self.blocks_per_metre}"
+            raise UsageError(f"{text}; try 1, 2, 4 or 12.5")
         if self.style not in STYLES:
             raise UnknownNameError("style", self.style, STYLES)
 
@@ -118,7 +118,7 @@ class BlockBuild:
     def mesh_bytes(self) -> bytes:
         """Return the mesh as the page reads it, see ``web/src/build/mesh.ts``."""
         mesh = mesh_of(self.volume)
-        told = {
+        header = {
             **self.facts(),
             "style": self.options.style,
             "palette": list(self.volume.palette),
@@ -126,7 +126,7 @@ class BlockBuild:
             "texture_px": mesh.atlas.side_px,
             "blocks": int((self.volume.states > 0).sum()),
         }
-        return pack_arrays(MAGIC, told, _arrays(mesh))
+        return pack_arrays(MAGIC, header, _arrays(mesh))
 
     def facts(self) -> dict[str, Any]:
         """Return what the page is told of any build: its revision, its place and where to begin."""

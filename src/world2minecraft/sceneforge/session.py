@@ -214,8 +214,8 @@ class Session:
 
     async def scene(self) -> dict[str, Any]:
         """Return the scene as wire.ts has it. Raises UsageError where none is open."""
-        told = {"document": self.shown}
-        return told | await asyncio.to_thread(self.document.scene_json)
+        document = {"document": self.shown}
+        return document | await asyncio.to_thread(self.document.scene_json)
 
     async def volume(self, what: str, zipped: bool) -> tuple[int, bytes]:
         """Return the revision and one array as ``W2MV``, in gzip where ``zipped``.
@@ -224,9 +224,9 @@ class Session:
             UsageError: there is no array of that name, or no document.
         """
         document = self.document
-        kept = self._volumes.get(what)
-        if zipped and kept and kept[0] == document.rev:
-            return kept
+        cached = self._volumes.get(what)
+        if zipped and cached and cached[0] == document.rev:
+            return cached
         rev, data = await asyncio.to_thread(_volume, document, what, zipped)
         if zipped and document is self.editor:
             self._volumes[what] = (rev, data)
@@ -260,10 +260,10 @@ class Session:
             self._count += 1
             self.shown = self._count
 
-            def told(rev: int, step: str, operation: Operation) -> None:
+            def on_change(rev: int, step: str, operation: Operation) -> None:
                 self.broadcaster.broadcast_threadsafe(change_message(editor, rev, step, operation))
 
-            self._unlisten = editor.on_change(told)
+            self._unlisten = editor.on_change(on_change)
 
     @property
     def _is_small(self) -> bool:

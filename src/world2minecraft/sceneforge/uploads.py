@@ -59,22 +59,22 @@ class UploadFile:
     size: int
 
 
-def check_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
+def check_files(data: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     """Return the files that a page says it will send.
 
     Args:
-        told: JSON, a list of ``{"path", "size"}``.
+        data: JSON, a list of ``{"path", "size"}``.
         most_bytes: of all files together.
 
     Raises:
         UsageError: a path leaves the folder, is no name, or stands there twice.
         LimitError: there are too many files or bytes.
     """
-    if not isinstance(told, list) or not told:
+    if not isinstance(data, list) or not data:
         raise UsageError('"files" must be a list of {"path", "size"}, one for each file')
-    if len(told) > MAX_FILES:
-        raise LimitError("the capture", f"has {len(told):,} files; at most {MAX_FILES:,} are taken")
-    files = tuple(one for one in map(_check_file, told) if not _ignored(one.path))
+    if len(data) > MAX_FILES:
+        raise LimitError("the capture", f"has {len(data):,} files; at most {MAX_FILES:,} are taken")
+    files = tuple(one for one in map(_check_file, data) if not _ignored(one.path))
     if not files:
         raise UsageError("there is nothing in it; drop a folder with pictures, a zip or a video")
     total = sum(one.size for one in files)
@@ -88,13 +88,13 @@ def check_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     return files
 
 
-def _check_file(told: Any) -> UploadFile:
-    if not isinstance(told, Mapping) or not isinstance(told.get("path"), str):
+def _check_file(data: Any) -> UploadFile:
+    if not isinstance(data, Mapping) or not isinstance(data.get("path"), str):
         raise UsageError('each file must be {"path": "folder/name.jpg", "size": bytes}')
-    size = told.get("size")
+    size = data.get("size")
     if not isinstance(size, int) or isinstance(size, bool) or size < 0:
-        raise UsageError(f"the size of {told['path'][:80]!r} must be whole bytes, not {size!r:.40}")
-    return UploadFile(check_path(told["path"]), size)
+        raise UsageError(f"the size of {data['path'][:80]!r} must be whole bytes, not {size!r:.40}")
+    return UploadFile(check_path(data["path"]), size)
 
 
 def check_path(name: str) -> str:
@@ -298,11 +298,11 @@ class CaptureStore:
         if not _ID.fullmatch(number) or not (folder / CAPTURE).is_file():
             raise UnknownNameError("capture", number[:64], (one.name for one in self._folders()))
         try:
-            told = read_json(folder / CAPTURE)
-            files = tuple(UploadFile(str(p), int(size)) for p, size in told["files"])
-            elsewhere = told["elsewhere"]
-            source = Path(elsewhere) if elsewhere else folder / UPLOAD / str(told["name"])
-            return CaptureFolder(folder, str(told["title"]), source, files)
+            data = read_json(folder / CAPTURE)
+            files = tuple(UploadFile(str(p), int(size)) for p, size in data["files"])
+            elsewhere = data["elsewhere"]
+            source = Path(elsewhere) if elsewhere else folder / UPLOAD / str(data["name"])
+            return CaptureFolder(folder, str(data["title"]), source, files)
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFileError(folder / CAPTURE, f"is no capture ({error})") from error
 
@@ -350,13 +350,13 @@ class CaptureStore:
         letters = re.sub(r"[^a-z0-9]+", "-", title.casefold()).strip("-")[:40]
         folder = self.folder / "-".join(filter(None, [letters, secrets.token_hex(4)]))
         plain = "".join(letter for letter in title if letter.isprintable())[:80]
-        told = {
+        data = {
             "title": plain,
             "name": name,
             "files": [[one.path, one.size] for one in files],
             "elsewhere": elsewhere,
         }
-        write_json(folder / CAPTURE, told)
+        write_json(folder / CAPTURE, data)
         return self.named(folder.name)
 
     def _folders(self) -> list[Path]:

@@ -168,7 +168,7 @@ class DisplayBuilder:
                 continue
             found, frame = template(placement.template), self._frame_of(placement, counts)
             parts = found.parts(frame.size_m, placement.parameters)
-            if len(cells) and self._contradicted(parts, frame, placement) > self._limit(placement):
+            if len(cells) and self._free_share(parts, frame, placement) > self._limit(placement):
                 self.put_cells(cells, placement.class_id, placement.object_id)
             else:
                 self.put_template(found, parts, frame, cells, placement)
@@ -291,7 +291,7 @@ class DisplayBuilder:
         chair = placement.class_id == SemanticClass.CHAIR
         return self.parameters.chair_contradicted if chair else self.parameters.most_contradicted
 
-    def _contradicted(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
+    def _free_share(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
         """Return the share of a template's volume that was seen free, well off its own cells."""
         own = self.grid.instance == placement.object_id
         free = self.free & ~dilate_faces(dilate_faces(own))
@@ -328,7 +328,7 @@ class DisplayBuilder:
         centres = cell_centers_m(cells[usable], self.grid.origin_m, self.grid.voxel_m)
         kinds = {role: material.kind for role, material in found.materials.items()}
         centres = centres + self._outward(cells[usable]) * self.grid.voxel_m / 2
-        stretched = _stretched(centres, frame)
+        stretched = _clamp_to_box(centres, frame)
         colours = self.colours[at][usable]
         return role_colours(parts, frame, stretched, colours, self.grid.voxel_m, kinds)
 
@@ -344,7 +344,7 @@ class DisplayBuilder:
         return result
 
 
-def _stretched(centres_m: np.ndarray, frame: Frame) -> np.ndarray:
+def _clamp_to_box(centres_m: np.ndarray, frame: Frame) -> np.ndarray:
     """Return the middles of cells, float64 [N, 3], drawn into the box of what shows them."""
     local = apply(invert(frame.object_to_room), centres_m)
     half = frame.size_m / 2

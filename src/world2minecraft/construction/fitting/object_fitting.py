@@ -84,7 +84,7 @@ def solve(
     target: Target, phase: tuple[int, int], shapes: ShapeSet, rules: Rules = DEFAULT_RULES
 ) -> Fit:
     """Return the fit of a target whose middle lies at a phase: sub-cells along x and y."""
-    problem = problem_at(_averaged(target, rules.even), phase, shapes, rules.calm)
+    problem = problem_at(_symmetrize(target, rules.even), phase, shapes, rules.calm)
     grid, lam = stabilize(problem, shapes, rules)
     if not grid.any():
         _put_best(grid, problem, shapes)
@@ -110,7 +110,7 @@ def find_symmetry(target: Target) -> tuple[bool, bool]:
     return result[0], result[1]
 
 
-def _averaged(target: Target, even: tuple[bool, bool]) -> Target:
+def _symmetrize(target: Target, even: tuple[bool, bool]) -> Target:
     """Return the mean of a target and its mirror images."""
     for axis in (0, 1):
         if even[axis]:

@@ -374,7 +374,7 @@ def stabilize(
         rules: how.
         held: bool [X, Y, Z], the blocks that have a wall or a ceiling beside them; None for none.
     """
-    barred = _barred(problem, shapes, rules)
+    barred = _find_barred(problem, shapes, rules)
     ground = 0 if rules.stands else None
     grid, lam = choose_stable(
         problem.gains, problem.cells, problem.shape, shapes, rules.lam, barred, ground
@@ -395,7 +395,7 @@ def stabilize(
     return make_stair_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
 
 
-def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
+def _find_barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
     """Return what may not stand where, bool [N, S]."""
     barred = np.zeros((len(problem.cells), len(shapes)), bool)
     for axis in (0, 1):  # On a mirror plane, only what is its own mirror image.

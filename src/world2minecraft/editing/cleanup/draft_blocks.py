@@ -69,14 +69,14 @@ def move_blocks(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) 
     place_of = {tuple(cell): number for number, cell in enumerate(every.tolist())}
     target = np.array([place_of[tuple(cell)] for cell in there.tolist()])
 
-    def carried(values: np.ndarray) -> np.ndarray:
+    def scatter(values: np.ndarray) -> np.ndarray:
         new = np.zeros(len(every), values.dtype)
         new[target] = values
         return new
 
-    after = (carried(values) for values in (old.states, old.semantic, old.instance))
+    after = (scatter(values) for values in (old.states, old.semantic, old.instance))
     states, semantic, instance = after
-    data = tuple(_moved(entity, step) for entity in old.block_entities)
+    data = tuple(_translate(entity, step) for entity in old.block_entities)
     return draft.change(
         "move",
         every,
@@ -87,7 +87,7 @@ def move_blocks(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) 
     )
 
 
-def _moved(entity: BlockEntity, step: np.ndarray) -> BlockEntity:
+def _translate(entity: BlockEntity, step: np.ndarray) -> BlockEntity:
     x, y, z = (np.array(entity.block_pos) + step).tolist()
     return replace(entity, block_pos=(x, y, z))
 

@@ -57,7 +57,7 @@ def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarra
     number = np.full(states.shape, -1, np.int64)
     cells = np.flatnonzero(mask)
     number.ravel()[cells] = np.arange(len(cells))
-    pairs = [_joined(states, palette, number, step) for step in STEPS]
+    pairs = [_touching_pairs(states, palette, number, step) for step in STEPS]
     first, second = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
     graph = coo_array((np.ones(len(first), bool), (first, second)), (len(cells), len(cells)))
     _, labels = connected_components(graph, directed=False)
@@ -69,7 +69,7 @@ def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarra
     return parts
 
 
-def _joined(
+def _touching_pairs(
     states: np.ndarray, palette: tuple[str, ...], number: np.ndarray, step: tuple[int, int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
     """The pairs of counted cells that touch across a step, by their numbers."""

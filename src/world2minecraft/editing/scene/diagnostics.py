@@ -74,7 +74,7 @@ def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
         if sure < 100:
             why = f"the cells of this {name} are right with a chance of {sure} %"
             yield Diagnostic("low_confidence", why, 1 - one.confidence, one.center_m, one.id)
-        yield from _uncarried(draft, one)
+        yield from _check_support(draft, one)
         for placed in one.placements:
             yield from _of_furniture(one, placed)
 
@@ -107,7 +107,7 @@ def _is_other(placed: Placement, other) -> bool:
     return (other.template, other.quarter_turns) != (placed.template, placed.quarter_turns)
 
 
-def _uncarried(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
+def _check_support(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
     """An object that should stand, with nothing but seen air under its lowest cells."""
     if one.class_id not in STANDING:
         return
@@ -126,11 +126,11 @@ def _of_loose_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     for one in find_floaters(draft, draft.labels.size):
         loose[tuple(one.cells.T)] = False
         owner = next((number for number in one.object_ids if number in draft.objects), 0)
-        why = f"{_counted(len(one.cells), CLASS_NAMES[one.class_id])} in the air, on nothing"
+        why = f"{_count_text(len(one.cells), CLASS_NAMES[one.class_id])} in the air, on nothing"
         yield Diagnostic("floater", why, FLOATING, center_of_cells_m(draft, one.cells), owner)
     for cells in _parts(loose, 1, CRUMB_CELLS):
         what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_counted(len(cells), what)}, part of no object"
+        why = f"{_count_text(len(cells), what)}, part of no object"
         yield Diagnostic("crumb", why, CRUMB, center_of_cells_m(draft, cells))
 
 
@@ -139,7 +139,7 @@ def _of_unsure_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     for cells in _parts(unsure, UNSURE_CELLS):
         mean = float(draft.confidence[tuple(cells.T)].astype(np.float64).mean())
         what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_counted(len(cells), what)}, right with a chance of {100 * mean:.0f} %"
+        why = f"{_count_text(len(cells), what)}, right with a chance of {100 * mean:.0f} %"
         yield Diagnostic("unsure_cells", why, 1 - mean, center_of_cells_m(draft, cells))
 
 
@@ -147,7 +147,7 @@ def _of_completed_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     completed = (draft.source == COMPLETED) & (draft.labels % 255 > 0)
     for cells in _parts(completed, UNSURE_CELLS):
         what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_counted(len(cells), what)}, completed and never seen"
+        why = f"{_count_text(len(cells), what)}, completed and never seen"
         yield Diagnostic("completed", why, COMPLETED_DOUBT, center_of_cells_m(draft, cells))
 
 
@@ -176,7 +176,7 @@ def _commonest(draft: SceneDraft, cells: np.ndarray) -> int:
     return int(np.bincount(draft.labels[tuple(cells.T)]).argmax())
 
 
-def _counted(count: int, what: str) -> str:
+def _count_text(count: int, what: str) -> str:
     return f"{count} {'cell' if count == 1 else 'cells'} of {what}"
 
 

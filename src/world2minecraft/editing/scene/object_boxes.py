@@ -65,9 +65,9 @@ def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
 def translate_object(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
     """Return an object, with its placements, moved by metres, float64 [3]."""
     moved = tuple(
-        replace(placed, center_m=_rounded(placed.center_m + shift_m)) for placed in one.placements
+        replace(placed, center_m=_round(placed.center_m + shift_m)) for placed in one.placements
     )
-    return replace(one, center_m=_rounded(one.center_m + shift_m), placements=moved)
+    return replace(one, center_m=_round(one.center_m + shift_m), placements=moved)
 
 
 def rotate_object(one: SceneObject, quarter_turns: int) -> SceneObject:
@@ -76,7 +76,7 @@ def rotate_object(one: SceneObject, quarter_turns: int) -> SceneObject:
     placements = tuple(
         replace(
             placed,
-            center_m=_rounded(one.center_m + turn @ (placed.center_m - one.center_m)),
+            center_m=_round(one.center_m + turn @ (placed.center_m - one.center_m)),
             quarter_turns=(placed.quarter_turns + quarter_turns) % 4,
         )
         for placed in one.placements
@@ -135,5 +135,5 @@ def common_class(objects: list[SceneObject]) -> int | None:
     return classes.pop() if len(classes) == 1 else None
 
 
-def _rounded(values: np.ndarray) -> np.ndarray:
+def _round(values: np.ndarray) -> np.ndarray:
     return np.round(values, DECIMALS) + 0.0  # Without -0.0, which prints as another value.

@@ -166,12 +166,12 @@ class TurnObjects(Command):
         for one in ones:
             if is_of_cells(one):
                 cells = draft.cells_of(one.id)
-                put_cells(draft, patch, one, cells, self._turned(draft, one, cells))
+                put_cells(draft, patch, one, cells, self._rotated_cells(draft, one, cells))
         objects = [rotate_object(one, self.quarter_turns) for one in ones]
         details = {"counts_as": "orient", "class_id": common_class(ones)}
         return patch.plan_operation("turn_objects", objects=objects, **details)
 
-    def _turned(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
+    def _rotated_cells(self, draft: SceneDraft, one: SceneObject, cells: np.ndarray) -> np.ndarray:
         result = rotate_cells(cells, one.center_m, self.quarter_turns, draft)
         if not within_grid(draft, result).all():
             raise UsageError(

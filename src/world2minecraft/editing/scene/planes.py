@@ -101,7 +101,7 @@ def _walls(draft: SceneDraft, levels: list[Plane]) -> list[Plane]:
         sizes = flat.sum(axis=(1, 2))
         while sizes.size and sizes.max() >= least:
             layer = int(sizes.argmax())
-            regions = _joined(_regions(mask[layer], flat[layer], least), draft.voxel_m)
+            regions = _merge_regions(_regions(mask[layer], flat[layer], least), draft.voxel_m)
             for low, high, area in regions:
                 flat[max(layer - 1, 0) : layer + 2, low[0] : high[0], low[1] : high[1]] = False
                 found.append(Plane("", int(SemanticClass.WALL), axis, layer, low, high, area))
@@ -150,7 +150,7 @@ def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
     return found
 
 
-def _joined(regions: list[Region], voxel_m: float) -> list[Region]:
+def _merge_regions(regions: list[Region], voxel_m: float) -> list[Region]:
     """Join what a doorway parts: regions side by side that share heights."""
     joined: list[Region] = []
     for low, high, area in sorted(regions):

@@ -120,7 +120,7 @@ def plane_gaps(draft: SceneDraft, plane: Plane, *, hole_m2: float = HOLE_M2) -> 
     near = plane.near(draft.labels)
     wanted = WALL_CLASSES if plane.axis != 2 else (plane.class_id,)
     own = np.asarray(np.isin(near, wanted).any(axis=0))
-    gap = _bounded(draft, plane, near, own) & ~own & (near[1] % UNKNOWN == 0)
+    gap = _find_bounded(draft, plane, near, own) & ~own & (near[1] % UNKNOWN == 0)
     gap &= ~_behind_structure(draft, plane)
     unseen = near[1] == UNKNOWN
     aired = (near[0] == 0) | (near[2] == 0)
@@ -156,7 +156,7 @@ def gap_at(gaps: PlaneGaps, place: tuple[int, int]) -> np.ndarray:
     return (parts == parts[place]) & (parts > 0)
 
 
-def _bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.ndarray) -> np.ndarray:
+def _find_bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.ndarray) -> np.ndarray:
     """Where structure bounds a place of the plane, bool [A, B]."""
     if plane.axis != 2:
         result = np.zeros(own.shape, bool)

@@ -140,12 +140,16 @@ def _touching(draft: SceneDraft, cells: np.ndarray, class_id: int) -> int:
         found.append(ids[(ids > 0) & (draft.labels[tuple(beside.T)] == class_id)])
     faces = np.bincount(np.concatenate(found), minlength=1)
     faces[
-        [number for number in np.flatnonzero(faces).tolist() if not _is(draft, number, class_id)]
+        [
+            number
+            for number in np.flatnonzero(faces).tolist()
+            if not _has_class(draft, number, class_id)
+        ]
     ] = 0
     return int(faces.argmax()) if faces.any() else 0
 
 
-def _is(draft: SceneDraft, number: int, class_id: int) -> bool:
+def _has_class(draft: SceneDraft, number: int, class_id: int) -> bool:
     return number in draft.objects and draft.objects[number].class_id == class_id
 
 
@@ -272,7 +276,7 @@ class Paste(CellCommand):
         sources = sources[draft.labels[tuple(sources.T)] % 255 > 0]
         if not len(sources):
             raise UsageError("nothing to paste: none of these cells is occupied")
-        targets = self._moved(sources)
+        targets = self._target_cells(sources)
         inside = ((targets >= 0) & (targets < draft.shape)).all(axis=1)
         sources, targets = sources[inside], targets[inside]
         changes = draft.labels[tuple(sources.T)] != draft.labels[tuple(targets.T)]
@@ -284,7 +288,7 @@ class Paste(CellCommand):
         colours = draft.colour[tuple(sources.T)]
         return plan_cells(draft, "paste", targets, labels, colours=colours)
 
-    def _moved(self, cells: np.ndarray) -> np.ndarray:
+    def _target_cells(self, cells: np.ndarray) -> np.ndarray:
         moved = cells.astype(np.int64)
         if self.mirror is not None:
             axis = "xyz".index(self.mirror)

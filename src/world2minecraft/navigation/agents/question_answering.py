@@ -97,28 +97,28 @@ def read_answer(text: str, options: Mapping[str, str]) -> str:
     return _option_of(text, options)
 
 
-def _agreed_answer(said: list[str], options: Mapping[str, str]) -> str:
+def _agreed_answer(reply_text: list[str], options: Mapping[str, str]) -> str:
     """Return the last of several answers that agree."""
-    if len({_option_of(one, options) for one in said}) > 1:
+    if len({_option_of(one, options) for one in reply_text}) > 1:
         raise UnreadableError("it gives several answers")
-    return said[-1]
+    return reply_text[-1]
 
 
-def _option_of(said: str, options: Mapping[str, str]) -> str:
-    letter = _LETTER.match(said)
+def _option_of(reply_text: str, options: Mapping[str, str]) -> str:
+    letter = _LETTER.match(reply_text)
     if letter is None:
-        same = [one for one, words in options.items() if words and _plain(words) == _plain(said)]
+        same = [one for one, words in options.items() if words and _plain(words) == _plain(reply_text)]
         if len(same) == 1:
             return same[0]
-        letter = _lettered(said, options)
+        letter = _lettered(reply_text, options)
     if letter is None or letter[1].upper() not in options:
         raise UnreadableError(f"the answer is one letter of {', '.join(options)}")
     return letter[1].upper()
 
 
-def _lettered(said: str, options: Mapping[str, str]) -> re.Match[str] | None:
+def _lettered(reply_text: str, options: Mapping[str, str]) -> re.Match[str] | None:
     """Return the match of a letter that its own option's words follow."""
-    found = _LETTERED.match(said)
+    found = _LETTERED.match(reply_text)
     if found is None or _plain(options.get(found[1].upper(), "")) != _plain(found[2]):
         return None
     return found

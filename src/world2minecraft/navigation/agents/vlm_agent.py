@@ -74,17 +74,17 @@ def facing(start: Stance, stance: Stance) -> str:
 def trail_text(stances: Sequence[Stance], metres_per_block: float) -> str:
     """Return a map in words: the places that were visited, the last one where one stands."""
     start, here = stances[0], stances[-1]
-    kept = [0]
+    retained = [0]
     for number, stance in enumerate(stances):
-        last = stances[kept[-1]]
+        last = stances[retained[-1]]
         away = math.dist(stance.feet, last.feet) * metres_per_block
         if away >= MIN_SPACING_M:
-            kept.append(number)
-    if len(kept) > MAX_PLACES:
-        last_index = len(kept) - 1
-        kept = [kept[round(i * last_index / (MAX_PLACES - 1))] for i in range(MAX_PLACES)]
+            retained.append(number)
+    if len(retained) > MAX_PLACES:
+        last_index = len(retained) - 1
+        retained = [retained[round(i * last_index / (MAX_PLACES - 1))] for i in range(MAX_PLACES)]
     lines = []
-    for place, number in enumerate(kept):
+    for place, number in enumerate(retained):
         ahead, right = relative_m(start, stances[number], metres_per_block)
         lines.append(f"Place {place}: {_place(ahead, right)} (move {number})")
     ahead, right = relative_m(start, here, metres_per_block)

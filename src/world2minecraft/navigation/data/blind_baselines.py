@@ -67,38 +67,38 @@ def score_baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineR
     rows = []
     for task in TASKS:
         train = [item for item in items if item.task == task and item.split == "train"]
-        held = [item for item in items if item.task == task and item.split != "train"]
-        held = held or train
-        if not held:
+        held_out = [item for item in items if item.task == task and item.split != "train"]
+        held_out = held_out or train
+        if not held_out:
             continue
-        chance = float(np.mean([1 / len(item.options) for item in held]))
-        found = _answers(task, train, held, Path(folder))
-        rows += [_row(name, task, held, answers, chance) for name, answers in found.items()]
+        chance = float(np.mean([1 / len(item.options) for item in held_out]))
+        found = _answers(task, train, held_out, Path(folder))
+        rows += [_row(name, task, held_out, answers, chance) for name, answers in found.items()]
         for grade in GRADES if "nearest" in found else ():
-            own = [n for n, item in enumerate(held) if item.extra.get("grade") == grade]
+            own = [n for n, item in enumerate(held_out) if item.extra.get("grade") == grade]
             answers = [found["nearest"][n] for n in own]
             if own:
-                rows.append(_row(f"nearest {grade}", task, [held[n] for n in own], answers, chance))
+                rows.append(_row(f"nearest {grade}", task, [held_out[n] for n in own], answers, chance))
     return rows
 
 
 def _row(
-    name: str, task: str, held: Sequence[Item], answers: Sequence[str], chance: float
+    name: str, task: str, held_out: Sequence[Item], answers: Sequence[str], chance: float
 ) -> BaselineRow:
-    hits = sum(a == item.answer for a, item in zip(answers, held, strict=True))
-    is_held = all(item.split != "train" for item in held)
-    return BaselineRow(name, task, rate(hits, len(held)), chance, is_held)
+    hits = sum(a == item.answer for a, item in zip(answers, held_out, strict=True))
+    is_held = all(item.split != "train" for item in held_out)
+    return BaselineRow(name, task, rate(hits, len(held_out)), chance, is_held)
 
 
 def baseline_letters(
-    name: str, items: Sequence[Item], asked: Sequence[Item], folder: str | Path
+    name: str, items: Sequence[Item], questions: Sequence[Item], folder: str | Path
 ) -> dict[str, str]:
     """Return the letter that a baseline gives to each item asked, by the item's id.
 
     Args:
         name: one of ``BASELINES``; some know one task alone, and the other's items are left out.
         items: of the set; those of train are what it may learn from.
-        asked: the items to answer.
+        questions: the items to answer.
         folder: of the set, for its pictures.
 
     Raises:
@@ -109,43 +109,43 @@ def baseline_letters(
     letters: dict[str, str] = {}
     for task in TASKS:
         train = [item for item in items if item.task == task and item.split == "train"]
-        held = [item for item in asked if item.task == task]
-        found = _answers(task, train, held, Path(folder)) if held else {}
+        held_out = [item for item in questions if item.task == task]
+        found = _answers(task, train, held_out, Path(folder)) if held_out else {}
         own = found.get(name, [])
-        letters |= {item.item_id: letter for item, letter in zip(held, own, strict=False)}
+        letters |= {item.item_id: letter for item, letter in zip(held_out, own, strict=False)}
     return letters
 
 
 def _answers(
-    task: str, train: Sequence[Item], held: Sequence[Item], folder: Path
+    task: str, train: Sequence[Item], held_out: Sequence[Item], folder: Path
 ) -> dict[str, Answers]:
     rng = np.random.default_rng(0)
-    uniform = [item.options[rng.integers(len(item.options))].label for item in held]
-    found = {"uniform": uniform, "majority": _majority(train, held)}
+    uniform = [item.options[rng.integers(len(item.options))].label for item in held_out]
+    found = {"uniform": uniform, "majority": _majority(train, held_out)}
     if task == "next_action":
-        found["blind"] = _blind(train, held)
-        found["repeat"] = [_of_text(item, str(item.extra.get("previous", ""))) for item in held]
+        found["blind"] = _blind(train, held_out)
+        found["repeat"] = [_of_text(item, str(item.extra.get("previous", ""))) for item in held_out]
     else:
         found["blind"] = found["majority"]  # Choices without words leave nothing but the letter.
         small = _Thumbnails(folder)
-        found["nearest"] = [_chosen(item, lambda i: _to_current(i, small)) for item in held]
-        found["alike"] = [_chosen(item, lambda i: _to_others(i, small)) for item in held]
-        found["odd"] = [_chosen(item, lambda i: -_to_others(i, small)) for item in held]
-    return {**found, "oracle": [item.answer for item in held]}
+        found["nearest"] = [_chosen(item, lambda i: _to_current(i, small)) for item in held_out]
+        found["alike"] = [_chosen(item, lambda i: _to_others(i, small)) for item in held_out]
+        found["odd"] = [_chosen(item, lambda i: -_to_others(i, small)) for item in held_out]
+    return {**found, "oracle": [item.answer for item in held_out]}
 
 
-def _majority(train: Sequence[Item], held: Sequence[Item]) -> Answers:
+def _majority(train: Sequence[Item], held_out: Sequence[Item]) -> Answers:
     """Return the commonest right letter of train, or its commonest right action."""
     texts = Counter(_text(item, item.answer) for item in train)
     letters = Counter(item.answer for item in train)
     if texts and set(texts) != {""}:
         most = max(sorted(texts), key=lambda text: texts[text])
-        return [_of_text(item, most) for item in held]
+        return [_of_text(item, most) for item in held_out]
     letter = max(sorted(letters), key=lambda one: letters[one]) if letters else "A"
-    return [letter if letter in [o.label for o in item.options] else "A" for item in held]
+    return [letter if letter in [o.label for o in item.options] else "A" for item in held_out]
 
 
-def _blind(train: Sequence[Item], held: Sequence[Item]) -> Answers:
+def _blind(train: Sequence[Item], held_out: Sequence[Item]) -> Answers:
     """Return what a naive Bayes classifier takes the words of an instruction to ask for."""
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     total: Counter[str] = Counter()
@@ -155,7 +155,7 @@ def _blind(train: Sequence[Item], held: Sequence[Item]) -> Answers:
         total[action] += 1
     vocabulary = len({word for own in counts.values() for word in own}) or 1
     answers = []
-    for item in held:
+    for item in held_out:
         scores = {}
         for option in item.options:
             own = counts[option.text]

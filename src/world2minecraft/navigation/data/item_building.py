@@ -56,9 +56,9 @@ def cut_to_paper_size(items: Sequence[Item], splits_too: bool = False) -> list[I
     if not splits_too:
         return cut_to_quotas(items, PAPER_SIZE)
     train = {key: PAPER_SIZE[key] - PAPER_HELD[key] for key in PAPER_SIZE}
-    kept = cut_to_quotas([item for item in items if item.split == "train"], train)
-    kept += cut_to_quotas([item for item in items if item.split != "train"], PAPER_HELD)
-    chosen = {item.item_id for item in kept}
+    retained = cut_to_quotas([item for item in items if item.split == "train"], train)
+    retained += cut_to_quotas([item for item in items if item.split != "train"], PAPER_HELD)
+    chosen = {item.item_id for item in retained}
     return [item for item in items if item.item_id in chosen]
 
 
@@ -71,11 +71,11 @@ def cut_to_quotas(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) 
         items: of a set, those of a trajectory beside each other.
         quotas: how many, by task and composition; what is not named is kept whole.
     """
-    kept: set[str] = set()
+    retained: set[str] = set()
     for key in {(item.task, item.composition) for item in items}:
         own = [item for item in items if (item.task, item.composition) == key]
-        kept |= {item.item_id for item in _in_turn(own)[: quotas.get(key, len(own))]}
-    return [item for item in items if item.item_id in kept]
+        retained |= {item.item_id for item in _in_turn(own)[: quotas.get(key, len(own))]}
+    return [item for item in items if item.item_id in retained]
 
 
 def _in_turn(items: Sequence[Item]) -> list[Item]:

@@ -147,8 +147,8 @@ def picture_fault(
     how = rule or ValidityRule()
     if min(means, default=0.0) < how.least_mean:
         return "black picture"
-    apart = [hash_distance(a, b) for a, b in pairwise(hashes)]
-    return "twice the same picture" if min(apart, default=64) < how.least_hash else ""
+    distances = [hash_distance(a, b) for a, b in pairwise(hashes)]
+    return "twice the same picture" if min(distances, default=64) < how.least_hash else ""
 
 
 def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:

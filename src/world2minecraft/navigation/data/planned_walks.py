@@ -113,11 +113,11 @@ class TourPlanner:
 
     def _straightened(self, feet: np.ndarray) -> np.ndarray:
         """Return the corners of a way that is straight wherever there is room for that."""
-        kept, n = [0], 0
+        retained, n = [0], 0
         while n < len(feet) - 1:
             n = next(m for m in range(len(feet) - 1, n, -1) if m == n + 1 or self._free(feet, n, m))
-            kept.append(n)
-        return feet[kept]
+            retained.append(n)
+        return feet[retained]
 
     def _free(self, feet: np.ndarray, first: int, last: int) -> bool:
         """Whether one may walk straight between two places of a way."""

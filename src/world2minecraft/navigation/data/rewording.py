@@ -58,27 +58,27 @@ def read_set(folder: str | Path) -> NavigationSet:
     )
 
 
-def write_set(folder: str | Path, made: NavigationSet) -> None:
+def write_set(folder: str | Path, navigation_set: NavigationSet) -> None:
     """Write the records of a set; its pictures are as they were. Raises OutputError."""
     place = Path(folder)
-    write_trajectories(place / TRAJECTORIES, made.trajectories)
-    write_episodes(place / EPISODES, made.episodes)
-    write_items(place / ITEMS, made.items)
+    write_trajectories(place / TRAJECTORIES, navigation_set.trajectories)
+    write_episodes(place / EPISODES, navigation_set.episodes)
+    write_items(place / ITEMS, navigation_set.items)
 
 
-def select_instructions(made: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
+def select_instructions(navigation_set: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
     """Return a set whose items and episodes use the words of the first source that has some.
 
     The items of a walk use the words of several people in turn.
 
     Args:
-        made: the set.
+        navigation_set: the set.
         order: of ``INSTRUCTION_SOURCES``; what is not named is not used.
     """
-    words = {one.trajectory_id: one.instructions for one in made.trajectories}
+    words = {one.trajectory_id: one.instructions for one in navigation_set.trajectories}
     turns: Counter[str] = Counter()
     items = []
-    for item in made.items:
+    for item in navigation_set.items:
         own = words.get(item.trajectory_id, ())
         chosen = _choose(own, item.instruction, order, turns[item.trajectory_id])
         turns[item.trajectory_id] += 1
@@ -88,21 +88,21 @@ def select_instructions(made: NavigationSet, order: Sequence[str] = ORDER) -> Na
             one,
             instruction=_choose(words.get(one.trajectory_id, ()), one.instruction, order, 0),
         )
-        for one in made.episodes
+        for one in navigation_set.episodes
     ]
-    return replace(made, items=items, episodes=episodes)
+    return replace(navigation_set, items=items, episodes=episodes)
 
 
-def add_annotations(made: NavigationSet, file: str | Path) -> NavigationSet:
+def add_annotations(navigation_set: NavigationSet, file: str | Path) -> NavigationSet:
     """Return a set whose walks have what people wrote of them too, and the things it names.
 
     Raises: as ``read_annotations`` and ``with_annotations``.
     """
-    scene_of, told = {one.trajectory_id: one.scene_id for one in made.trajectories}, []
+    scene_of, annotated = {one.trajectory_id: one.scene_id for one in navigation_set.trajectories}, []
     for walk, one in read_annotations(file):
-        names = made.names.get(scene_of.get(walk, ""), ())
-        told.append((walk, replace(one, landmarks=parse_instruction(one.text, names).landmarks)))
-    return replace(made, trajectories=with_annotations(made.trajectories, told, str(file)))
+        names = navigation_set.names.get(scene_of.get(walk, ""), ())
+        annotated.append((walk, replace(one, landmarks=parse_instruction(one.text, names).landmarks)))
+    return replace(navigation_set, trajectories=with_annotations(navigation_set.trajectories, annotated, str(file)))
 
 
 def annotate_set(folder: str | Path, file: str | Path) -> None:
@@ -111,12 +111,12 @@ def annotate_set(folder: str | Path, file: str | Path) -> None:
 
 
 def reword_set(
-    made: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = no_progress
+    navigation_set: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = no_progress
 ) -> tuple[NavigationSet, Counter[str]]:
     """Return a set with the program's words, as items use them, said again by a model.
 
     Args:
-        made: the set; walks that have the model's words of a level are not asked about again.
+        navigation_set: the set; walks that have the model's words of a level are not asked about again.
         ask: the model; several threads may call it.
         model: what it is called.
         jobs: questions at a time.
@@ -128,51 +128,51 @@ def reword_set(
     Raises:
         ServerError: there is not one reply.
     """
-    levels = _levels_in_use(made)
-    asked = [
+    levels = _levels_in_use(navigation_set)
+    pending = [
         (one, words)
-        for one in made.trajectories
+        for one in navigation_set.trajectories
         for words in one.instructions
         if words.source == "template" and words.level in levels.get(one.trajectory_id, ())
         and not any(w.source == "llm" and w.level == words.level for w in one.instructions)
     ]  # fmt: skip
-    progress("words", 0, len(asked))
+    progress("words", 0, len(pending))
     added: dict[str, list[Instruction]] = {}
     outcomes, failures = Counter[str](), list[ServerError]()
-    again = partial(_reword_one, made=made, ask=ask, model=model)
+    again = partial(_reword_one, navigation_set=navigation_set, ask=ask, model=model)
     with ThreadPoolExecutor(max(1, jobs)) as pool:
-        for number, ((walk, _), (told, error)) in enumerate(
-            zip(asked, pool.map(again, asked), strict=True), 1
+        for number, ((walk, _), (rewriting, error)) in enumerate(
+            zip(pending, pool.map(again, pending), strict=True), 1
         ):
-            outcomes[told.refusal] += 1
+            outcomes[rewriting.refusal] += 1
             failures += [error] if error is not None else []
-            if told.instruction is not None:
-                added.setdefault(walk.trajectory_id, []).append(told.instruction)
-            progress("words", number, len(asked))
+            if rewriting.instruction is not None:
+                added.setdefault(walk.trajectory_id, []).append(rewriting.instruction)
+            progress("words", number, len(pending))
     if failures and not added:
         raise failures[0]
     trajectories = [
         replace(one, instructions=(*one.instructions, *added.get(one.trajectory_id, ())))
-        for one in made.trajectories
+        for one in navigation_set.trajectories
     ]
-    return replace(made, trajectories=trajectories), outcomes
+    return replace(navigation_set, trajectories=trajectories), outcomes
 
 
 def _reword_one(
-    one: tuple[Trajectory, Instruction], made: NavigationSet, ask: Ask, model: str
+    one: tuple[Trajectory, Instruction], navigation_set: NavigationSet, ask: Ask, model: str
 ) -> tuple[Rewriting, ServerError | None]:
     walk, words = one
     try:
-        return rewrite(words, made.names.get(walk.scene_id, ()), ask, model), None
+        return rewrite(words, navigation_set.names.get(walk.scene_id, ()), ask, model), None
     except BudgetError:
         return Rewriting(None, NO_BUDGET), None
     except ServerError as error:
         return Rewriting(None, NO_REPLY), error
 
 
-def _levels_in_use(made: NavigationSet) -> dict[str, set[str]]:
+def _levels_in_use(navigation_set: NavigationSet) -> dict[str, set[str]]:
     levels: dict[str, set[str]] = {}
-    for one in (*made.items, *made.episodes):
+    for one in (*navigation_set.items, *navigation_set.episodes):
         levels.setdefault(one.trajectory_id, set()).add(one.instruction.level)
     return levels
 
@@ -197,8 +197,8 @@ def _names(path: Path, walks: Sequence[Trajectory]) -> dict[str, tuple[str, ...]
     for walk in walks:
         for words in walk.instructions:
             names.setdefault(walk.scene_id, set()).update(words.landmarks)
-    told = read_json(path) if path.is_file() else {}
-    scenes = told.get("scenes", []) if isinstance(told, dict) else []
+    data = read_json(path) if path.is_file() else {}
+    scenes = data.get("scenes", []) if isinstance(data, dict) else []
     for scene in scenes if isinstance(scenes, list) else []:
         own = scene.get("landmarks") if isinstance(scene, dict) else None
         if isinstance(own, list):

@@ -122,10 +122,10 @@ class _WalkCounter:
         self._done = min(self._done + count, self._wanted - 1)
         self._told(self._done, self._wanted)
 
-    def scene_done(self, name: str, given: int, asked: int) -> None:
+    def scene_done(self, name: str, given: int, requested: int) -> None:
         """Count what a scene did not give."""
         self._left -= 1
-        self.add(max(0, asked - given))
+        self.add(max(0, requested - given))
         done = self._done if self._left else self._wanted
         self._told(done, self._wanted, f"{name}: {given} walks")
 

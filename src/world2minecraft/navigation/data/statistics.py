@@ -153,9 +153,9 @@ def _splits(statistics: SetStatistics) -> list[str]:
 def _balance(statistics: SetStatistics) -> list[str]:
     lines = []
     for task in TASKS[::-1]:
-        told = _counts_text(statistics.letters[task])
+        counts_line = _counts_text(statistics.letters[task])
         p = statistics.letter_p[task]
-        lines.append(f"{_TITLES[task] + ' answers':28}{told}  (even by chance: p = {p:.2f})")
+        lines.append(f"{_TITLES[task] + ' answers':28}{counts_line}  (even by chance: p = {p:.2f})")
     lines.append(f"{'right actions':28}{_counts_text(statistics.actions)}")
     lines.append(f"{'wrong pictures':28}{_counts_text(statistics.kinds)}")
     lines.append(f"{'grades':28}{_counts_text(statistics.grades)}")
@@ -169,12 +169,12 @@ def _counts_text(counts: Mapping[str, int]) -> str:
 
 
 def _leaks(leaks: Leaks) -> list[str]:
-    told = (
+    counts_line = (
         f"{len(leaks.images)} pictures, {len(leaks.scenes)} scenes, "
         f"{len(leaks.trajectories)} walks, {len(leaks.instructions)} instructions"
     )
     word = "train shares with the rest" if leaks.is_clean else "LEAK: train shares"
-    return [f"{word:28}{told}"]
+    return [f"{word:28}{counts_line}"]
 
 
 def statistics_json(

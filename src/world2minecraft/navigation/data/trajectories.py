@@ -98,8 +98,8 @@ class TrajectoryBuilder:
         step_m = self._move_set.forward_m or scene.metres_per_block
         marks = find_keyframes(walk, self._move_set, step_m)
         length = path_length_m(marks, scene.blocks_per_metre)
-        apart = scene.distance_m(walk.stances[0].feet, (walk.stances[-1].feet,))
-        fault = path_fault(marks, length, apart)
+        apart_m = scene.distance_m(walk.stances[0].feet, (walk.stances[-1].feet,))
+        fault = path_fault(marks, length, apart_m)
         if fault:
             return fault
         way = describe_route(self._seen(walk, marks), self._landmarks, target)

@@ -110,11 +110,11 @@ def _parquet(part: ItemGroup, pictures: SetPictures, rule: ExportOptions) -> byt
 
 
 def _row(item: Item, pictures: SetPictures | None) -> dict[str, Any]:
-    asked = question_of(item)
-    images: list[Any] = list(asked.images)
+    question = question_of(item)
+    images: list[Any] = list(question.images)
     if pictures is not None:
         images = [{"bytes": pictures.read(name), "path": name} for name in images]
-    return {"content": asked.text, "answer": asked.answer, "images": images, "id": item.item_id}
+    return {"content": question.text, "answer": question.answer, "images": images, "id": item.item_id}
 
 
 def _write_recipe(

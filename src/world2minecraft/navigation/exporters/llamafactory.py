@@ -92,13 +92,13 @@ def write_llamafactory(
 
 def row_of(item: Item) -> dict[str, Any]:
     """Return the row of an item."""
-    asked = question_of(item)
+    question = question_of(item)
     return {
         "messages": [
-            {"role": "user", "content": f"{asked.text}\n{LETTER_ALONE}"},
-            {"role": "assistant", "content": asked.answer},
+            {"role": "user", "content": f"{question.text}\n{LETTER_ALONE}"},
+            {"role": "assistant", "content": question.answer},
         ],
-        "images": list(asked.images),
+        "images": list(question.images),
         "id": item.item_id,  # The converter passes over what it does not know.
     }
 

@@ -106,20 +106,20 @@ def _plan_export(
     walks = read_trajectories(source) if format == "r2r" else []
     if any(one.instructions for one in walks):
         return lambda root: write_r2r(root, walks)
-    told = "episodes" if format == "vlnce" else "walks with instructions"
-    raise UsageError(f"{source} holds no {told}, which {format} tells of; w2m vln build makes them")
+    missing = "episodes" if format == "vlnce" else "walks with instructions"
+    raise UsageError(f"{source} holds no {missing}, which {format} tells of; w2m vln build makes them")
 
 
 def _check_folder(root: Path, choices: dict[str, Any]) -> None:
     """Refuse a folder that holds something other than this very export."""
     record = root / RECORD
     if record.is_file():
-        told = read_json(record)
-        held = told.get("choices") if isinstance(told, dict) else None
-        if held != choices:
-            held = held if isinstance(held, dict) else {}
+        data = read_json(record)
+        existing = data.get("choices") if isinstance(data, dict) else None
+        if existing != choices:
+            existing = existing if isinstance(existing, dict) else {}
             other = [
-                f"{k} {held.get(k)!r}, not {v!r}" for k, v in choices.items() if held.get(k) != v
+                f"{k} {existing.get(k)!r}, not {v!r}" for k, v in choices.items() if existing.get(k) != v
             ]
             raise ConflictError(
                 root, f"holds an export by other choices ({', '.join(other)}); name another folder"

@@ -70,10 +70,10 @@ def write_trl(
 
 def row_of(item: Item) -> dict[str, Any]:
     """Return the row of an item: a prompt of typed parts, the letter, the pictures' paths."""
-    asked = question_of(item)
+    question = question_of(item)
     content = [
         {"type": "text", "text": value} if kind == "text" else {"type": "image"}
-        for kind, value in asked.parts
+        for kind, value in question.parts
     ]
     ending = f"\n{LETTER_ALONE}"
     if content[-1]["type"] == "text":
@@ -82,9 +82,9 @@ def row_of(item: Item) -> dict[str, Any]:
         content.append({"type": "text", "text": ending})
     return {
         "prompt": [{"role": "user", "content": content}],
-        "completion": [{"role": "assistant", "content": [{"type": "text", "text": asked.answer}]}],
-        "images": list(asked.images),
-        "answer": asked.answer,
+        "completion": [{"role": "assistant", "content": [{"type": "text", "text": question.answer}]}],
+        "images": list(question.images),
+        "answer": question.answer,
         "id": item.item_id,
     }
 

@@ -175,11 +175,11 @@ def _truth(episode: Episode, frame: np.ndarray) -> dict[str, Any]:
 
 def subsample_path(way_m: list[list[float]]) -> list[list[float]]:
     """Return points of a way about ``SPARSE_M`` apart, its first and its last among them."""
-    kept = [way_m[0]]
+    retained = [way_m[0]]
     for place in way_m[1:-1]:
-        if np.linalg.norm(np.subtract(place, kept[-1])) >= SPARSE_M:
-            kept.append(place)
-    return kept if way_m[-1] == kept[-1] else [*kept, way_m[-1]]
+        if np.linalg.norm(np.subtract(place, retained[-1])) >= SPARSE_M:
+            retained.append(place)
+    return retained if way_m[-1] == retained[-1] else [*retained, way_m[-1]]
 
 
 def _length_m(way_m: list[list[float]]) -> float:

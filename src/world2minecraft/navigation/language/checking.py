@@ -42,8 +42,8 @@ def goal_name(trajectory: Trajectory) -> str:
 def landmark_names_of(trajectories: Iterable[Trajectory], scene_id: str) -> tuple[str, ...]:
     """Return what things of a scene are called in the instructions of its walks, sorted."""
     own = [one for one in trajectories if one.scene_id == scene_id]
-    told = {name for one in own for words in one.instructions for name in words.landmarks}
-    return tuple(sorted(told))
+    names = {name for one in own for words in one.instructions for name in words.landmarks}
+    return tuple(sorted(names))
 
 
 def check_instruction(
@@ -93,8 +93,8 @@ Spoken(phrase='chair', names=('blue chair', 'red chair'))]
         return []
     longest_first = sorted(meant, key=lambda phrase: (-len(phrase), phrase))
     pattern = re.compile(rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)")
-    told = [match.group(1) for match in pattern.finditer(text.lower())]
-    return [Mention(phrase, tuple(sorted(meant[phrase]))) for phrase in told]
+    phrases = [match.group(1) for match in pattern.finditer(text.lower())]
+    return [Mention(phrase, tuple(sorted(meant[phrase]))) for phrase in phrases]
 
 
 def _of_goal(spoken: Sequence[Mention], goal: str) -> list[Finding]:
@@ -123,10 +123,10 @@ def _of_turns(text: str, trajectory: Trajectory, names: Sequence[str]) -> list[F
     routes = [one.text for one in trajectory.instructions if one.level == "route"]
     if not routes:
         return []
-    walked, told = parse_instruction(routes[0], names).turns, parse_instruction(text, names).turns
-    if walked == told:
+    walked, stated = parse_instruction(routes[0], names).turns, parse_instruction(text, names).turns
+    if walked == stated:
         return []
-    return [Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(told)}")]
+    return [Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(stated)}")]
 
 
 def _of_length(text: str) -> list[Finding]:

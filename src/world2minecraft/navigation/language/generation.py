@@ -68,9 +68,9 @@ def landmark_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
     parts, names = [], []
     for number, one in enumerate(way.stretches):
         is_last = number == len(way.stretches) - 1
-        words, said = _stretch(one, way.stop if is_last and way.stop_side == "front" else "", rng)
+        words, named_landmarks = _stretch(one, way.stop if is_last and way.stop_side == "front" else "", rng)
         parts.append(words)
-        names += said
+        names += named_landmarks
     named = parts[-1][-1].endswith(f" to the {way.stop}") if way.stop else False
     stop = _stop(way, named)
     parts[-1] += stop
@@ -161,8 +161,8 @@ def _sentences(parts: Sequence[Sequence[str]], rng: np.random.Generator) -> str:
             sentences.append(_joined(begun))
             begun = []
     first, *rest = sentences
-    told = [f"Then {one}" if rng.random() < 0.4 else one[0].upper() + one[1:] for one in rest]
-    return " ".join(f"{one}." for one in [first[0].upper() + first[1:], *told])
+    following = [f"Then {one}" if rng.random() < 0.4 else one[0].upper() + one[1:] for one in rest]
+    return " ".join(f"{one}." for one in [first[0].upper() + first[1:], *following])
 
 
 def _joined(clauses: Sequence[str]) -> str:

@@ -80,8 +80,8 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
     who, language = str(row.get("annotator_id") or ""), str(row.get("language") or "en")
     level = str(row.get("level") or "landmark")
     if level not in LEVELS:
-        told = ", ".join(LEVELS)
-        raise DamagedFileError(source, f"line {number}: level must be one of {told}, not {level!r}")
+        known = ", ".join(LEVELS)
+        raise DamagedFileError(source, f"line {number}: level must be one of {known}, not {level!r}")
     text = " ".join(values["instruction"].split())
     return values["trajectory_id"], Instruction(
         text, "human", level, annotator=who[:200], language=language[:20]

@@ -29,11 +29,11 @@ def matching_landmarks(phrase: str, landmarks: Sequence[Landmark]) -> list[Landm
         phrase: as a person says it, without "the".
         landmarks: all of a scene.
     """
-    said, _, beside = phrase.partition(" beside the ")
-    found = [one for one in landmarks if one.name == phrase or _matches_noun(said.split(), one)]
-    if not beside:
+    phrase_words, _, anchor = phrase.partition(" beside the ")
+    found = [one for one in landmarks if one.name == phrase or _matches_noun(phrase_words.split(), one)]
+    if not anchor:
         return found
-    anchors = matching_landmarks(beside, landmarks)
+    anchors = matching_landmarks(anchor, landmarks)
     return [one for one in found if any(_is_beside(one, other) for other in anchors)]
 
 
@@ -45,7 +45,7 @@ def _is_beside(one: Landmark, other: Landmark) -> bool:
 def _matches_noun(words: Sequence[str], landmark: Landmark) -> bool:
     noun = landmark.noun.split()
     for split in range(len(words)):
-        said, colour = list(words[split:]), " ".join(words[:split])
-        if noun[-len(said) :] == said and colour in ("", landmark.colour):
+        phrase_words, colour = list(words[split:]), " ".join(words[:split])
+        if noun[-len(phrase_words) :] == phrase_words and colour in ("", landmark.colour):
             return True
     return False

@@ -36,10 +36,10 @@ def evaluate_agent(
     """
     walks: list[EpisodeWalk] = []
     beside: dict[str, list[EpisodeWalk]] = {name: [] for name in REFERENCE_AGENTS}
-    asked = list(episodes)
-    for episode in asked:
+    all_episodes = list(episodes)
+    for episode in all_episodes:
         check_reachable(episode, ground_of(episode).distance_m(episode.start, episode.goals))
-    for episode in asked:
+    for episode in all_episodes:
         ground = ground_of(episode)
         watching = observers(episode, ground)
         walks.append(walk_episode(ground, episode, agent, observers=watching, seed=seed))
@@ -50,8 +50,8 @@ def evaluate_agent(
 
 def walks_summary(walks: Sequence[EpisodeWalk]) -> dict[str, Any]:
     """Return the means of walks, with how many decisions could not be used."""
-    told = summarise([walk.score for walk in walks])
-    return told | {
+    result = summarise([walk.score for walk in walks])
+    return result | {
         "invalid": sum(walk.invalid for walk in walks),
         "failed": sum(walk.failed for walk in walks),
         "decisions": sum(walk.decisions for walk in walks),
@@ -66,7 +66,7 @@ def write_walks_result(
     facts: dict[str, Any],
 ) -> dict[str, Any]:
     """Write ``result.json`` and return what it holds."""
-    told = {
+    result = {
         "kind": "walks",
         "agent": walks[0].agent,
         "summary": walks_summary(walks),
@@ -84,5 +84,5 @@ def write_walks_result(
         ],
         **facts,
     }
-    write_json(Path(folder) / RESULT_FILE, told)
-    return told
+    write_json(Path(folder) / RESULT_FILE, result)
+    return result

@@ -121,9 +121,9 @@ class _State:
         else:
             self._pass(decision)
         self.last = tuple(self.made[before:])
-        told = self.last if self.end != "stopped" else (*self.last, (Move.STOP, False))
+        made_moves = self.last if self.end != "stopped" else (*self.last, (Move.STOP, False))
         for observer in self.observers:
-            observer.on_decision(sight, decision, told)
+            observer.on_decision(sight, decision, made_moves)
         if self.end is None and self.steps >= self.episode.max_steps:
             self.end = "out of steps"
 

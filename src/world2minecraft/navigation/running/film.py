@@ -198,10 +198,10 @@ def _write_caption(draw: ImageDraw.ImageDraw, caption: Sequence[tuple[str, str]]
     font, left = ImageFont.load_default(14), VIEW_PX[0] + 10
     top, bottom = BAND_PX + SIDE_PX + 6, SIZE_PX[1] - 4
     for name, text in caption:
-        told = f"{name}: {text}" if name else text
+        line_text = f"{name}: {text}" if name else text
         colour = BAD if name.isupper() else FAINT if not name else INK
         most = max(1, (bottom - top) // LINE_PX)
-        for line in wrap_text(told, font, SIDE_PX - 20, min(most, 4)):
+        for line in wrap_text(line_text, font, SIDE_PX - 20, min(most, 4)):
             if top + LINE_PX > bottom:
                 return
             draw.text((left, top), line, colour, font)

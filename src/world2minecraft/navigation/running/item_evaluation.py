@@ -154,14 +154,14 @@ def write_result(folder: str | Path, found: Sequence[AnsweredItem], facts: dict[
     ]
     write_text(out / ANSWERS_FILE, "".join(lines))
     names = "\n".join(one.item.item_id for one in found)
-    told = {
+    result = {
         "kind": "answers",
         "items_sha256": hashlib.sha256(names.encode()).hexdigest(),
         "accuracy": accuracy(found),
         "right": {one.item.item_id: one.is_right for one in found},
         **facts,
     }
-    write_json(out / RESULT_FILE, told)
+    write_json(out / RESULT_FILE, result)
 
 
 def select_items(

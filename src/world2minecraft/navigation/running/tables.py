@@ -40,14 +40,14 @@ def read_result(path: str | Path) -> dict[str, Any]:
         place = place / RESULT_FILE
         if not place.is_file():
             raise InputError(place, "is not there; w2m vln run and w2m vln evaluate end with one")
-    told = read_json(place, MAX_RESULT_BYTES)
-    if not isinstance(told, dict) or told.get("kind") not in ("walks", "answers"):
+    data = read_json(place, MAX_RESULT_BYTES)
+    if not isinstance(data, dict) or data.get("kind") not in ("walks", "answers"):
         raise DamagedFileError(place, "is no result of w2m vln run or evaluate")
     try:
-        _check(told)
+        _check(data)
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise DamagedFileError(place, f"lacks what a table shows ({error})") from error
-    return told
+    return data
 
 
 def walks_table(results: Sequence[dict[str, Any]]) -> Table:
@@ -55,13 +55,13 @@ def walks_table(results: Sequence[dict[str, Any]]) -> Table:
     radii = [f"SR {radius:g} m" for radius in RADII_M]
     head = ["agent", "episodes", "NE m", *radii, "OSR 3 m", "SPL", "SoftSPL", "nDTW", "SDTW",
             "CLS", "collisions", "steps", "invalid"]  # fmt: skip
-    rows, told = [head], set()
+    rows, seen = [head], set()
     for result in results:
         rows.append(_walk_row(str(result["agent"]), result["summary"]))
         episodes = tuple(str(one["episode_id"]) for one in result["episodes"])
         for name, summary in sorted(result["beside"].items(), key=_beside):
-            if (name, episodes) not in told and name != result["agent"]:
-                told.add((name, episodes))
+            if (name, episodes) not in seen and name != result["agent"]:
+                seen.add((name, episodes))
                 rows.append(_walk_row(str(name), summary))
     return rows
 
@@ -129,22 +129,22 @@ def format_markdown(table: Table) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in (safe[0], rule, *safe[1:]))
 
 
-def _check(told: dict[str, Any]) -> None:
-    str(told["agent"])
-    if told["kind"] == "walks":
-        if not isinstance(told["episodes"], list):
+def _check(data: dict[str, Any]) -> None:
+    str(data["agent"])
+    if data["kind"] == "walks":
+        if not isinstance(data["episodes"], list):
             raise TypeError("episodes is no list")
-        for summary in (told["summary"], *told["beside"].values()):
+        for summary in (data["summary"], *data["beside"].values()):
             _walk_row("", summary)
-        _ = [one["episode_id"] for one in told["episodes"]]
+        _ = [one["episode_id"] for one in data["episodes"]]
         return
-    if told["training"] not in TRAININGS:
+    if data["training"] not in TRAININGS:
         raise ValueError(f"training is none of {', '.join(TRAININGS)}")
-    if not all(type(value) is bool for value in told["right"].values()):
+    if not all(type(value) is bool for value in data["right"].values()):
         raise TypeError("right is not true or false")
     for task in TASKS:
         for one in COMPOSITIONS:
-            _cell(told["accuracy"].get(task, {}).get(one))
+            _cell(data["accuracy"].get(task, {}).get(one))
 
 
 def _walk_row(agent: str, summary: dict[str, Any]) -> list[str]:
@@ -161,13 +161,13 @@ def _mean(value: Any) -> str:
     return "-" if value is None or not math.isfinite(value) else f"{value:.2f}"
 
 
-def _cell(told: Any) -> str:
-    if told is None:
+def _cell(data: Any) -> str:
+    if data is None:
         return "-"
-    invalid = f" {int(told['invalid'])}!" if told["invalid"] else ""
-    invalid += f" {int(told['failed'])} failed" if told.get("failed") else ""
-    low, high = 100 * told["low"], 100 * told["high"]
-    return f"{100 * told['share']:.1f} [{low:.0f}, {high:.0f}] n={int(told['total'])}{invalid}"
+    invalid = f" {int(data['invalid'])}!" if data["invalid"] else ""
+    invalid += f" {int(data['failed'])} failed" if data.get("failed") else ""
+    low, high = 100 * data["low"], 100 * data["high"]
+    return f"{100 * data['share']:.1f} [{low:.0f}, {high:.0f}] n={int(data['total'])}{invalid}"
 
 
 def _place(result: dict[str, Any]) -> tuple[bool, str, int]:

@@ -116,10 +116,10 @@ class TraceWriter:
 
 def score_json(walk: EpisodeWalk) -> dict[str, Any]:
     """Return the score of a walk for JSON: an infinite error is null."""
-    told = asdict(walk.score)
+    fields = asdict(walk.score)
     return {
         name: None if isinstance(value, float) and value == float("inf") else value
-        for name, value in told.items()
+        for name, value in fields.items()
     }
 
 

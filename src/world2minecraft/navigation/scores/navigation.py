@@ -120,8 +120,8 @@ def summarise(scores: Sequence[EpisodeScore]) -> dict[str, Any]:
         if entry.name in ("success", "oracle"):
             for radius, column in zip(RADII_M, zip(*values, strict=True), strict=True):
                 found = rate(sum(column), len(column))
-                told = {"share": found.share, "low": found.low, "high": found.high}
-                result[f"{entry.name}_{radius:g}m"] = told
+                interval = {"share": found.share, "low": found.low, "high": found.high}
+                result[f"{entry.name}_{radius:g}m"] = interval
             continue
         finite = [float(value) for value in values if np.isfinite(value)]
         result[entry.name] = float(np.mean(finite)) if finite else None

@@ -53,8 +53,8 @@ def cls(path_m: np.ndarray, reference_m: np.ndarray, threshold_m: float = THRESH
     or shorter than the reference that it covers loses.
     """
     path, reference = _checked(path_m), _checked(reference_m)
-    apart = np.linalg.norm(reference[:, None] - path[None], axis=2).min(axis=1)
-    coverage = float(np.exp(-apart / threshold_m).mean())
+    nearest = np.linalg.norm(reference[:, None] - path[None], axis=2).min(axis=1)
+    coverage = float(np.exp(-nearest / threshold_m).mean())
     expected_m = coverage * path_length_m(reference)
     off_m = abs(expected_m - path_length_m(path))
     if expected_m + off_m == 0:

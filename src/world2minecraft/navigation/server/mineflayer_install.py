@@ -73,12 +73,12 @@ def node() -> str:
     found = shutil.which("node")
     if found is None:
         raise UsageError(f"Node is not installed; a body needs Node {MIN_NODE} or newer")
-    told = subprocess.run(
+    version_text = subprocess.run(
         [found, "--version"], check=False, capture_output=True, text=True, timeout=30
     ).stdout
-    version = re.match(r"v(\d+)\.", told)
+    version = re.match(r"v(\d+)\.", version_text)
     if version is None or int(version[1]) < MIN_NODE:
-        raise UsageError(f"a body needs Node {MIN_NODE} or newer, not {told.strip() or 'this'}")
+        raise UsageError(f"a body needs Node {MIN_NODE} or newer, not {version_text.strip() or 'this'}")
     return found
 
 

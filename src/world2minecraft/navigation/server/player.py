@@ -187,14 +187,14 @@ class ServerPlayer:
     somewhere while keys were held, since ``place``.
     """
 
-    def __init__(self, bridge: JsonLineProcess, address: str, told: dict[str, Any]):
+    def __init__(self, bridge: JsonLineProcess, address: str, state: dict[str, Any]):
         self._bridge = bridge
-        self.address, self.version = address, str(told.get("version", ""))[:20]
-        self.name = str(told.get("name", DEFAULT_NAME))[:16]
+        self.address, self.version = address, str(state.get("version", ""))[:20]
+        self.name = str(state.get("name", DEFAULT_NAME))[:16]
         self.changes: list[Change] = []
         self.has_many_changes, self.corrections = False, 0
-        self._take(told)
-        self.body = _body(told.get("pose"), Keys())
+        self._take(state)
+        self.body = _body(state.get("pose"), Keys())
 
     def __enter__(self) -> "ServerPlayer":
         return self
@@ -331,11 +331,11 @@ def join(
     place = folder or body_folder()
     bridge = JsonLineProcess([node(), str(script()), str(place)], place)
     try:
-        told = bridge.ask(
+        state = bridge.ask(
             "join", JOIN_S + SLACK_S, host=found["host"].strip("[]"), port=port, name=name,
             version=version, wait_ms=JOIN_S * 1e3,
         )  # fmt: skip
-        return ServerPlayer(bridge, address, told)
+        return ServerPlayer(bridge, address, state)
     except BaseException:
         bridge.close()
         raise

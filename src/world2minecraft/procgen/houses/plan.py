@@ -106,7 +106,9 @@ def plan_house(rooms: int, storeys: int, rng: np.random.Generator) -> HousePlan:
     storey_kinds = _kinds(rooms, storeys)
     bay = round_to_step(STAIR_M + PASSAGE_M) if two else 0.0
     shared = [_sides(kinds, bay, rng) for kinds in storey_kinds]
-    length = max(_taken(side, bay if n else 0.0) for pair in shared for n, side in enumerate(pair))
+    length = max(
+        _length_taken(side, bay if n else 0.0) for pair in shared for n, side in enumerate(pair)
+    )
     has_below = any(pair[0] for pair in shared)
     corridor_y = round_to_step(below + WALL_M) if has_below else 0.0
     above_y = round_to_step(corridor_y + wide + WALL_M)
@@ -137,7 +139,7 @@ def _sides(
     rooms = [(kind, round_to_step(rng.uniform(*ALONG_M[kind]))) for kind in kinds]
     sides: tuple[list, list] = ([], [])
     for room in sorted(rooms, key=lambda entry: -entry[1]):
-        taken = [_taken(side, bay if n else 0.0) for n, side in enumerate(sides)]
+        taken = [_length_taken(side, bay if n else 0.0) for n, side in enumerate(sides)]
         sides[0 if taken[0] < taken[1] else 1].append(room)
     for side in sides:
         order = rng.permutation(len(side))
@@ -145,7 +147,7 @@ def _sides(
     return sides
 
 
-def _taken(side: list[tuple[str, float]], bay: float) -> float:
+def _length_taken(side: list[tuple[str, float]], bay: float) -> float:
     parts = [along for _, along in side] + ([bay] if bay else [])
     return round_to_step(sum(parts) + WALL_M * max(0, len(parts) - 1))
 

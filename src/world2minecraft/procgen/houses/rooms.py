@@ -226,7 +226,7 @@ def _furnish(
             frame, room, rugs = tried
             held = [frame.item(item, floor_z) for item in room.items]
             return held, tuple(frame.rug(rug) for rug in rugs)
-    frame, room = _opened(plan, cell, holes, leaves, style, np.random.default_rng(seed))
+    frame, room = _prepare_room(plan, cell, holes, leaves, style, np.random.default_rng(seed))
     return [frame.item(item, floor_z) for item in room.items], ()
 
 
@@ -240,7 +240,7 @@ def _try_cell(
     rng: np.random.Generator,
 ) -> tuple[RoomFrame, Plan, tuple[Rug, ...]] | None:
     """Furnish a room once; None where the recipe does not fit or blocks a way."""
-    frame, room = _opened(plan, cell, holes, leaves, style, rng)
+    frame, room = _prepare_room(plan, cell, holes, leaves, style, rng)
     recipe = furnish_galley if cell.kind == "kitchen" else KINDS[cell.kind].furnish
     rugs = recipe(room, style)
     inner = [frame.hole(hole) for hole in holes]
@@ -252,7 +252,7 @@ def _try_cell(
     return frame, room, rugs
 
 
-def _opened(
+def _prepare_room(
     plan: HousePlan,
     cell: Cell,
     holes: list[Hole],

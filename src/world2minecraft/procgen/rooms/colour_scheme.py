@@ -44,7 +44,7 @@ def choose_style(rng: np.random.Generator) -> Style:
     cloth = int(rng.integers(len(CLOTHS)))
     second = (cloth + 1 + int(rng.integers(len(CLOTHS) - 1))) % len(CLOTHS)
     wall = WALLS[int(rng.integers(len(WALLS)))]
-    accent = _mixed(CLOTHS[second], (230, 226, 216), 0.68) if rng.random() < 0.5 else wall
+    accent = _mix(CLOTHS[second], (230, 226, 216), 0.68) if rng.random() < 0.5 else wall
     return Style(
         wood=WOODS[int(rng.integers(len(WOODS)))],
         dark_wood=(96, 66, 46),
@@ -52,13 +52,13 @@ def choose_style(rng: np.random.Generator) -> Style:
         accent_wall=accent,
         cloth=CLOTHS[cloth],
         second_cloth=CLOTHS[second],
-        curtain=_mixed(CLOTHS[second], (240, 236, 226), 0.35),
+        curtain=_mix(CLOTHS[second], (240, 236, 226), 0.35),
         front=FRONTS[int(rng.integers(len(FRONTS)))],
         worktop=WORKTOPS[int(rng.integers(len(WORKTOPS)))],
         floor_wood=WOODS[int(rng.integers(len(WOODS)))],
     )
 
 
-def _mixed(a: Colour, b: Colour, share_b: float) -> Colour:
+def _mix(a: Colour, b: Colour, share_b: float) -> Colour:
     red, green, blue = (round(x * (1 - share_b) + y * share_b) for x, y in zip(a, b, strict=True))
     return red, green, blue

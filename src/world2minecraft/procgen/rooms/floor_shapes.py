@@ -90,7 +90,7 @@ class Ground:
         width, depth, _ = self.size_m
         for cut in self.cuts:
             spot = (width if cut.high_x else 0.0, depth if cut.high_y else 0.0)
-            corners = _chamfered(corners, spot, cut.leg_m)
+            corners = _chamfer(corners, spot, cut.leg_m)
         return np.array(corners, np.float64)
 
     @cached_property
@@ -200,7 +200,7 @@ def _walk_around(free: np.ndarray, xs: list[float], ys: list[float]) -> list[tup
                 break
 
 
-def _chamfered(corners: list[tuple], spot: tuple[float, float], leg_m: float) -> list[tuple]:
+def _chamfer(corners: list[tuple], spot: tuple[float, float], leg_m: float) -> list[tuple]:
     """Replace one corner by two, ``leg_m`` before and after it."""
     n = corners.index(spot)
     ends = []

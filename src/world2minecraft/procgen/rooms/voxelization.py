@@ -121,7 +121,7 @@ def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> n
     tones = rng.uniform(0.9, 1.08, (row.max() + 1, column.max() + 1))[row, column]
     streaks = rng.uniform(0.97, 1.03, (shape[1],))[None, :]
     seam = np.where((y % 7 == 0) | ((x + offset) % 70 == 0), 0.86, 1.0)
-    return _toned(wood, tones * streaks * seam)
+    return _tint(wood, tones * streaks * seam)
 
 
 def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
@@ -130,7 +130,7 @@ def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np
     checker = np.where((x // 20 + y // 20) % 2 == 0, 1.0, 0.84)
     tones = rng.uniform(0.97, 1.03, (shape[0] // 20 + 1, shape[1] // 20 + 1))[x // 20, y // 20]
     joint = np.where((x % 20 == 0) | (y % 20 == 0), 0.9, 1.0)
-    return _toned((212, 206, 196), checker * tones * joint)
+    return _tint((212, 206, 196), checker * tones * joint)
 
 
 def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) -> None:
@@ -154,7 +154,7 @@ def paint_item(canvas: Canvas, item: Item, instance: int, rng: np.random.Generat
         cells = canvas.cells(_turned_box(item, part))
         shape = tuple(side.stop - side.start for side in cells)
         tone = _grain(part, shape, rng)
-        canvas.fill(cells, item.model.class_id, instance, _toned(part.colour, tone))
+        canvas.fill(cells, item.model.class_id, instance, _tint(part.colour, tone))
 
 
 def _paint_solid(
@@ -165,7 +165,7 @@ def _paint_solid(
     cells = tuple(slice(a, a + n) for a, n in zip(start.tolist(), filled.shape, strict=True))
     canvas.labels[cells][filled] = item.model.class_id
     canvas.instance[cells][filled] = instance
-    canvas.colour[cells][filled] = _toned(part.colour, _grain(part, filled.shape, rng))[filled]
+    canvas.colour[cells][filled] = _tint(part.colour, _grain(part, filled.shape, rng))[filled]
 
 
 def _turned_box(item: Item, part: Part | Bar) -> tuple[float, ...]:
@@ -193,7 +193,7 @@ def _is_bare_wood(colour: Colour) -> bool:
     return red - blue > 30 and 0.5 < green / max(red, 1) < 0.88
 
 
-def _toned(colour: Colour, tone: np.ndarray) -> np.ndarray:
+def _tint(colour: Colour, tone: np.ndarray) -> np.ndarray:
     return np.clip(np.array(colour) * tone[..., None] + 0.5, 0, 255).astype(np.uint8)
 
 

@@ -219,11 +219,11 @@ def surface_light(lighting, px, py, pz, face):
     far = np.sqrt(lx * lx + ly * ly + lz * lz) + 20.0
     direct = max(0.0, toward / far) / (1.0 + (far / 160.0) ** 2)
     base = 0.74 if axis == 0 else (0.80 if axis == 1 else (0.84 if sign > 0 else 0.72))
-    return (base + 0.42 * direct) * (1.08 - 0.62 * _blurred(lighting.solid, ox, oy, oz))
+    return (base + 0.42 * direct) * (1.08 - 0.62 * _interpolate_solid(lighting.solid, ox, oy, oz))
 
 
 @njit
-def _blurred(solid, px, py, pz):
+def _interpolate_solid(solid, px, py, pz):
     """Read the blurred grid between its cells."""
     fx, fy, fz = px / COARSE - 0.5, py / COARSE - 0.5, pz / COARSE - 0.5
     nx, ny, nz = solid.shape

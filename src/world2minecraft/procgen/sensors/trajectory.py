@@ -62,7 +62,7 @@ def _way(room: Room, stands: NavMesh, rng: np.random.Generator) -> tuple[np.ndar
         between = _path(stands, way[-1], stop)
         way += between
         stays += [0.0] * (len(between) - 1) + [STAY_M]
-    return _smoothed(stands, stands.places_m[way]), np.array(stays)
+    return _smooth_path(stands, stands.places_m[way]), np.array(stays)
 
 
 def _middles(room: Room) -> np.ndarray:
@@ -163,7 +163,7 @@ def _path(stands: NavMesh, start: int, end: int) -> list[int]:
     return way[::-1]
 
 
-def _smoothed(stands: NavMesh, way_m: np.ndarray) -> np.ndarray:
+def _smooth_path(stands: NavMesh, way_m: np.ndarray) -> np.ndarray:
     """Round the corners of a way; where that would leave the free floor, it stays as it was."""
     smooth = ndimage.uniform_filter1d(way_m, round(SMOOTH_M / STEP_M), axis=0, mode="nearest")
     gap, _ = KDTree(stands.places_m).query(smooth)

@@ -50,11 +50,11 @@ class ClearPaths:
         after[tuple(columns.T)] = True
         free = ~after[box]
         # Places of the body's first corner, then all columns that it covers from there.
-        places = _eroded(free, self.body)
+        places = _erode(free, self.body)
         reached = self._reached(room, places)
         if reached is None or reached.sum() < KEPT_PLACES * places.sum():
             return False
-        return bool(_grown(reached, self.body).sum() >= KEPT_SHARE * free.sum())
+        return bool(_dilate(reached, self.body).sum() >= KEPT_SHARE * free.sum())
 
     def take(self, room: BlockRoom, columns: np.ndarray) -> None:
         """Take columns, int [N, 2]."""
@@ -80,14 +80,14 @@ def _largest(parts: np.ndarray) -> int:
     return int(np.bincount(parts[parts > 0]).argmax())
 
 
-def _eroded(free: np.ndarray, body: int) -> np.ndarray:
+def _erode(free: np.ndarray, body: int) -> np.ndarray:
     places = free
     for axis in (0, 1):
         places = np.logical_and.reduce(_windows(places, body, axis, before=0))
     return places
 
 
-def _grown(places: np.ndarray, body: int) -> np.ndarray:
+def _dilate(places: np.ndarray, body: int) -> np.ndarray:
     covered = places
     for axis in (0, 1):
         covered = np.logical_or.reduce(_windows(covered, body, axis, before=body - 1))

@@ -17,7 +17,7 @@ from world2minecraft.rendering.picture_arrays import OUTPUT_BITS, PixelArrays
 from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 
-MAX_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
+MAX_BYTES = 1 << 36  # 64 GiB of outputs: a mistake, not a batch.
 MAX_PICTURES = 1_000_000
 EMPTY = np.empty(0)
 Size = tuple[int, int]  # height, width
@@ -38,7 +38,7 @@ _PLAN = {
 }
 _ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel writes these for everyone.
 BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
-# What ``render_volume`` makes where nothing is said, and what it makes always.
+# What ``render_volume`` always makes.
 PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
 ArraySpec = tuple[tuple[int, ...], np.dtype]
 
@@ -46,7 +46,7 @@ ArraySpec = tuple[tuple[int, ...], np.dtype]
 class BatchPixels(NamedTuple):
     """``PixelArrays`` with an axis for N pictures before the others.
 
-    What nobody asked for, but the renderer needs, has fewer pictures: one for each slot.
+    Arrays that were not requested, but that the renderer needs, have one picture per slot.
     """
 
     depth: np.ndarray  # float32 [N, H, W]
@@ -117,7 +117,7 @@ def picture_row(array, n, slot, count):
 
 @dataclass(frozen=True, eq=False)
 class BatchArrays:
-    """What N looks at a volume give; arrays that were not asked for are None.
+    """The outputs of N pictures; arrays that were not requested are None.
 
     Each is what ``Picture`` says of it, with an axis for the pictures before the others.
     """
@@ -139,7 +139,7 @@ class BatchArrays:
     def picture(self, number: int) -> Picture:
         """Return one picture; it shares the batch's memory.
 
-        An array that every ``Picture`` has, and that was not asked for, is empty.
+        An array that every ``Picture`` has, and that was not requested, is empty.
         """
         parts = {field.name: getattr(self, field.name) for field in fields(self)}
         given = {name: array[number] for name, array in parts.items() if array is not None}
@@ -214,9 +214,9 @@ def check_arrays(given: BatchArrays, rooms: dict[str, ArraySpec]) -> None:
     arrays = dict(given.named())
     for name, (shape, kind) in rooms.items():
         array = arrays.pop(name, None)
-        told = "nothing" if array is None else f"{array.dtype} {list(array.shape)}"
+        given_text = "nothing" if array is None else f"{array.dtype} {list(array.shape)}"
         if array is None or array.shape != shape or array.dtype != kind:
-            raise UsageError(f"out.{name} must be {kind} {list(shape)}, not {told}")
+            raise UsageError(f"out.{name} must be {kind} {list(shape)}, not {given_text}")
         if not (array.flags.c_contiguous and array.flags.writeable):
             raise UsageError(f"out.{name} must be in C order, whole and open to writing")
     if arrays:
@@ -232,8 +232,8 @@ def kernel_arrays(
         arrays: of a batch.
         size: height and width.
         slots: how many may draw at once.
-        outputs: what was asked for.
-        fine: whether the colour is drawn apart.
+        outputs: what was requested.
+        fine: whether the colour is drawn separately.
     """
     wanted = sum(bit for name, bit in OUTPUT_BITS.items() if name in outputs)
     parts = {}

@@ -1,4 +1,4 @@
-"""Pictures of many poses in one call."""
+"""Render pictures of many poses in one call."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -80,7 +80,7 @@ def render_batch(
         out: arrays of an earlier batch, or of ``batch_arrays``, to be filled; new ones where None.
 
     Raises:
-        UsageError: what is asked for cannot be, or ``out`` does not suit it.
+        UsageError: the request is invalid, or ``out`` does not suit it.
     """
     matrices = checked_poses(poses)
     each = checked_cameras(cameras, len(matrices))
@@ -140,7 +140,7 @@ def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[
 
 
 def draw_views(
-    stage: KernelScene,
+    scene: KernelScene,
     views: Views,
     shading: ShadingParameters,
     outputs: Collection[str],
@@ -160,7 +160,7 @@ def draw_views(
     if depth is not None:
         out = out._replace(depth=depth)
     out.normal[...] = 0.0
-    draw = _drawer(stage, views, shading, samples, out)
+    draw = _drawer(scene, views, shading, samples, out)
     if by_rows:
         parts = bands(height, max(1, threads), TILE)
         run_parallel(lambda rows: draw(0, 1, rows, 0), parts)
@@ -169,30 +169,30 @@ def draw_views(
     if arrays.free is not None and depth is not None:
         for n in range(count):
             camera = GridCamera(views.poses[n], views.rays[n], 1.0)
-            arrays.free[n] = observed_free_space(stage.tables, camera, depth[n])
+            arrays.free[n] = observed_free_space(scene.tables, camera, depth[n])
 
 
 Drawer = Callable[[int, int, tuple[int, int], int], None]
 
 
 def _drawer(
-    stage: KernelScene, views: Views, shading: ShadingParameters, samples: int, out: BatchPixels
+    scene: KernelScene, views: Views, shading: ShadingParameters, samples: int, out: BatchPixels
 ) -> Drawer:
     """Return what draws some rows of every so many pictures."""
     height, width = views.size
-    apart = samples > 1 and out.colour.shape[1:3] == views.size
-    fine = pixel_arrays((height * samples, width * samples), ("colour",)) if apart else None
+    separate = samples > 1 and out.colour.shape[1:3] == views.size
+    fine = pixel_arrays((height * samples, width * samples), ("colour",)) if separate else None
 
     def draw(start: int, stride: int, rows: tuple[int, int], slot: int) -> None:
         memory = band_memory()
         part = BatchPart(start, stride, *rows, slot)
-        draw_poses(stage.tables, stage.side_px, views.poses, views.rays, part, shading, memory, out)
+        draw_poses(scene.tables, scene.side_px, views.poses, views.rays, part, shading, memory, out)
         if fine is None:
             return
         for n in range(start, len(views.poses), stride):
             camera = GridCamera(views.poses[n], views.rays[n] * samples, 1.0)
             draw_rows(
-                stage.tables, stage.side_px, camera, rows[0] * samples, rows[1] * samples,
+                scene.tables, scene.side_px, camera, rows[0] * samples, rows[1] * samples,
                 shading, memory, fine,
             )  # fmt: skip
             _shrink(fine, samples, rows, out.colour[n])

@@ -216,7 +216,7 @@ class RenderPool:
                 function at the top of a module, or a partial of one.
 
         Raises:
-            UsageError: what is asked for cannot be, or the pool is closed or at work.
+            UsageError: the request is invalid, or the pool is closed or at work.
             WorkerError: a worker has died; the pool is closed then.
         """
         self._check_idle()
@@ -228,7 +228,7 @@ class RenderPool:
             check_batch(len(each), size, samples)
         wanted = tuple(outputs)
         runs = [views_of(self._scene, each[a:b], matrices[a:b]) for a, b in split_into_tasks(each)]
-        array_specs(1, (1, 1), wanted, self._scene.semantic.shape)  # Unknown names are said now.
+        array_specs(1, (1, 1), wanted, self._scene.semantic.shape)  # Unknown names raise now.
         if not runs:
             return iter(())
         eyes = np.concatenate([run.poses[:, :, 3] for run in runs])

@@ -1,8 +1,8 @@
 """Arrays in shared memory: written once, seen by every process that knows their plan.
 
-A ``SharedArrays`` is made by one process, which takes it away again, and joined by others. Each array
-begins at a whole number of cache lines. Whether it may be written to is kept: kernels are compiled
-for that, and a process that is told otherwise would compile its own.
+One process creates ``SharedArrays`` and frees them again; others join. Each array begins at a whole
+number of cache lines. Whether it may be written to is kept: kernels are compiled for that, and a
+process with another flag would compile its own.
 """
 
 from collections.abc import Mapping

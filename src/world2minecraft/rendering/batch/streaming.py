@@ -146,10 +146,10 @@ def render_stream(
             are given, and drawn ahead of their user.
         encode_threads: how many pictures are written at once.
         jobs: how many processes draw; see ``RenderPool``.
-        progress: told the pictures that are done, as stage ``render``.
+        progress: called with the pictures that are done, as stage ``render``.
 
     Raises:
-        UsageError: what is asked for cannot be. WorkerError: a process died.
+        UsageError: the request is invalid. WorkerError: a process died.
     """
     for name, value, most in (
         ("encode_threads", encode_threads, MAX_WRITERS),

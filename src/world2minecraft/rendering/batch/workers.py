@@ -68,7 +68,7 @@ class Reply:
 
 def serve(pipe: Connection) -> None:
     """Do what comes through the pipe until it ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and closes the pipe.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent gets it, and closes the pipe.
     desk = WorkerState()
     try:
         while (message := pipe.recv()) is not None:
@@ -90,7 +90,7 @@ def _send(pipe: Connection, reply: Reply) -> None:
 
 
 class WorkerState:
-    """What a worker was told, and the memory that it has joined.
+    """The scene and the job of a worker, and the memory that it has joined.
 
     It joins memory with the first task that needs it: a job that others were quicker to finish is
     gone, with its memory, before a slow worker hears of it.
@@ -159,8 +159,8 @@ def picklable_error(error: Exception) -> Exception:
         copied = None
     if type(copied) is type(error) and str(copied) == str(error):
         return error.with_traceback(None)  # Its frames hold shared memory.
-    told = "".join(traceback.format_exception_only(error)).strip()
-    return WorkerError(f"a worker failed: {told}")
+    text = "".join(traceback.format_exception_only(error)).strip()
+    return WorkerError(f"a worker failed: {text}")
 
 
 @dataclass(eq=False)

@@ -1,7 +1,7 @@
-"""The same pictures on a graphics card: a compute shader over the scene's tables, by wgpu.
+"""Render on the GPU: a compute shader over the scene's tables, by wgpu.
 
-``renderer_for(device, scene)`` is the one door: its value draws on the CPU or the GPU with the
-same words. wgpu comes with the extra ``[gpu]``; nothing here imports it before it is asked for.
+``renderer_for(device, scene)`` returns a renderer for the CPU or the GPU with the
+same methods. wgpu comes with the extra ``[gpu]``; nothing here imports it before it is needed.
 """
 
 from world2minecraft.rendering.gpu.backend_choice import (

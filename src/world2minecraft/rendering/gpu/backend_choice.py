@@ -1,7 +1,7 @@
-"""Who draws: the CPU's kernel or the shader, behind one door.
+"""Choose the renderer: the CPU kernel or the GPU shader, behind one interface.
 
 ``auto`` takes a graphics card where there is one, and never a software adapter, which is slower
-than the kernel. wgpu is imported only where a card may be, or was asked for.
+than the kernel. wgpu is imported only where there may be a GPU, or one was requested.
 """
 
 import sys
@@ -126,8 +126,8 @@ def choose_device(name: str = "auto") -> str:
 
     Raises:
         UnknownNameError: there is no such name.
-        MissingExtraError: gpu was asked for and wgpu is not installed.
-        GpuError: gpu was asked for and no graphics card is found.
+        MissingExtraError: gpu was requested and wgpu is not installed.
+        GpuError: gpu was requested and no graphics card is found.
     """
     if name not in DEVICES:
         raise UnknownNameError("device", name, DEVICES)

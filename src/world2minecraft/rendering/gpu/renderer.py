@@ -83,7 +83,7 @@ def unpack_rows(arrays: PixelArrays, planes: np.ndarray, row: int, layout: Plane
 class GpuRenderer:
     """Draws one scene on a graphics card; the methods are those of ``CpuRenderer``.
 
-    It is used from one thread at a time. A lost device is opened anew, once a call.
+    It is used from one thread at a time. A lost device is opened again, once per call.
     """
 
     def __init__(self, scene: BlockScene, *, adapter: str | None = None):
@@ -143,7 +143,7 @@ class GpuRenderer:
         samples: int = 1,
         background: Backdrop | None = None,
     ) -> Iterator[Picture]:
-        """Take a picture from each pose, in their order; some poses are asked for ahead.
+        """Take a picture from each pose, in their order; some poses are read ahead.
 
         Args:
             camera: one for all.
@@ -272,7 +272,7 @@ class GpuRenderer:
         return first.slot.words().reshape(shape) if first.slot else np.empty(shape, np.uint32)
 
     def _open_again(self, under_way: "deque[_Work]") -> None:
-        """Open the device anew after it was lost."""
+        """Open the device again after it was lost."""
         discard_engine(self._engine)
         for work in under_way:
             work.slot = None

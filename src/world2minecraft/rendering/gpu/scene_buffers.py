@@ -126,7 +126,7 @@ def _turns(tables: SceneTables) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _main_faces(normals: np.ndarray) -> int:
-    """Return the main faces of six sides, four bits each: told in 64 bits, where 45 degrees tie."""
+    """Return the main faces of six sides, four bits each; in float64, where 45 degrees tie."""
     word = 0
     for side in range(6):
         x, y, z = (1.0 if side % 2 else -1.0) * normals[side // 2]

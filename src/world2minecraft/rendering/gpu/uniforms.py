@@ -1,4 +1,4 @@
-"""What the shader is told besides the scene: the light, the picture's size, and each pose.
+"""The uniforms of the shader: the light, the picture's size, and each pose.
 
 ``SCALARS`` is the one list of the uniform's members: the shader's struct is written from it, and
 its bytes are. Poses are cut in two, so that 32 bits are enough anywhere: the cell that holds the

@@ -1,4 +1,4 @@
-"""Light: of the sky, of lamps, of the hour; and from light to the screen.
+"""Light of the sky, of lamps and of the hour, and tone mapping to the screen.
 
 A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
 kernel reads, and ``edit_light`` keeps it true where cells change. A ``LightSettings`` says how a
@@ -9,13 +9,14 @@ kernel
 - ``background(exposure) -> Background``, the sky,
 - ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
 
-For kernels, a pixel at a time (the picture kernel keeps what the lattice's entries stand for in a
-table, ``shade.corner_lights``, in place of the first and third):
+For kernels, a pixel at a time (the picture kernel has a table of all entries of the
+lattice, ``shading.corner_lights``, in place of the first and third):
 
 - ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
 - ``shade = direction_shade(nx, ny, nz, cosine, params)``
-- ``r, g, b = light_multipliers(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
-  texel; ``emission_light(emission, params)`` is the least of them for what shines by itself
+- ``r, g, b = light_multipliers(sky, block, occluders, shade, sun, params)``, the multipliers of
+  the linear texel; ``emission_light(emission, params)`` is the least of them for what shines by
+  itself
 - ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
 - ``tone_map_pixel(r, g, b, tone)``, three uint8
 """

@@ -1,4 +1,4 @@
-"""How far a scene's light is opened up, so that rooms are neither black nor washed out.
+"""The exposure of a scene, so that rooms are neither black nor washed out.
 
 One number for a scene, or for the eyes of one tour, so that pictures of it belong together. It
 comes from the light at surfaces, in the geometric mean: what a camera's meter would see if all of

@@ -101,11 +101,11 @@ class LightField:
     """
 
     kinds: np.ndarray  # uint16 [X + 2, Y + 2, Z + 2]: 1 + the state's index, 0 around the volume
-    words: np.ndarray  # uint32 [P + 1], see minecraft.rules.flood
+    words: np.ndarray  # uint32 [P + 1], see minecraft.rules.light
     gives: np.ndarray  # uint8 [P + 1], levels
     sky: np.ndarray  # uint8 [X + 2, Y + 2, Z + 2]
     block: np.ndarray  # uint8 [X + 2, Y + 2, Z + 2]
-    lattice: np.ndarray  # uint16 [3, X + 2, Y + 2, Z + 2], see render.light.lattice
+    lattice: np.ndarray  # uint16 [3, X + 2, Y + 2, Z + 2], see above
     reach: float = 1.0
     hidden_lamps: bool = True
 

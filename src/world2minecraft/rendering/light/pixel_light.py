@@ -1,4 +1,4 @@
-"""The light of one pixel: functions that the picture kernel inlines.
+"""The light of one pixel, by functions that the kernels inline.
 
 All colours here are linear multipliers of a surface's linear colour.
 """
@@ -81,7 +81,7 @@ def light_multipliers(sky, block, occluders, shade, sun, params):
         block: block light, 0 to 15.
         occluders: what darkens the corner, 0 to 3; 0 where a model has no ambient occlusion.
         shade: of the face's direction, see ``direction_shade``.
-        sun: 0 where the sun does not shine or was not asked for, else the cosine of its angle.
+        sun: 0 where the sun does not shine or is switched off, else the cosine of its angle.
         params: ``LightCoefficients``.
     """
     s, b = sky * (1 / 15), block * (1 / 15)

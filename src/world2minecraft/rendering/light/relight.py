@@ -1,7 +1,7 @@
-"""Light after an edit: only what a change reaches is worked out again.
+"""Update light after an edit: only what the change reaches is computed again.
 
-The light of the changed cells, and all that may have come through them, is put out; what still
-shines around it then spreads back in. The result is that of a whole new flood.
+The light of the changed cells, and all that may have come through them, is removed; the remaining
+light around it then spreads back in. The result equals that of a new flood fill.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""How a picture is lit: what a user chooses, and what it comes to for the kernel."""
+"""Light settings of a picture, and the coefficients that the kernels read."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

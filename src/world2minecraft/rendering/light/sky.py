@@ -1,6 +1,6 @@
-"""The light of the sky by the hour: colours of the sky, the sun and the background.
+"""The sky by the hour: colours of its light, of the sun and of the background.
 
-A table of moments, and what lies between them mixed. Colours are linear; their strengths are to
+A table of hours, interpolated. Colours are linear; their strengths are to
 each other as they please, not as a photometer says: a night of true darkness shows nothing.
 """
 

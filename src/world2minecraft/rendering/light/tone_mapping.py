@@ -1,4 +1,4 @@
-"""From light to screen: tables for the kernel, a tone map that keeps hues, and numpy's versions.
+"""Tone mapping from linear light to the screen: tables for the kernels, and numpy versions.
 
 Light up to ``SHOULDER`` comes through as it is; what is brighter is pressed together below white by
 its brightest channel, so that hues stay, and pales a little, as film does. A little contrast then
@@ -70,7 +70,7 @@ def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
 
 
 def tone_map_picture(light: np.ndarray, tone: Tone) -> np.ndarray:
-    """Return screen colours, uint8 [..., 3], of linear light: ``tone_map_pixel`` for whole pictures."""
+    """Return screen colours, uint8 [..., 3], of linear light, as ``tone_map_pixel`` does."""
     pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else np.maximum(light, 0)
     return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 

@@ -1,8 +1,9 @@
 """Bake a block volume to quads: visible faces with texture, tint and light.
 
-Full cubes hide what lies against them, and their faces are merged where they look alike; everything
-else is one quad per face. What can be hidden as a whole (a class, or what one of the ways to cut the
-volume open removes) keeps the faces behind it. Light is that of the light lattice at the corners.
+Full cubes hide what lies against them, and their faces are merged where they look alike;
+everything else is one quad per face. What can be hidden as a whole (a class, or what one of the
+ways to cut the volume open removes) keeps the faces behind it. Light is that of the light lattice
+at the corners.
 """
 
 from dataclasses import dataclass
@@ -262,7 +263,7 @@ def _of_blocks(
             for side in template.side
         ]
         which, quad = np.nonzero(~np.stack(gone, axis=1))
-        quads, cells = template.taken(quad), cells[which]
+        quads, cells = template.select(quad), cells[which]
         at = tuple(cells.T)
         facts = (volume.semantic[at], volume.instance[at], cuts[at])
         state = np.full(len(cells), row, np.uint16)
@@ -310,7 +311,7 @@ def _merge_cube_faces(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.n
     found = merge_faces(placed.cells, placed.quads.side, np.where(even, look, -1))
     rows, length = found
     grown = placed.quads.corners[rows] * length[:, None]
-    quads = placed.quads.taken(rows)
+    quads = placed.quads.select(rows)
     slope = quads.uv[:, 1:2] - quads.uv[:, 0:1], quads.uv[:, 3:4] - quads.uv[:, 0:1]
     one = np.abs(quads.corners[:, 1] - quads.corners[:, 0])
     two = np.abs(quads.corners[:, 3] - quads.corners[:, 0])

@@ -41,7 +41,7 @@ class Quads(NamedTuple):
     emission: np.ndarray  # float32 [Q], 0 to 1
     clear: np.ndarray  # bool [Q], drawn over what is behind it
 
-    def taken(self, rows: np.ndarray) -> "Quads":
+    def select(self, rows: np.ndarray) -> "Quads":
         """Return some of the quads, bool [Q] or int [N]."""
         return Quads(*(values[rows] for values in self))
 
@@ -98,7 +98,7 @@ def hidden_sides(
 
     Args:
         states: uint16 [X, Y, Z].
-        kinds: int8 [P], what ``render.bake.kind_of`` says of each state.
+        kinds: int8 [P], what ``scene_baking.kind_of`` returns of each state.
         joins: bool [P], which states join their like.
         groups: int [X, Y, Z].
     """

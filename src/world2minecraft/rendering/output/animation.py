@@ -1,6 +1,6 @@
-"""Moving pictures, written frame by frame: GIF, APNG and WebP by pillow, MP4 and WebM by ffmpeg.
+"""Write animations frame by frame: GIF, APNG and WebP by pillow, MP4 and WebM by ffmpeg.
 
-All are written beside their place and moved there at the end: whole or not at all.
+Files are written to a temporary folder and moved into place at the end: whole or not at all.
 """
 
 import os
@@ -139,16 +139,16 @@ def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[
     """Run ffmpeg for a block, which is given what sends it frames."""
     program = ffmpeg_program()
     running: list[subprocess.Popen[bytes]] = []
-    with tempfile.TemporaryFile() as told:
+    with tempfile.TemporaryFile() as messages:
         try:
-            yield _frame_sender(running, program, draft, suffix, rate_hz, told)
+            yield _frame_sender(running, program, draft, suffix, rate_hz, messages)
             if not running:
                 raise UsageError(f"{target}: a moving picture needs at least one frame")
             running[0].communicate()
             if running[0].returncode:
-                raise OutputError(target, f"ffmpeg could not write it: {_last_line(told)}")
+                raise OutputError(target, f"ffmpeg could not write it: {_last_line(messages)}")
         except BrokenPipeError as error:
-            raise OutputError(target, f"ffmpeg stopped: {_last_line(told)}") from error
+            raise OutputError(target, f"ffmpeg stopped: {_last_line(messages)}") from error
         finally:
             for process in running:
                 process.kill()
@@ -161,7 +161,7 @@ def _frame_sender(
     draft: Path,
     suffix: str,
     rate_hz: float,
-    told: IO[bytes],
+    messages: IO[bytes],
 ) -> FrameWriter:
     def send(colour: np.ndarray) -> None:
         height, width = colour.shape[0] // 2 * 2, colour.shape[1] // 2 * 2  # Codecs want even.
@@ -170,7 +170,7 @@ def _frame_sender(
                      "-s", f"{width}x{height}", "-r", f"{rate_hz:g}", "-i", "-", "-an",
                      "-map_metadata", "-1", "-fflags", "+bitexact",
                      *CODECS[suffix], str(draft)]  # fmt: skip
-            running.append(subprocess.Popen(words, stdin=subprocess.PIPE, stderr=told))
+            running.append(subprocess.Popen(words, stdin=subprocess.PIPE, stderr=messages))
         pipe = running[0].stdin
         if pipe is not None:
             pipe.write(np.ascontiguousarray(colour[:height, :width]))
@@ -178,7 +178,7 @@ def _frame_sender(
     return send
 
 
-def _last_line(told: IO[bytes]) -> str:
-    told.seek(0)
-    lines = told.read().decode(errors="replace").strip().splitlines()
+def _last_line(messages: IO[bytes]) -> str:
+    messages.seek(0)
+    lines = messages.read().decode(errors="replace").strip().splitlines()
     return lines[-1] if lines else "it said nothing"

@@ -1,4 +1,4 @@
-"""Light without its grain: an edge-keeping filter of light that textures are taken out of.
+"""Denoise light by an edge-preserving a-trous filter, with textures divided out.
 
 What is filtered is light over the share that the surface sends on, so that no texture is smeared.
 Five sweeps, each twice as wide, take the mean over neighbours of one surface: the same plane, the

@@ -1,4 +1,4 @@
-"""The lamps of a scene: every shining box with its place, faces and light, and who is near what.
+"""The emitters of a scene: every shining box with its place, faces and light, and those near it.
 
 A box is a corner and three edges, so that turned ones are as good as upright ones. How strongly it
 shines comes from its level and its size: a torch lights a room as a glowstone block does, though
@@ -118,8 +118,8 @@ def _find_emitters(scene: BlockScene, own: np.ndarray) -> tuple[np.ndarray, np.n
     order = np.argsort(cell, kind="stable")
     cell, element = cell[order], element[order]
     given = np.where(cell >= 0, gives[np.maximum(cell, 0)], 0)
-    said = np.where(element >= 0, own[np.maximum(element, 0)], 1) if len(own) else given
-    return cell.astype(np.int64), element.astype(np.int32), np.where(given > 0, given, said)
+    stated = np.where(element >= 0, own[np.maximum(element, 0)], 1) if len(own) else given
+    return cell.astype(np.int64), element.astype(np.int32), np.where(given > 0, given, stated)
 
 
 def _boxes(

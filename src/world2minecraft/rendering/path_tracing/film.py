@@ -1,6 +1,6 @@
-"""What the paths of a photo add up in, and what each pixel's middle looks at.
+"""The film of a photo: sums over paths, and the surface at the centre of each pixel.
 
-Light that comes by a matt surface is kept apart by whether the sample met the surface that the
+Light that comes by a matt surface is kept separate by whether the sample met the surface that the
 pixel's middle looks at: the filter works surface by surface, and puts both parts of a pixel at an
 edge together again at the end.
 """
@@ -16,7 +16,7 @@ SAME_PLANE, SAME_PLANE_FAR = 0.02, 0.002  # Cells off its plane, and the more pe
 
 
 class Film(NamedTuple):
-    """Sums over samples, float32 [H, W, 3] where nothing else is said."""
+    """Sums over samples, float32 [H, W, 3] unless stated otherwise."""
 
     seen: np.ndarray  # sky and lamps themselves
     light: np.ndarray  # by the matt surface in the pixel's middle

@@ -1,4 +1,4 @@
-"""From a film to a picture: light and shares put together again, exposed, and brought to sRGB."""
+"""Develop a film to a picture: denoise and recombine light, expose it, and tone map to sRGB."""
 
 import numpy as np
 

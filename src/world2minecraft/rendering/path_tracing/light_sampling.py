@@ -1,8 +1,8 @@
-"""Aiming at lamps: which one, where on it, and how likely that choice was.
+"""Sample emitters: which one, where on it, and with what probability density.
 
-The choice depends on nothing but the point that is lit and its outward normal, so that a ray that
-meets a lamp by chance can tell how likely aiming would have been: both ways are then weighed
-against each other, and no light is counted twice.
+The choice depends only on the lit point and its outward normal, so that for a ray that hits an
+emitter by chance the density of sampling it is known: both ways are weighted by multiple importance
+sampling, and no light is counted twice.
 """
 
 import numpy as np
@@ -40,7 +40,7 @@ def emitter_weight(lamps, row, at, out):
 def choose_emitter(lamps, at, out, number):
     """Return ``(row, odds, number, total)``: a lamp near a point, -1 for none.
 
-    ``as_number`` of [0, 1) decides; what is left of it comes back, even again. ``total`` is the sum of
+    ``number`` of [0, 1) decides; the rest of it is returned, uniform again. ``total`` is the sum of
     the weights, from which ``odds`` of any lamp follow.
     """
     brick = brick_of(lamps, at)

@@ -1,8 +1,8 @@
-"""The kernel of photos: paths from the eye through a scene, surface by surface, to its light.
+"""The path tracing kernel: paths from the eye through a scene, surface by surface, to its light.
 
-At each surface the sun and one lamp are aimed at; then the path goes on by one of the surface's
-lobes. Sky is found by going on; lamps are found both ways, weighed against each other by their
-densities. Glass is passed, tinting what lies behind, or mirrors where it is seen first.
+At each surface the sun and one emitter are sampled; then the path continues by one of the
+surface's lobes. The sky is found by paths alone; emitters are found both ways, combined by multiple
+importance sampling. Glass is passed, tinting what lies behind, or reflects where it is seen first.
 """
 
 import numpy as np

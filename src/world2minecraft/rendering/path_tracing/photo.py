@@ -44,7 +44,7 @@ class Photo(Picture):
     radiance: np.ndarray | None = None  # float32 [H, W, 3], linear; times exposure it is shown
     albedo: np.ndarray | None = None  # float32 [H, W, 3]
     exposure: float = 1.0
-    samples: int = 0  # that each pixel got: fewer than asked for where the budget ended
+    samples: int = 0  # that each pixel got: fewer than requested where the budget ended
 
 
 def render_photo(
@@ -75,7 +75,7 @@ def render_photo(
         threads: how many bands of rows are traced at a time.
         denoise: whether to filter the light.
         budget_s: wall time after which no further pass over the picture begins; one is made.
-        progress: told of the stage ``photo`` after each pass: samples done, and the time left.
+        progress: called with the stage ``photo`` after each pass: samples done and time left.
         lamps: of ``emitters_of(scene)``, where many photos are taken of one scene.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Random numbers by place: the same for a pixel, a sample and a use, whoever asks and when.
+"""Random numbers by hashing: the same for a pixel, a sample and a use in any order of calls.
 
 The first uses of a path come from Sobol's sequence in two dimensions, its order and its values
 scrambled by hashes of the pixel (Owen scrambling), so that 16 samples lie evenly; later uses,

@@ -105,7 +105,7 @@ def _by_processes(
 
 @contextmanager
 def _drawing(scene: BlockScene, how: DrawOptions) -> Iterator[Callable[..., Picture]]:
-    """Give what takes a picture of a scene on the device that is asked for."""
+    """Yield a function that takes pictures of a scene on the chosen device."""
     module = None if how.device == "cpu" else _gpu_module(how.device)
     if module is None:
         yield partial(render_volume, scene, threads=how.threads)

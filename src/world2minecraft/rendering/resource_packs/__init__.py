@@ -1,7 +1,7 @@
-"""Resource packs and client jars of the user as a source of looks: ``ResourcePackModels``.
+"""Resource packs and client jars of the user as a source of block models.
 
-``archive`` opens a pack, ``resources`` stacks several, ``blockstates`` and ``model_files`` read
-the files of a block, ``shapes`` and ``turning`` make elements of them, ``textures`` makes pictures.
+``pack_files`` opens and stacks packs, ``model_json`` reads blockstates and models, ``elements`` and
+``implicit_models`` make elements of them, ``textures`` decodes pictures.
 """
 
 from world2minecraft.rendering.resource_packs.pack_models import ResourcePackModels

@@ -63,8 +63,8 @@ def _variant(variants: dict[str, Any], properties: Mapping[str, str]) -> Any:
     for key, value in variants.items():
         if all(_agrees(pair, properties) for pair in key.split(",")):
             return value
-    said = ",".join(f"{key}={value}" for key, value in sorted(properties.items()))
-    raise ValueError(f"has no variant for {describe_value(said)}")
+    listed = ",".join(f"{key}={value}" for key, value in sorted(properties.items()))
+    raise ValueError(f"has no variant for {describe_value(listed)}")
 
 
 def _agrees(pair: str, properties: Mapping[str, str]) -> bool:

@@ -118,16 +118,16 @@ def _directory_bytes(path: Path) -> int:
         at = tail.rfind(_END)
         if at < 0 or at + 22 > len(tail):
             raise zipfile.BadZipFile("it has no end of a zip")
-        said = [int.from_bytes(tail[at + 12 : at + 16], "little")]
+        sizes = [int.from_bytes(tail[at + 12 : at + 16], "little")]
         locator = tail[max(0, at - 20) : at]
         if locator.startswith(_LOCATOR_64):
-            said = []
+            sizes = []
             for place in (start + at - 76, int.from_bytes(locator[8:16], "little")):
                 stream.seek(min(max(place, 0), size))
                 record = stream.read(56)
                 if record.startswith(_END_64):
-                    said.append(int.from_bytes(record[40:48], "little"))
-    return max(said, default=0)
+                    sizes.append(int.from_bytes(record[40:48], "little"))
+    return max(sizes, default=0)
 
 
 def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most_bytes: int) -> bytes:

@@ -276,7 +276,7 @@ class PackTextures:
                 try:
                     sides[min(max(_power(png_size(data)[0]), MIN_PX), MAX_PX)] += 1
                 except ValueError:
-                    continue  # It is said where it is used.
+                    continue  # It is reported where it is used.
                 break
         return max(sides, key=lambda side: (sides[side], side), default=MIN_PX)
 
@@ -350,7 +350,7 @@ class PackTextures:
                 pixels = decode_png(data)
                 strip = own is not None and pixels.shape[0] != pixels.shape[1]
                 pixels = first_frame(pixels, own if strip else None)
-                # Alpha of a material is light, not cover: the channels are averaged apart.
+                # Alpha of a material is light, not cover: the channels are averaged separately.
                 halves = (resampled(half, side) for half in (pixels[..., :3], pixels[..., 3:]))
                 return np.concatenate(list(halves), axis=-1)
             except ValueError as error:

@@ -1,4 +1,4 @@
-"""The sheet of all textures as a picture: ``python -m world2minecraft.rendering.textures OUT.png``."""
+"""Write the sheet of all textures: ``python -m world2minecraft.rendering.textures OUT.png``."""
 
 import sys
 

@@ -121,8 +121,8 @@ def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
         frame = int(row["frame"]) if row.get("frame") is not None else None
         tour, scene = (str(row.get(key) or "") for key in ("tour_id", "scene_id"))
         image = str(row.get("image") or row.get("file") or "")
-        told = row.get("vertical_fov_deg")
-        fov_deg = None if told is None else float(told)
+        stated = row.get("vertical_fov_deg")
+        fov_deg = None if stated is None else float(stated)
         t_s = float(row.get("t", 0.0))
         return TourPose(pose, t_s, _camera(row), frame, tour, scene, image, fov_deg)
     except (TypeError, ValueError, OverflowError, UsageError) as error:

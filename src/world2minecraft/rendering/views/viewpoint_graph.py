@@ -1,4 +1,4 @@
-"""The graph of places to stand, which of them lie indoors, and a short way past many of them."""
+"""Viewpoints for a tour: where one can stand, which places are indoors, and a short route."""
 
 from itertools import pairwise
 
@@ -96,12 +96,12 @@ def _shares_m2(graph: WalkGraph) -> np.ndarray:
 def _indoors(hiding: ViewBlockers, feet: np.ndarray) -> np.ndarray:
     """Tell which places, feet [N, 3], have a roof and see walls in nearly all directions."""
     result = _values_at(hiding.roofed, feet, hiding)
-    asked = np.flatnonzero(result)
-    eyes = feet[asked] + np.array([0, eye_height_blocks(hiding.blocks_per_metre), 0])
-    for part in np.array_split(np.arange(len(asked)), -(-len(asked) // 4096) or 1):
+    roofed = np.flatnonzero(result)
+    eyes = feet[roofed] + np.array([0, eye_height_blocks(hiding.blocks_per_metre), 0])
+    for part in np.array_split(np.arange(len(roofed)), -(-len(roofed) // 4096) or 1):
         yaws_deg = np.arange(0.0, 360.0, 22.5)
         around = cast_view_rays(hiding, eyes[part], yaws_deg, np.array([0.0]))
-        result[asked[part]] = (around.cell >= 0).mean(axis=(1, 2)) >= WALLED_SHARE
+        result[roofed[part]] = (around.cell >= 0).mean(axis=(1, 2)) >= WALLED_SHARE
     return result
 
 
@@ -128,17 +128,17 @@ def _choose_stops(seen: np.ndarray, worth: np.ndarray, eyes_m: np.ndarray) -> np
     known = np.zeros(int(seen.max(initial=0)) + 1, bool)
     known[0] = True
     chosen: list[int] = []
-    apart = np.full(len(seen), np.inf)
+    distance_m = np.full(len(seen), np.inf)
     while len(chosen) < MAX_STOPS:
         share = (~known[seen]).mean(axis=1)
         gain = share * worth
-        gain[apart < SPACING_M] = 0
+        gain[distance_m < SPACING_M] = 0
         best = int(gain.argmax())
         if gain[best] <= 0 or (share[best] < MIN_NEW_SHARE and len(chosen) >= MIN_STOPS):
             break
         chosen.append(best)
         known[seen[best]] = True
-        apart = np.minimum(apart, np.linalg.norm(eyes_m - eyes_m[best], axis=1))
+        distance_m = np.minimum(distance_m, np.linalg.norm(eyes_m - eyes_m[best], axis=1))
     return np.array(chosen or [int(worth.argmax())])
 
 

@@ -127,7 +127,7 @@ def plan_tour(
     Args:
         volume: the blocks. Rooms are what is roofed and walled; without any, the walk is outside.
         camera: through which; its field of view decides where it is worth looking.
-        frames: how many shots; None for as many as a moving picture needs, up to ``MAX_DURATION_S``.
+        frames: how many shots; None for an animation of up to ``MAX_DURATION_S``.
         rate_hz: shots a second of a moving picture.
         start: where the walk begins, in world blocks, such as the spawn; anywhere if left out.
 

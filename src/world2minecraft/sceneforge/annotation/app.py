@@ -77,8 +77,8 @@ async def _add(request: Request) -> Response:
 
 
 async def _fields(request: Request, *names: str) -> tuple:
-    told = await read_json_object(request)
-    number, texts = told.get("number"), [told.get(name) for name in names]
+    fields = await read_json_object(request)
+    number, texts = fields.get("number"), [fields.get(name) for name in names]
     if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
         raise UsageError(f"the body has number, and {', '.join(names)} as texts")
     return (number, *texts)

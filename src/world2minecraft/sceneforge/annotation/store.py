@@ -70,11 +70,11 @@ class AnnotationStore:
     def walk(self, number: int) -> dict[str, Any]:
         """Return a walk: its pictures, what is done after each, and all that is told of it."""
         one = self._walk(number)
-        told = [
+        instructions = [
             {"level": each.level, "text": each.text, "by": each.annotator or each.source}
             for each in one.instructions
         ]
-        told += [
+        instructions += [
             {"level": line["level"], "text": line["instruction"], "by": line["annotator_id"]}
             for line in self._lines
             if line["trajectory_id"] == one.trajectory_id
@@ -87,7 +87,7 @@ class AnnotationStore:
             "things": list(self._names[one.scene_id]),
             "path_m": round(one.path_m, 1),
             "frames": [frame.move for frame in one.keyframes],
-            "told": told,
+            "told": instructions,
         }
 
     def image(self, number: int, frame: int) -> tuple[bytes, str]:
@@ -150,10 +150,10 @@ class AnnotationStore:
         if not self.out.exists():
             return []
         lines = []
-        for name, told in read_annotations(self.out):
+        for name, instruction in read_annotations(self.out):
             if name not in self._number:
                 raise InputError(self.out, f"speaks of trajectory {name!r}, which is not there")
-            line = {"trajectory_id": name, "annotator_id": told.annotator}
-            line |= {"instruction": told.text, "language": told.language, "level": told.level}
+            line = {"trajectory_id": name, "annotator_id": instruction.annotator}
+            line |= {"instruction": instruction.text, "language": instruction.language, "level": instruction.level}
             lines.append(line)
         return lines

@@ -88,16 +88,16 @@ def read_identity(folder: Path) -> Identity:
         InputError: there is none. DamagedFileError: its ``document.json`` is none.
     """
     path = folder / DOCUMENT_FILE
-    told = read_json(path, _MAX_BYTES)
+    data = read_json(path, _MAX_BYTES)
     try:
-        if (told["format"], told["version"]) != (FORMAT, VERSION):
-            raise ValueError(f"it is {told['format']} {told['version']}, not {FORMAT} {VERSION}")
+        if (data["format"], data["version"]) != (FORMAT, VERSION):
+            raise ValueError(f"it is {data['format']} {data['version']}, not {FORMAT} {VERSION}")
         return Identity(
-            str(told["name"]),
-            _place(told["source"], folder),
-            _place(told["target"], folder),
-            {_place(name, folder): str(value) for name, value in told["inputs"].items()},
-            bool(told["is_demo"]),
+            str(data["name"]),
+            _place(data["source"], folder),
+            _place(data["target"], folder),
+            {_place(name, folder): str(value) for name, value in data["inputs"].items()},
+            bool(data["is_demo"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise DamagedFileError(path, f"is no document of this program ({error})") from error
@@ -160,5 +160,5 @@ def _relative(path: Path, folder: Path) -> str:
         return path.absolute().as_posix()
 
 
-def _place(told: str, folder: Path) -> Path:
-    return Path(os.path.normpath(folder.absolute().parent / str(told)))
+def _place(data: str, folder: Path) -> Path:
+    return Path(os.path.normpath(folder.absolute().parent / str(data)))

@@ -84,10 +84,10 @@ def save(
             _remove_staged(staged)
             reason = "was changed by another program since; move it away, then save again"
             raise ConflictError(target / name, reason)
-    told = _read_record(document)
+    record = _read_record(document)
     hashes = sorted({*saved_hashes(document), *files.values()})
     pending = {"rev": state.rev, "files": files}
-    write_json(document / SAVED_FILE, told | {"pending": pending, "known": hashes})
+    write_json(document / SAVED_FILE, record | {"pending": pending, "known": hashes})
     _finish(document, target, pending)
     return files
 
@@ -138,11 +138,11 @@ def _remove_staged(staged: Path) -> None:
 def _read_record(document: Path) -> dict[str, Any]:
     """Return what ``saved.json`` tells; as if nothing was saved where it is missing or damaged."""
     try:
-        told = read_json(document / SAVED_FILE, 1 << 20)
-        pending = told.get("pending", {"rev": 0, "files": {}})
-        rev, later = int(told["rev"]), int(pending["rev"])
+        record = read_json(document / SAVED_FILE, 1 << 20)
+        pending = record.get("pending", {"rev": 0, "files": {}})
+        rev, later = int(record["rev"]), int(pending["rev"])
         files = {str(name): str(value) for name, value in pending["files"].items()}
-        found = {"rev": rev, "known": list(told["known"])}
+        found = {"rev": rev, "known": list(record["known"])}
         return found | ({"pending": {"rev": later, "files": files}} if files else {})
     except (InputError, KeyError, TypeError, ValueError, AttributeError):
         return {"rev": 0, "known": []}

@@ -42,7 +42,7 @@ class State:
 def write_state(path: Path, state: State) -> None:
     """Write a state, whole or not at all. Raises OutputError."""
     arrays = {name: np.asarray(getattr(state.grid, name)) for name in GRID_ARRAYS}
-    told = {
+    data = {
         "rev": state.rev,
         "generation": state.generation,
         "line": {
@@ -53,7 +53,7 @@ def write_state(path: Path, state: State) -> None:
     }
     arrays["scan_to_room"] = np.asarray(state.scan_to_room, np.float64)
     arrays["objects"] = np.frombuffer(pack_objects(state.objects), np.uint8)
-    arrays["state"] = np.frombuffer(json.dumps(told, sort_keys=True).encode(), np.uint8)
+    arrays["state"] = np.frombuffer(json.dumps(data, sort_keys=True).encode(), np.uint8)
     write_npz(path, arrays)
 
 
@@ -67,16 +67,16 @@ def read_state(path: Path) -> State:
     arrays = read_npz(path, (*GRID_ARRAYS, "scan_to_room", "objects", "state"))
     objects = unpack_objects(arrays.pop("objects").tobytes(), path)
     try:
-        told = json.loads(arrays.pop("state").tobytes())
+        data = json.loads(arrays.pop("state").tobytes())
         scan_to_room = arrays.pop("scan_to_room").reshape(4, 4)
         fields: dict[str, Any] = {**arrays, "voxel_m": float(arrays["voxel_m"])}
         return State(
             OccupancyGrid(**fields),
             objects,
             scan_to_room,
-            int(told["rev"]),
-            str(told["generation"]),
-            _line(told["line"]),
+            int(data["rev"]),
+            str(data["generation"]),
+            _line(data["line"]),
         )
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise DamagedFileError(path, f"is no state of a scene ({error})") from error
@@ -92,9 +92,9 @@ def snapshot_paths(folder: Path) -> Iterator[Path]:
     yield from sorted(folder.glob("snapshot-*.npz"), reverse=True)
 
 
-def _line(told: Any) -> Timeline:
-    numbers, kinds = tuple(map(int, told["numbers"])), tuple(map(str, told["kinds"]))
-    done = int(told["done"])
+def _line(data: Any) -> Timeline:
+    numbers, kinds = tuple(map(int, data["numbers"])), tuple(map(str, data["kinds"]))
+    done = int(data["done"])
     if len(numbers) != len(kinds) or not 0 <= done <= len(numbers):
         raise ValueError("its line of edits is none")
     return Timeline(numbers, kinds, done)

@@ -63,10 +63,10 @@ async def run_in_background(
             value = work(copy)
             report("scene", 1, 1)  # The last moment to be cancelled.
         except BaseException as error:
-            told = UsageError(f"{TITLES[name]}: cancelled")
-            told = told if isinstance(error, CancelledError) else error
+            failure = UsageError(f"{TITLES[name]}: cancelled")
+            failure = failure if isinstance(error, CancelledError) else error
             with suppress(RuntimeError):  # The server may have stopped.
-                loop.call_soon_threadsafe(settle, answer.set_exception, told)
+                loop.call_soon_threadsafe(settle, answer.set_exception, failure)
             raise
         loop.call_soon_threadsafe(settle, answer.set_result, value)
 

@@ -39,14 +39,14 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
     progress("look", 0, 3)
     plan = find_lone_roomplan(source)
     if plan is not None:
-        told = _plan_told(source, roomplan_lines(source, read_roomplan(plan)))
+        survey_data = _plan_told(source, roomplan_lines(source, read_roomplan(plan)))
     else:
         summary = describe_capture(source)
         progress("look", 1, 3)
         write_bytes(target / PICTURE, poster_png(summary))
         progress("look", 2, 3)
         stops = any(diagnostic.level == "stop" for diagnostic in summary.diagnostics)
-        told = {
+        survey_data = {
             "kind": "frames",
             "route": summary.route.kind,
             "called": summary.route.called,
@@ -62,9 +62,9 @@ def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
             and not summary.route.from_pictures,
             "data": summary_to_json(summary),
         }
-    write_json(target / SURVEY, told)
+    write_json(target / SURVEY, survey_data)
     progress("look", 3, 3)
-    return told
+    return survey_data
 
 
 def _plan_told(source: Path, lines: list[str]) -> dict[str, Any]:

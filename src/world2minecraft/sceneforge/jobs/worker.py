@@ -68,9 +68,9 @@ def write_line(answers: IO[str], line: dict[str, Any]) -> None:
 
 def take_stdout() -> IO[str]:
     """Return the stream of answers; what libraries print goes to stderr instead."""
-    kept = os.dup(1)
+    stdout_copy = os.dup(1)
     os.dup2(2, 1)
-    return os.fdopen(kept, "w", encoding="utf-8")
+    return os.fdopen(stdout_copy, "w", encoding="utf-8")
 
 
 def _end_with_stdin() -> None:

@@ -122,8 +122,8 @@ async def _ask(request: Request) -> Response:
 
 async def _commands(request: Request) -> Response:
     kinds = {"commands": COMMANDS, "queries": QUERIES}
-    told = {
+    schemas = {
         what: {name: kind.model_json_schema() for name, kind in known.items()}
         for what, known in kinds.items()
     }
-    return JSONResponse(told)
+    return JSONResponse(schemas)

@@ -44,24 +44,24 @@ def voxel_collision(scene: SceneSnapshot) -> bytes:
     solid = np.moveaxis(grid.occupied[:, ::-1], 1, 2)  # Room -y is block z.
     world = BlockWorld.of_cells(solid)
     feet, yaw_deg = _start(grid, world)
-    told = {
+    facts = {
         "rev": scene.rev,
         "blocks_per_metre": 1 / grid.voxel_m,
         "grid_to_room": _block_axes_to_room(grid).ravel().tolist(),
         "feet": list(feet),
         "yaw_deg": yaw_deg,
     }
-    return _bytes(world, told)
+    return _bytes(world, facts)
 
 
-def _bytes(world: BlockWorld, told: dict[str, Any]) -> bytes:
+def _bytes(world: BlockWorld, facts: dict[str, Any]) -> bytes:
     starts = np.cumsum([0, *(len(shape) for shape in world.shapes)])
     arrays = {
         "kinds": world.kinds,
         "boxes": np.concatenate(world.shapes).astype(np.float32),
         "starts": starts.astype(np.int32),
     }
-    return pack_arrays(MAGIC, told, arrays)
+    return pack_arrays(MAGIC, facts, arrays)
 
 
 def _block_axes_to_room(grid: OccupancyGrid) -> np.ndarray:
@@ -192,13 +192,13 @@ def _builds(request: Request) -> BuildCache:
 
 def _options(request: Request) -> BuildOptions:
     """Return what the query asks for. Raises UsageError where it is wrong."""
-    asked = request.query_params
-    text = asked.get("blocks_per_metre", "4")
+    query = request.query_params
+    text = query.get("blocks_per_metre", "4")
     try:
         size = float(text)
     except ValueError as error:
         raise UsageError(f"blocks_per_metre must be a number such as 4, not {text!r}") from error
-    return BuildOptions(size, asked.get("style", "blocks"))
+    return BuildOptions(size, query.get("style", "blocks"))
 
 
 def _answer(request: Request, rev: int, packed: bytes) -> Response:

@@ -85,8 +85,8 @@ async def _file(request: Request) -> Response:
         try:
             labels = await asyncio.to_thread(read_file_labels, place, editor.draft)
         except World2MinecraftError as error:
-            told = str(error).replace(str(place), Path(name).name[:80])
-            raise UsageError(told) from error
+            message = str(error).replace(str(place), Path(name).name[:80])
+            raise UsageError(message) from error
     workspace.compared = Comparison(Path(name).name[:80], labels, editor)
     return _answer(workspace)
 

@@ -71,9 +71,9 @@ async def _options(request: Request) -> Response:
 
 
 async def _export(request: Request) -> Response:
-    workspace, told = get_workspace(request), await read_json_object(request)
-    form = exports.get_export_form(str(told.pop("form", "")))
-    choice = _choice(told)
+    workspace, body = get_workspace(request), await read_json_object(request)
+    form = exports.get_export_form(str(body.pop("form", "")))
+    choice = _choice(body)
     editor, number = workspace.editor, secrets.token_hex(8)
     target = workspace.exports / number
 
@@ -105,50 +105,50 @@ def _is_export(folder: Path, number: str) -> bool:
 
 
 async def _install(request: Request) -> Response:
-    workspace, told = get_workspace(request), await read_json_object(request)
+    workspace, body = get_workspace(request), await read_json_object(request)
     games = await asyncio.to_thread(exports.games_here)
-    key, name = str(told.pop("game", "")), told.pop("name", "")
+    key, name = str(body.pop("game", "")), body.pop("name", "")
     if key not in games:
         raise UsageError("choose one of the games that were found on this machine")
     if not isinstance(name, str) or len(name) > 100:
         raise UsageError("a world's name is a short text")
-    choice, game = _choice(told), games[key]
+    choice, game = _choice(body), games[key]
     place = [game.name, str(game.saves), game.version]
     return _start_subprocess_job(workspace, "install", choice=choice, game=place, name=name)
 
 
 async def _into_world(request: Request) -> Response:
-    workspace, told = get_workspace(request), await read_json_object(request)
+    workspace, body = get_workspace(request), await read_json_object(request)
     worlds = await asyncio.to_thread(exports.worlds_here)
-    key = str(told.pop("world", ""))
+    key = str(body.pop("world", ""))
     if key not in worlds:
         raise UsageError("choose one of the worlds that were found on this machine")
-    place = parse_place(told)
-    choice = _choice(told)
+    place = parse_place(body)
+    choice = _choice(body)
     return _start_subprocess_job(
         workspace, "into_world", choice=choice, world=str(worlds[key][1]), **place
     )
 
 
 async def _on_server(request: Request) -> Response:
-    workspace, told = get_workspace(request), await read_json_object(request)
-    address, password = told.pop("address", ""), told.pop("password", "")
+    workspace, body = get_workspace(request), await read_json_object(request)
+    address, password = body.pop("address", ""), body.pop("password", "")
     if not isinstance(address, str) or not isinstance(password, str) or not password:
         raise UsageError("give the server's address and the password of its console")
     parse_address(address)
-    place = parse_place(told)
-    choice = _choice(told)
+    place = parse_place(body)
+    choice = _choice(body)
     needs = {"address": address, "password": password}
     return _start_subprocess_job(workspace, "on_server", choice=choice, **needs, **place)
 
 
-def parse_place(told: dict[str, Any]) -> dict[str, Any]:
+def parse_place(body: dict[str, Any]) -> dict[str, Any]:
     """Take ``at``, ``turns`` and ``air`` out of what was told, and return them.
 
     Raises:
         UsageError: one of them is no place; the message says what is.
     """
-    at, turns, air = told.pop("at", None), told.pop("turns", 0), told.pop("air", "room")
+    at, turns, air = body.pop("at", None), body.pop("turns", 0), body.pop("air", "room")
     whole = isinstance(at, list) and len(at) == 3 and all(type(one) is int for one in at)
     if not whole or any(abs(one) > MAX_COORDINATE for one in at):
         raise UsageError("at must be three whole numbers, x, y and z, as the F3 screen shows")
@@ -158,10 +158,10 @@ def parse_place(told: dict[str, Any]) -> dict[str, Any]:
     return {"at": at, "turns": turns, "air": str(air)}
 
 
-def _choice(told: dict[str, Any]) -> dict[str, Any]:
-    if strange := sorted(told.keys() - set(CHOICES)):
+def _choice(body: dict[str, Any]) -> dict[str, Any]:
+    if strange := sorted(body.keys() - set(CHOICES)):
         raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(CHOICES)}")
-    return check_choice(told)
+    return check_choice(body)
 
 
 def _start_subprocess_job(workspace: Workspace, task: str, **needs: Any) -> Response:

@@ -152,8 +152,8 @@ def _is_address(name: str) -> bool:
 
 async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
     """Set the cookie and go on to the page without the token in the address bar."""
-    told = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
-    headers = [(b"location", b"/"), (b"set-cookie", told.encode()), (b"content-length", b"0")]
+    cookie_header = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
+    headers = [(b"location", b"/"), (b"set-cookie", cookie_header.encode()), (b"content-length", b"0")]
     send = _with_headers(scope, send)
     await send({"type": "http.response.start", "status": 303, "headers": headers})
     await send({"type": "http.response.body", "body": b""})

@@ -47,11 +47,11 @@ class BodyLimit:
             await self.app(scope, receive, send)
             return
         most = self.upload_bytes if scope["path"].startswith(UPLOADS) else self.json_bytes
-        told = {name.lower(): value for name, value in scope["headers"]}
-        if told.get(b"content-encoding", b"identity").lower() not in (b"", b"identity"):
+        headers = {name.lower(): value for name, value in scope["headers"]}
+        if headers.get(b"content-encoding", b"identity").lower() not in (b"", b"identity"):
             await _answer(send, 415, "a body must not be compressed; zip the files instead")
             return
-        if _length(told.get(b"content-length")) > most:
+        if _length(headers.get(b"content-length")) > most:
             await _answer(send, 413, _too_large(most))
             return
         await self._counted(scope, receive, send, most)

@@ -109,9 +109,9 @@ def _capture_json(workspace: Workspace, one: CaptureFolder) -> dict[str, Any]:
 
 
 async def _announce(request: Request) -> Response:
-    told = await read_json_object(request)
-    title = told.get("title") if isinstance(told.get("title"), str) else ""
-    made = get_workspace(request).captures.create(str(title), told.get("files"))
+    body = await read_json_object(request)
+    title = body.get("title") if isinstance(body.get("title"), str) else ""
+    made = get_workspace(request).captures.create(str(title), body.get("files"))
     files = [{"path": one.path, "size": one.size} for one in made.files]
     return JSONResponse({"id": made.id, "title": made.title, "files": files})
 
@@ -179,20 +179,20 @@ async def _reconstruct(request: Request) -> Response:
     return JSONResponse({"job": number})
 
 
-def check_choice(told: dict[str, Any]) -> dict[str, Any]:
+def check_choice(body: dict[str, Any]) -> dict[str, Any]:
     """Return what a person chose for a reconstruction.
 
     Raises:
         UsageError: a value cannot be used; the message says what can.
     """
     known = ("blocks_per_metre", "style", "known", "mc_version", "voxel_m")
-    if strange := sorted(told.keys() - set(known)):
+    if strange := sorted(body.keys() - set(known)):
         raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(known)}")
     try:
-        parameters_of_choice(told)
+        parameters_of_choice(body)
     except (TypeError, ValueError) as error:
         raise UsageError(f"a choice is of the wrong kind: {error}") from error
-    return told
+    return body
 
 
 def _check_ready(workspace: Workspace, one: CaptureFolder) -> None:
@@ -203,13 +203,13 @@ def _check_ready(workspace: Workspace, one: CaptureFolder) -> None:
 
 
 async def _demo(request: Request) -> Response:
-    workspace, told = get_workspace(request), await read_json_object(request)
-    kind, seed = told.get("kind", BASE_KINDS[0]), told.get("seed", 5)
+    workspace, body = get_workspace(request), await read_json_object(request)
+    kind, seed = body.get("kind", BASE_KINDS[0]), body.get("seed", 5)
     if kind not in BASE_KINDS:
         raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, not {str(kind)[:40]!r}")
     if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 1 << 31:
         raise UsageError(f"seed must be a whole number of 0 or more, not {str(seed)[:40]!r}")
-    frames = told.get("frames", 40)
+    frames = body.get("frames", 40)
     if not isinstance(frames, int) or not 3 <= frames <= 200:
         raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
     name, title = f"demo/{kind}-{seed}", f"A {kind} room"

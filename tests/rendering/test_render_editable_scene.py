@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from block_models_for_tests import FewLooks
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from looks_for_tests import FewLooks
 from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 
 from world2minecraft.core.errors import UsageError

@@ -52,7 +52,7 @@ NORMALS = np.array([(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0
 
 
 @pytest.mark.parametrize("normal", NORMALS)
-def test_a_neutral_picture_shows_a_block_s_colour_times_a_calm_shade(normal):
+def test_neutral_light_shows_block_colour_times_shade(normal):
     look = LightSettings(preset="neutral")
     params, tone = look.parameters(), look.tone
     for value in (8, 60, 128, 200):
@@ -92,7 +92,7 @@ def test_too_much_light_is_white_and_not_black():
     assert min(light_of(15, 15, 0, 1.0, 0.0, params)) > 1
 
 
-def test_a_place_is_brighter_with_more_light_and_darker_in_a_corner():
+def test_more_light_brightens_and_corners_darken():
     for preset in ("shader", "game"):
         params = LightSettings(preset=preset).parameters()
         levels = [light_of(level, 0, 0, 1.0, 0.0, params) for level in range(16)]
@@ -137,7 +137,7 @@ def test_exposure_scales_light():
     assert LightSettings(exposure=2.0).parameters(5.0) == twice
 
 
-def test_shades_are_those_of_the_game_for_upright_faces_and_mix_between():
+def test_axis_aligned_faces_have_the_game_s_shades():
     params = LightSettings(preset="game").parameters()
     got = [shade_of(*normal, 1.0, params) for normal in NORMALS]
     assert got == pytest.approx([0.6, 0.6, 0.5, 1.0, 0.8, 0.8])
