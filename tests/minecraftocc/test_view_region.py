@@ -28,7 +28,7 @@ def looking(yaw_deg: float, pitch_deg: float = -10.0, eye=EYE) -> np.ndarray:
 
 
 @pytest.mark.parametrize("yaw_deg", range(0, 360, 90))
-def test_an_axis_view_has_its_player_in_the_middle_of_the_back_face(yaw_deg):
+def test_an_axis_view_has_its_player_at_the_middle_of_the_back(yaw_deg):
     region = label_region(looking(yaw_deg + 3.0), PLAIN)
     assert region.kind == "axis"
     at = apply(invert(region.region_to_room), EYE) / region.voxel_m

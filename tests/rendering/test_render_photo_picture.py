@@ -66,7 +66,7 @@ def test_a_given_exposure_counts(world):
 
 def test_lamps_may_be_listed_once(world):
     scene, pose = world
-    own = render_photo(scene, SMALL, pose, samples=1, lamps=emitters_of(scene))
+    own = render_photo(scene, SMALL, pose, samples=1, emitters=emitters_of(scene))
     assert np.array_equal(own.colour, render_photo(scene, SMALL, pose, samples=1).colour)
 
 

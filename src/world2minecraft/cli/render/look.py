@@ -189,7 +189,7 @@ def _photos(
 
         try:
             picture = render_photo(
-                scene, shot.camera, shot.camera_to_room, light=light, lamps=lamps,
+                scene, shot.camera, shot.camera_to_room, light=light, emitters=lamps,
                 samples=look.photo_samples, threads=look.threads, progress=tell,
             )  # fmt: skip
         except ValueError as error:

@@ -113,7 +113,7 @@ def _execute(order: WorkItem, tick: Callable[[int], None]) -> ResultMessage | Er
 
 @dataclass(eq=False)
 class _Worker:
-    """A worker as the pool sees it."""
+    """A worker process, its pipe and its item."""
 
     process: BaseProcess
     pipe: Connection
@@ -127,7 +127,7 @@ class PoolEngine:
         """Name how many; they are started with the first item."""
         self.notes: list[str] = []
         self._jobs = jobs
-        self._hands: list[_Worker] = []
+        self._workers: list[_Worker] = []
 
     def __enter__(self) -> "PoolEngine":
         """Return the engine."""
@@ -135,16 +135,16 @@ class PoolEngine:
 
     def __exit__(self, *_: object) -> None:
         """End all workers at once: what they have written is whole."""
-        for hand in self._hands:
-            hand.pipe.close()
-            if hand.number is not None:
-                hand.process.terminate()
-        for hand in self._hands:
-            hand.process.join(PATIENCE_S)
-            if hand.process.is_alive():
-                hand.process.kill()
-                hand.process.join()
-        self._hands.clear()
+        for worker in self._workers:
+            worker.pipe.close()
+            if worker.number is not None:
+                worker.process.terminate()
+        for worker in self._workers:
+            worker.process.join(PATIENCE_S)
+            if worker.process.is_alive():
+                worker.process.kill()
+                worker.process.join()
+        self._workers.clear()
 
     def run(
         self,
@@ -158,50 +158,50 @@ class PoolEngine:
             WorkerError: workers have died over one item again and again. Whatever the task raises.
         """
         waiting, deaths = deque(range(len(items))), Counter[int]()
-        while waiting or any(hand.number is not None for hand in self._hands):
-            self._hand_out(task, items, waiting)
-            busy = {hand.pipe: hand for hand in self._hands if hand.number is not None}
+        while waiting or any(worker.number is not None for worker in self._workers):
+            self._assign_items(task, items, waiting)
+            busy = {worker.pipe: worker for worker in self._workers if worker.number is not None}
             for pipe in wait(list(busy)):
-                hand = busy[pipe]  # type: ignore[index]
-                message = self._heard(hand)
+                worker = busy[pipe]  # type: ignore[index]
+                message = self._receive(worker)
                 if isinstance(message, ProgressMessage):
                     tick(message.count)
                 elif isinstance(message, ErrorMessage):
-                    hand.number = None
+                    worker.number = None
                     raise message.error
                 elif isinstance(message, ResultMessage):
-                    hand.number = None
+                    worker.number = None
                     yield message.number, message.result
                 else:
-                    self._replace(hand, waiting, deaths, len(items))
+                    self._replace(worker, waiting, deaths, len(items))
 
-    def _hand_out(
+    def _assign_items(
         self, task: Callable[..., Any], items: Sequence[Any], waiting: deque[int]
     ) -> None:
-        while waiting and len(self._hands) < min(self._jobs, len(items)):
-            self._hands.append(_start_worker())
-        for hand in self._hands:
-            if hand.number is None and waiting:
+        while waiting and len(self._workers) < min(self._jobs, len(items)):
+            self._workers.append(_start_worker())
+        for worker in self._workers:
+            if worker.number is None and waiting:
                 number = waiting.popleft()
                 with suppress(OSError):  # It has died; that is heard with its pipe's end.
-                    hand.pipe.send(WorkItem(number, task, items[number]))
-                hand.number = number
+                    worker.pipe.send(WorkItem(number, task, items[number]))
+                worker.number = number
 
-    def _heard(self, hand: _Worker) -> ProgressMessage | ResultMessage | ErrorMessage | None:
+    def _receive(self, worker: _Worker) -> ProgressMessage | ResultMessage | ErrorMessage | None:
         """Return a worker's message; None where it has died."""
         try:
-            return hand.pipe.recv()
+            return worker.pipe.recv()
         except (EOFError, OSError):
             return None
 
     def _replace(
-        self, hand: _Worker, waiting: deque[int], deaths: Counter[int], count: int
+        self, worker: _Worker, waiting: deque[int], deaths: Counter[int], count: int
     ) -> None:
-        number = hand.number if hand.number is not None else 0
-        hand.pipe.close()
-        hand.process.join(PATIENCE_S)
-        self._hands.remove(hand)
-        code, deaths[number] = hand.process.exitcode, deaths[number] + 1
+        number = worker.number if worker.number is not None else 0
+        worker.pipe.close()
+        worker.process.join(PATIENCE_S)
+        self._workers.remove(worker)
+        code, deaths[number] = worker.process.exitcode, deaths[number] + 1
         how = f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
         if deaths[number] == MAX_DEATHS:
             raise WorkerError(

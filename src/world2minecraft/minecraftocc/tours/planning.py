@@ -54,7 +54,7 @@ class YawKindCounts:
 
     counts: np.ndarray = field(default_factory=lambda: np.zeros(len(KINDS)))
 
-    def wanted(self, rule: TourRule, more: int) -> np.ndarray:
+    def missing(self, rule: TourRule, more: int) -> np.ndarray:
         """Return how many of each kind are missing when so many more are taken, float64 [3]."""
         shares = np.array(rule.yaw_shares) / sum(rule.yaw_shares)
         return shares * (self.counts.sum() + more) - self.counts
@@ -71,8 +71,8 @@ class _ChosenViews:
 
     poses: list[np.ndarray] = field(default_factory=list)  # [N, 5]: x, y, z, yaw, pitch
 
-    def new(self, rows: np.ndarray, apart_blocks: float, apart_deg: float) -> np.ndarray:
-        """Tell which rows, float64 [N, 5], are neither a view taken nor like an earlier row."""
+    def are_new(self, rows: np.ndarray, apart_blocks: float, apart_deg: float) -> np.ndarray:
+        """Return which rows, float64 [N, 5], are neither a view taken nor like an earlier row."""
         known = np.concatenate([*self.poses, rows]) if self.poses else rows
         first = len(known) - len(rows)
         result = np.ones(len(rows), bool)
@@ -90,7 +90,7 @@ class _ChosenViews:
 
 @dataclass(eq=False)
 class RoomTour:
-    """One who tours one room."""
+    """The tour of one room: walk after walk, and the good new views of each."""
 
     volume: BlockVolume
     scene: BlockScene
@@ -141,15 +141,15 @@ class RoomTour:
         """Take one walk, and of its views what is good and new."""
         rng = np.random.default_rng([self.seed, self.room.number, self.walks])
         self.walks += 1
-        rows = self._rows(wanted, rng)
+        rows = self._poses(wanted, rng)
         poses = np.array([self._camera_to_room(row) for row in rows])
         seen = assess_views(self.scene, self.volume.states, poses, self.rule)
         labelled = bool(self.volume.semantic.any())
         good = np.flatnonzero(seen.is_good(self.volume.blocks_per_metre, labelled))
         ease = EASING_FACTOR**self.eased
         min_distance = self.rule.apart_m * self.volume.blocks_per_metre * ease
-        good = good[self.taken.new(rows[good], min_distance, self.rule.apart_deg * ease)]
-        for found in self._parted(rows[good], min(MIN_FRAMES, wanted)):
+        good = good[self.taken.are_new(rows[good], min_distance, self.rule.apart_deg * ease)]
+        for found in self._split_tours(rows[good], min(MIN_FRAMES, wanted)):
             tour = found[:wanted]
             wanted -= len(tour)
             if len(tour):
@@ -157,7 +157,7 @@ class RoomTour:
                 self.taken.poses.append(tour)
                 self.kinds.add(tour[:, 3])
 
-    def _rows(self, wanted: int, rng: np.random.Generator) -> np.ndarray:
+    def _poses(self, wanted: int, rng: np.random.Generator) -> np.ndarray:
         """Return the poses along a walk, float64 [N, 5]: x, y, z of the eye, yaw, pitch."""
         rule = self.rule
         way = plan_walk(self.grounds, rng)
@@ -166,7 +166,7 @@ class RoomTour:
         feet, spacing_m = way[int(rng.integers(every)) % len(way) :: every], every * SAMPLE_M
         eyes = feet.copy()
         eyes[:, 1] += self._eyes_m(len(feet), spacing_m, rng) * self.volume.blocks_per_metre
-        kinds = draw_kinds(len(feet), spacing_m, self.kinds.wanted(rule, len(feet)), rng)
+        kinds = draw_kinds(len(feet), spacing_m, self.kinds.missing(rule, len(feet)), rng)
         rated = rate_headings(self.scene, eyes, self.volume.block_to_room, rule)
         if self.taken.poses:
             taken = np.concatenate(self.taken.poses)
@@ -188,7 +188,7 @@ class RoomTour:
         pose = GamePose(*(float(value) for value in row), at="eye")
         return pose.camera_to_room(self.volume.block_to_room)
 
-    def _parted(self, rows: np.ndarray, min_frames: int) -> list[np.ndarray]:
+    def _split_tours(self, rows: np.ndarray, min_frames: int) -> list[np.ndarray]:
         """Return views in a row as tours without leaps, those of too few frames left out."""
         if not len(rows):
             return []
@@ -238,12 +238,12 @@ def plan_views(
     solid = collision_grid(volume)
     graph, rooms = _rooms(volume, solid, how)
     ready, kinds = scene or prepare_scene(volume), YawKindCounts()
-    tourists = []
+    tours = []
     for room in rooms:
         grounds = WalkArea(graph.part(room.places), solid, volume.corner)
-        tourists.append(RoomTour(volume, ready, room, grounds, how, seed, kinds))
-    _fill(tourists, count, progress)
-    return [view for tourist in tourists for view in tourist.views()]
+        tours.append(RoomTour(volume, ready, room, grounds, how, seed, kinds))
+    _fill(tours, count, progress)
+    return [view for tour in tours for view in tour.views()]
 
 
 def _rooms(
@@ -261,18 +261,18 @@ def _rooms(
     raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
 
 
-def _fill(tourists: list[RoomTour], count: int, progress: Progress) -> None:
+def _fill(tours: list[RoomTour], count: int, progress: Progress) -> None:
     """Let rooms find their shares; what one cannot give goes to the others."""
     progress("views", 0, count)
     left = count
     while left > 0:
-        open_ones = [one for one in tourists if not one.is_done]
+        open_ones = [one for one in tours if not one.is_done]
         if not open_ones:
             break
         for one, share in zip(
             open_ones, share_views([t.room for t in open_ones], left), strict=True
         ):
             one.find(share)
-            progress("views", min(count, sum(t.count for t in tourists)), count)
-        left = count - sum(one.count for one in tourists)
+            progress("views", min(count, sum(t.count for t in tours)), count)
+        left = count - sum(one.count for one in tours)
     progress("views", count, count)

@@ -107,7 +107,9 @@ def _agreed_answer(reply_text: list[str], options: Mapping[str, str]) -> str:
 def _option_of(reply_text: str, options: Mapping[str, str]) -> str:
     letter = _LETTER.match(reply_text)
     if letter is None:
-        same = [one for one, words in options.items() if words and _plain(words) == _plain(reply_text)]
+        same = [
+            one for one, words in options.items() if words and _plain(words) == _plain(reply_text)
+        ]
         if len(same) == 1:
             return same[0]
         letter = _lettered(reply_text, options)

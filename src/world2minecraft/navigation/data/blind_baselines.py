@@ -78,7 +78,9 @@ def score_baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineR
             own = [n for n, item in enumerate(held_out) if item.extra.get("grade") == grade]
             answers = [found["nearest"][n] for n in own]
             if own:
-                rows.append(_row(f"nearest {grade}", task, [held_out[n] for n in own], answers, chance))
+                rows.append(
+                    _row(f"nearest {grade}", task, [held_out[n] for n in own], answers, chance)
+                )
     return rows
 
 

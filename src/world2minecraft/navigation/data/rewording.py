@@ -66,7 +66,9 @@ def write_set(folder: str | Path, navigation_set: NavigationSet) -> None:
     write_items(place / ITEMS, navigation_set.items)
 
 
-def select_instructions(navigation_set: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
+def select_instructions(
+    navigation_set: NavigationSet, order: Sequence[str] = ORDER
+) -> NavigationSet:
     """Return a set whose items and episodes use the words of the first source that has some.
 
     The items of a walk use the words of several people in turn.
@@ -98,11 +100,19 @@ def add_annotations(navigation_set: NavigationSet, file: str | Path) -> Navigati
 
     Raises: as ``read_annotations`` and ``with_annotations``.
     """
-    scene_of, annotated = {one.trajectory_id: one.scene_id for one in navigation_set.trajectories}, []
+    scene_of, annotated = (
+        {one.trajectory_id: one.scene_id for one in navigation_set.trajectories},
+        [],
+    )
     for walk, one in read_annotations(file):
         names = navigation_set.names.get(scene_of.get(walk, ""), ())
-        annotated.append((walk, replace(one, landmarks=parse_instruction(one.text, names).landmarks)))
-    return replace(navigation_set, trajectories=with_annotations(navigation_set.trajectories, annotated, str(file)))
+        annotated.append(
+            (walk, replace(one, landmarks=parse_instruction(one.text, names).landmarks))
+        )
+    return replace(
+        navigation_set,
+        trajectories=with_annotations(navigation_set.trajectories, annotated, str(file)),
+    )
 
 
 def annotate_set(folder: str | Path, file: str | Path) -> None:
@@ -111,7 +121,11 @@ def annotate_set(folder: str | Path, file: str | Path) -> None:
 
 
 def reword_set(
-    navigation_set: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = no_progress
+    navigation_set: NavigationSet,
+    ask: Ask,
+    model: str,
+    jobs: int = 1,
+    progress: Progress = no_progress,
 ) -> tuple[NavigationSet, Counter[str]]:
     """Return a set with the program's words, as items use them, said again by a model.
 

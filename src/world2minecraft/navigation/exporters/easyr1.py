@@ -114,7 +114,12 @@ def _row(item: Item, pictures: SetPictures | None) -> dict[str, Any]:
     images: list[Any] = list(question.images)
     if pictures is not None:
         images = [{"bytes": pictures.read(name), "path": name} for name in images]
-    return {"content": question.text, "answer": question.answer, "images": images, "id": item.item_id}
+    return {
+        "content": question.text,
+        "answer": question.answer,
+        "images": images,
+        "id": item.item_id,
+    }
 
 
 def _write_recipe(

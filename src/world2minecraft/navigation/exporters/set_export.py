@@ -107,7 +107,9 @@ def _plan_export(
     if any(one.instructions for one in walks):
         return lambda root: write_r2r(root, walks)
     missing = "episodes" if format == "vlnce" else "walks with instructions"
-    raise UsageError(f"{source} holds no {missing}, which {format} tells of; w2m vln build makes them")
+    raise UsageError(
+        f"{source} holds no {missing}, which {format} tells of; w2m vln build makes them"
+    )
 
 
 def _check_folder(root: Path, choices: dict[str, Any]) -> None:
@@ -119,7 +121,9 @@ def _check_folder(root: Path, choices: dict[str, Any]) -> None:
         if existing != choices:
             existing = existing if isinstance(existing, dict) else {}
             other = [
-                f"{k} {existing.get(k)!r}, not {v!r}" for k, v in choices.items() if existing.get(k) != v
+                f"{k} {existing.get(k)!r}, not {v!r}"
+                for k, v in choices.items()
+                if existing.get(k) != v
             ]
             raise ConflictError(
                 root, f"holds an export by other choices ({', '.join(other)}); name another folder"

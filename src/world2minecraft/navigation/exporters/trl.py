@@ -82,7 +82,9 @@ def row_of(item: Item) -> dict[str, Any]:
         content.append({"type": "text", "text": ending})
     return {
         "prompt": [{"role": "user", "content": content}],
-        "completion": [{"role": "assistant", "content": [{"type": "text", "text": question.answer}]}],
+        "completion": [
+            {"role": "assistant", "content": [{"type": "text", "text": question.answer}]}
+        ],
         "images": list(question.images),
         "answer": question.answer,
         "id": item.item_id,

@@ -126,7 +126,9 @@ def _of_turns(text: str, trajectory: Trajectory, names: Sequence[str]) -> list[F
     walked, stated = parse_instruction(routes[0], names).turns, parse_instruction(text, names).turns
     if walked == stated:
         return []
-    return [Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(stated)}")]
+    return [
+        Finding(False, f"the walk turns {_turns_text(walked)}; this says {_turns_text(stated)}")
+    ]
 
 
 def _of_length(text: str) -> list[Finding]:

@@ -68,7 +68,9 @@ def landmark_text(way: Route, rng: np.random.Generator) -> TextAndLandmarks:
     parts, names = [], []
     for number, one in enumerate(way.stretches):
         is_last = number == len(way.stretches) - 1
-        words, named_landmarks = _stretch(one, way.stop if is_last and way.stop_side == "front" else "", rng)
+        words, named_landmarks = _stretch(
+            one, way.stop if is_last and way.stop_side == "front" else "", rng
+        )
         parts.append(words)
         names += named_landmarks
     named = parts[-1][-1].endswith(f" to the {way.stop}") if way.stop else False

@@ -81,7 +81,9 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
     level = str(row.get("level") or "landmark")
     if level not in LEVELS:
         known = ", ".join(LEVELS)
-        raise DamagedFileError(source, f"line {number}: level must be one of {known}, not {level!r}")
+        raise DamagedFileError(
+            source, f"line {number}: level must be one of {known}, not {level!r}"
+        )
     text = " ".join(values["instruction"].split())
     return values["trajectory_id"], Instruction(
         text, "human", level, annotator=who[:200], language=language[:20]

@@ -30,7 +30,9 @@ def matching_landmarks(phrase: str, landmarks: Sequence[Landmark]) -> list[Landm
         landmarks: all of a scene.
     """
     phrase_words, _, anchor = phrase.partition(" beside the ")
-    found = [one for one in landmarks if one.name == phrase or _matches_noun(phrase_words.split(), one)]
+    found = [
+        one for one in landmarks if one.name == phrase or _matches_noun(phrase_words.split(), one)
+    ]
     if not anchor:
         return found
     anchors = matching_landmarks(anchor, landmarks)

@@ -78,7 +78,9 @@ def node() -> str:
     ).stdout
     version = re.match(r"v(\d+)\.", version_text)
     if version is None or int(version[1]) < MIN_NODE:
-        raise UsageError(f"a body needs Node {MIN_NODE} or newer, not {version_text.strip() or 'this'}")
+        raise UsageError(
+            f"a body needs Node {MIN_NODE} or newer, not {version_text.strip() or 'this'}"
+        )
     return found
 
 

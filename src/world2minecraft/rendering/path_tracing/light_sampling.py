@@ -14,40 +14,40 @@ UNSEEN_SOFT = 2.5  # Cells: nearer to a lamp that is not seen, its light hardly 
 
 
 @inlined
-def brick_of(lamps, at):
+def brick_of(emitters, at):
     """Return the brick of a point, the nearest one where it lies outside."""
-    i = min(max(int(at[0]) // BRICK, 0), lamps.bricks[0] - 1)
-    j = min(max(int(at[1]) // BRICK, 0), lamps.bricks[1] - 1)
-    k = min(max(int(at[2]) // BRICK, 0), lamps.bricks[2] - 1)
-    return (i * lamps.bricks[1] + j) * lamps.bricks[2] + k
+    i = min(max(int(at[0]) // BRICK, 0), emitters.bricks[0] - 1)
+    j = min(max(int(at[1]) // BRICK, 0), emitters.bricks[1] - 1)
+    k = min(max(int(at[2]) // BRICK, 0), emitters.bricks[2] - 1)
+    return (i * emitters.bricks[1] + j) * emitters.bricks[2] + k
 
 
 @inlined
-def emitter_weight(lamps, row, at, out):
+def emitter_weight(emitters, row, at, out):
     """Return how much a lamp may give to a point, roughly; 0 where it lies all behind it."""
-    x = lamps.centre[row, 0] - at[0]
-    y = lamps.centre[row, 1] - at[1]
-    z = lamps.centre[row, 2] - at[2]
-    radius = lamps.radius[row]
+    x = emitters.centre[row, 0] - at[0]
+    y = emitters.centre[row, 1] - at[1]
+    z = emitters.centre[row, 2] - at[2]
+    radius = emitters.radius[row]
     height = x * out[0] + y * out[1] + z * out[2] + radius
     if height <= 0:
         return 0.0
     square = max(x * x + y * y + z * z, radius * radius)
-    return lamps.power[row] * min(height / np.sqrt(square), 1.0) / square
+    return emitters.power[row] * min(height / np.sqrt(square), 1.0) / square
 
 
 @inlined
-def choose_emitter(lamps, at, out, number):
+def choose_emitter(emitters, at, out, number):
     """Return ``(row, odds, number, total)``: a lamp near a point, -1 for none.
 
     ``number`` of [0, 1) decides; the rest of it is returned, uniform again. ``total`` is the sum of
     the weights, from which ``odds`` of any lamp follow.
     """
-    brick = brick_of(lamps, at)
+    brick = brick_of(emitters, at)
     total, row, weight = 0.0, -1, 0.0
-    for place in range(lamps.near_start[brick], lamps.near_start[brick + 1]):
-        other = lamps.near[place]
-        gives = emitter_weight(lamps, other, at, out)
+    for place in range(emitters.near_start[brick], emitters.near_start[brick + 1]):
+        other = emitters.near[place]
+        gives = emitter_weight(emitters, other, at, out)
         if gives <= 0:
             continue
         total += gives
@@ -60,38 +60,38 @@ def choose_emitter(lamps, at, out, number):
 
 
 @inlined
-def is_near(lamps, row, at):
+def is_near(emitters, row, at):
     """Tell whether a lamp is in the list of a point's brick."""
-    brick = brick_of(lamps, at)
-    for place in range(lamps.near_start[brick], lamps.near_start[brick + 1]):
-        if lamps.near[place] == row:
+    brick = brick_of(emitters, at)
+    for place in range(emitters.near_start[brick], emitters.near_start[brick + 1]):
+        if emitters.near[place] == row:
             return True
     return False
 
 
 @inlined
-def face_before(lamps, row, pair, at):
+def face_before(emitters, row, pair, at):
     """Return ``(distance, side)``: how far a point lies before a face of a pair; 0 for none."""
     height = (
-        (at[0] - lamps.corner[row, 0]) * lamps.out[row, pair, 0]
-        + (at[1] - lamps.corner[row, 1]) * lamps.out[row, pair, 1]
-        + (at[2] - lamps.corner[row, 2]) * lamps.out[row, pair, 2]
+        (at[0] - emitters.corner[row, 0]) * emitters.out[row, pair, 0]
+        + (at[1] - emitters.corner[row, 1]) * emitters.out[row, pair, 1]
+        + (at[2] - emitters.corner[row, 2]) * emitters.out[row, pair, 2]
     )
     side = 0
     if height > 0:
-        height, side = lamps.thick[row, pair] - height, 1
-    if height >= 0 or not lamps.shown[row] >> (2 * pair + side) & 1:
+        height, side = emitters.thick[row, pair] - height, 1
+    if height >= 0 or not emitters.shown[row] >> (2 * pair + side) & 1:
         return 0.0, side
     return -height, side
 
 
 @inlined
-def choose_face(lamps, row, at, number):
+def choose_face(emitters, row, at, number):
     """Return ``(pair, side, odds, distance)``: a face of a lamp before a point; odds 0 for none."""
     total, pair, side, weight, before = 0.0, 0, 0, 0.0, 0.0
     for other in range(3):
-        distance, which = face_before(lamps, row, other, at)
-        gives = distance * lamps.area[row, other]
+        distance, which = face_before(emitters, row, other, at)
+        gives = distance * emitters.area[row, other]
         if gives <= 0:
             continue
         total += gives
@@ -104,12 +104,12 @@ def choose_face(lamps, row, at, number):
 
 
 @inlined
-def face_odds(lamps, row, pair, at):
+def face_odds(emitters, row, pair, at):
     """Return ``(odds, distance)`` with which ``choose_face`` takes a pair's face."""
     total, weight, before = 0.0, 0.0, 0.0
     for other in range(3):
-        distance, _ = face_before(lamps, row, other, at)
-        gives = distance * lamps.area[row, other]
+        distance, _ = face_before(emitters, row, other, at)
+        gives = distance * emitters.area[row, other]
         total += gives
         if other == pair:
             weight, before = gives, distance
@@ -117,59 +117,59 @@ def face_odds(lamps, row, pair, at):
 
 
 @inlined
-def sample_emitter(lamps, s, pick, first, second):
+def sample_emitter(emitters, s, pick, first, second):
     """Set direction, distance, light and density of a lamp; tell whether there is one."""
-    row, odds, pick, s.weights = choose_emitter(lamps, s.at, s.out, pick)
+    row, odds, pick, s.weights = choose_emitter(emitters, s.at, s.out, pick)
     if row < 0:
         return False
-    pair, side, face, before = choose_face(lamps, row, s.at, pick)
+    pair, side, face, before = choose_face(emitters, row, s.at, pick)
     if face <= 0:
         return False
     a, b = (pair + 1) % 3, (pair + 2) % 3
     square = 0.0
     for n in range(3):
-        place = lamps.corner[row, n] + first * lamps.edges[row, a, n]
-        place += second * lamps.edges[row, b, n] + side * lamps.edges[row, pair, n]
+        place = emitters.corner[row, n] + first * emitters.edges[row, a, n]
+        place += second * emitters.edges[row, b, n] + side * emitters.edges[row, pair, n]
         s.to[n] = place - s.at[n]
         square += s.to[n] * s.to[n]
     s.far = np.sqrt(square)
     for n in range(3):
         s.to[n] /= s.far
     # cosine = before / far, so the density over directions is odds * far ** 3 / (area * before).
-    s.unseen = 1 if lamps.element[row] < 0 else 0
-    s.density = odds * face * square * s.far / (lamps.area[row, pair] * before)
+    s.unseen = 1 if emitters.element[row] < 0 else 0
+    s.density = odds * face * square * s.far / (emitters.area[row, pair] * before)
     near = square / (square + UNSEEN_SOFT * UNSEEN_SOFT) if s.unseen else 1.0
     for n in range(3):
-        s.aimed[n] = near * lamps.light[row, n] / s.density
+        s.aimed[n] = near * emitters.light[row, n] / s.density
     return True
 
 
 @inlined
-def emitter_row(lamps, shape, s, element):
+def emitter_row(emitters, shape, s, element):
     """Return the row of the lamp that a path has met, -1 for none."""
-    row = lamps.row_of_element[element]
-    if row >= 0 or len(lamps.cell) == 0:
+    row = emitters.row_of_element[element]
+    if row >= 0 or len(emitters.cell) == 0:
         return row
     i, j, k = s.cell[0], s.cell[1], s.cell[2]
-    row = lamps.row_of_cell[i, j, k]
+    row = emitters.row_of_cell[i, j, k]
     if row < 0:
         return -1
     cell = (i * shape[1] + j) * shape[2] + k
-    while row < len(lamps.cell) and lamps.cell[row] == cell:
-        if lamps.element[row] == element:
+    while row < len(emitters.cell) and emitters.cell[row] == cell:
+        if emitters.element[row] == element:
             return row
         row += 1
     return -1
 
 
 @inlined
-def sampling_density(lamps, row, s):
+def sampling_density(emitters, row, s):
     """Return the density with which aiming, at the last bounce, takes the direction of a lamp."""
-    if s.weights <= 0 or not is_near(lamps, row, s.from_at):
+    if s.weights <= 0 or not is_near(emitters, row, s.from_at):
         return 0.0
-    weight = emitter_weight(lamps, row, s.from_at, s.from_out)
+    weight = emitter_weight(emitters, row, s.from_at, s.from_out)
     pair = s.face // 2
-    odds, before = face_odds(lamps, row, pair, s.from_at)
+    odds, before = face_odds(emitters, row, pair, s.from_at)
     if odds <= 0:
         return 0.0
     square = 0.0
@@ -178,4 +178,4 @@ def sampling_density(lamps, row, s):
         square += step * step
     far = np.sqrt(square)
     chosen = s.aim_odds * weight / s.weights * odds
-    return chosen * square * far / (lamps.area[row, pair] * before)
+    return chosen * square * far / (emitters.area[row, pair] * before)

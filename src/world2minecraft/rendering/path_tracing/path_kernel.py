@@ -52,21 +52,14 @@ _MIRROR_ODDS = 0.2  # How often at least the mirror of the first pane is followe
 
 
 @lean
-def trace_rows(
-    tables, material, side_px, decode, lamps, sky, pose, rays, rows, samples, seed, depth, state,
-    film,
-):  # fmt: skip
-    """Add samples to the rows of a film; the first one also finds what middles look at.
+def trace_rows(scene, emitters, sky, camera, rows, samples, seed, depth, state, film):
+    """Add samples to the rows of a film; the first call also finds the centre surfaces.
 
     Args:
-        tables: ``SceneTables``, with textures of ``side_px``.
-        material: uint8 [L, M, 5], see ``rendering.atlas``.
-        side_px: the side of a texture.
-        decode: float32 [256], sRGB to light.
-        lamps: ``Emitters``.
+        scene: ``PathScene``.
+        emitters: ``Emitters``.
         sky: ``SkyLight``.
-        pose: float64 [3, 4], camera to grid.
-        rays: float64 [4], fx, fy, cx, cy in pixels.
+        camera: ``GridCamera`` with a pinhole.
         rows: the first row and past the last.
         samples: the first sample and past the last.
         seed: of the random numbers, a uint32.
@@ -81,10 +74,8 @@ def trace_rows(
             s.key = hash_uint32(np.uint32(v * width + u) ^ hash_uint32(np.uint32(seed)))
             # One more than the samples asks for the middle, which is found first.
             for sample in range(samples[0] - (1 if samples[0] == 0 else 0), samples[1]):
-                begin_path(pose, rays, u, v, sample, s)
-                follow_path(
-                    tables, material, side_px, decode, lamps, sky, 0 if sample < 0 else depth, s
-                )
+                begin_path(camera, u, v, sample, s)
+                follow_path(scene, emitters, sky, 0 if sample < 0 else depth, s)
                 if sample >= 0:
                     add_sample(film, v, u, s)
                 elif s.own == 1:
@@ -92,8 +83,9 @@ def trace_rows(
 
 
 @inlined
-def begin_path(pose, rays, u, v, sample, s):
+def begin_path(camera, u, v, sample, s):
     """Start a path at a place of a pixel; sample -1 is its middle."""
+    pose, rays = camera.pose, camera.rays
     s.sample, s.use = sample, 1
     across, down = 0.5, 0.5
     if sample >= 0:
@@ -112,8 +104,9 @@ def begin_path(pose, rays, u, v, sample, s):
 
 
 @inlined
-def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
+def follow_path(scene, emitters, sky, depth, s):
     """Follow a path to its end."""
+    tables, side_px = scene.tables, scene.side_px
     ray = make_ray(s.o[0], s.o[1], s.o[2], s.d[0], s.d[1], s.d[2])
     hit = first_cell(tables.space.shape, ray)
     after = 0.0
@@ -125,7 +118,7 @@ def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
             return
         s.t, s.face, s.element = hit.t, hit.face, hit.element
         s.cell[0], s.cell[1], s.cell[2] = hit.i, hit.j, hit.k
-        load_surface(tables, material, side_px, decode, s)
+        load_surface(scene, s)
         if s.clear and not reflects_on_glass(s, depth):
             after = hit.t
             hit = Hit(hit.t, hit.i, hit.j, hit.k, NO_FACE, hit.element)
@@ -138,7 +131,7 @@ def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
                 s.own = 1
             if depth == 0:
                 return
-            add_emitter_radiance(tables, lamps, s)
+            add_emitter_radiance(tables, emitters, s)
             if s.bounces == depth:
                 return
             set_lobes(s)
@@ -146,7 +139,7 @@ def follow_path(tables, material, side_px, decode, lamps, sky, depth, s):
                 for n in range(3):
                     s.spread_share[n] += s.share[n] * s.matt[n]
                     s.gloss_share[n] += s.share[n] * s.shine[n]
-            add_direct_light(tables, side_px, decode, lamps, sky, s)
+            add_direct_light(scene, emitters, sky, s)
             if not sample_bounce(s):
                 return
         for n in range(3):
@@ -193,7 +186,7 @@ def add_sky_radiance(sky, s):
 
 
 @inlined
-def add_emitter_radiance(tables, lamps, s):
+def add_emitter_radiance(tables, emitters, s):
     """Bring the light of a lamp that the path has met."""
     if s.sharp:
         glow = SEEN_GLOW * s.level
@@ -201,10 +194,10 @@ def add_emitter_radiance(tables, lamps, s):
             r, g, b = s.colour[0] * glow, s.colour[1] * glow, s.colour[2] * glow
             add_radiance(s, s.share[0] * r, s.share[1] * g, s.share[2] * b, s.bounces > 1)
         return
-    row = emitter_row(lamps, tables.space.shape, s, s.element)
+    row = emitter_row(emitters, tables.space.shape, s, s.element)
     if row >= 0:
-        part = s.last / (s.last + sampling_density(lamps, row, s))
-        r, g, b = lamps.light[row, 0], lamps.light[row, 1], lamps.light[row, 2]
+        part = s.last / (s.last + sampling_density(emitters, row, s))
+        r, g, b = emitters.light[row, 0], emitters.light[row, 1], emitters.light[row, 2]
         add_radiance(s, part * s.share[0] * r, part * s.share[1] * g, part * s.share[2] * b, True)
 
 
@@ -234,10 +227,10 @@ def reflects_on_glass(s, depth):
 
 
 @inlined
-def add_direct_light(tables, side_px, decode, lamps, sky, s):
+def add_direct_light(scene, emitters, sky, s):
     """Aim at the sun and at one lamp, and bring what reaches the surface."""
     s.weights, s.aim_odds, only = 0.0, 1.0, -1
-    has_sun, has_lamps = sky.sun_r + sky.sun_g + sky.sun_b > 0, len(lamps.cell) > 0
+    has_sun, has_lamps = sky.sun_r + sky.sun_g + sky.sun_b > 0, len(emitters.cell) > 0
     pick, other = sample_pair(s.key, s.sample, s.use + 1)
     if s.bounces > 0 and has_sun and has_lamps:  # One of both is enough for what is sent on.
         s.aim_odds, only = 0.5, 0 if other < 0.5 else 1
@@ -252,12 +245,12 @@ def add_direct_light(tables, side_px, decode, lamps, sky, s):
             s.aimed[2] = np.pi * sky.sun_b
         else:
             first, second = sample_pair(s.key, s.sample, s.use + 2)
-            if not has_lamps or not sample_emitter(lamps, s, pick, first, second) or only == 0:
+            if not has_lamps or not sample_emitter(emitters, s, pick, first, second) or only == 0:
                 continue
             s.density *= s.aim_odds
         above = s.out[0] * s.to[0] + s.out[1] * s.to[1] + s.out[2] * s.to[2]
         cosine = s.normal[0] * s.to[0] + s.normal[1] * s.to[1] + s.normal[2] * s.to[2]
-        if above <= 0 or cosine <= 0 or not is_unoccluded(tables, side_px, decode, s):
+        if above <= 0 or cosine <= 0 or not is_unoccluded(scene, s):
             continue
         matt = (1.0 - s.gloss_odds) * cosine / np.pi
         part = 1.0 if s.unseen else s.density / (s.density + matt)
@@ -283,8 +276,9 @@ def add_direct_light(tables, side_px, decode, lamps, sky, s):
 
 
 @inlined
-def is_unoccluded(tables, side_px, decode, s):
+def is_unoccluded(scene, s):
     """Tell whether nothing but glass lies on the way to what is aimed at; ``way`` is its tint."""
+    tables, side_px, decode = scene.tables, scene.side_px, scene.decode
     ray = make_ray(
         s.at[0] + _OFF * s.out[0], s.at[1] + _OFF * s.out[1], s.at[2] + _OFF * s.out[2],
         s.to[0], s.to[1], s.to[2],

@@ -21,9 +21,10 @@ from world2minecraft.rendering.path_tracing.film_development import (
     surface_light,
 )
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
-from world2minecraft.rendering.path_tracing.scattering import new_path
+from world2minecraft.rendering.path_tracing.scattering import PathScene, new_path
 from world2minecraft.rendering.path_tracing.sky_light import sky_light
 from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_volume
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY
 
@@ -60,7 +61,7 @@ def render_photo(
     denoise: bool = True,
     budget_s: float | None = None,
     progress: Progress = no_progress,
-    lamps: Emitters | None = None,
+    emitters: Emitters | None = None,
 ) -> Photo:
     """Take a photo of a scene.
 
@@ -76,22 +77,24 @@ def render_photo(
         denoise: whether to filter the light.
         budget_s: wall time after which no further pass over the picture begins; one is made.
         progress: called with the stage ``photo`` after each pass: samples done and time left.
-        lamps: of ``emitters_of(scene)``, where many photos are taken of one scene.
+        emitters: of ``emitters_of(scene)``, where many photos are taken of one scene.
 
     Raises:
         ValueError: a number is out of range, or the light knows no hour.
     """
     _check(camera, samples, depth)
     sky = sky_light(light)
-    lamps = emitters_of(scene) if lamps is None else lamps
+    emitters = emitters_of(scene) if emitters is None else emitters
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+    path_scene = PathScene(scene.tables, scene.material, scene.side_px, light.tone.decode)
+    grid_camera = GridCamera(pose, rays, 1.0)
     film = new_film(camera.height_px, camera.width_px)
 
     def band(rows: tuple[int, int], of: tuple[int, int]) -> None:
         trace_rows(
-            scene.tables, scene.material, scene.side_px, light.tone.decode, lamps, sky, pose, rays,
-            rows, of, np.uint32(seed & 0xFFFFFFFF), depth, new_path(), film,
+            path_scene, emitters, sky, grid_camera, rows, of, np.uint32(seed & 0xFFFFFFFF), depth,
+            new_path(), film,
         )  # fmt: skip
 
     with _Bands(threads) as run:

@@ -7,13 +7,15 @@ sampled. Rough surfaces that are not metal have no gloss at all: it would cost r
 nothing.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from world2minecraft.core.jit import inlined
 from world2minecraft.rendering.path_tracing.sky_light import tangent_frame
 from world2minecraft.rendering.ray_caster.ray import SOLID, texel_at, transform
 from world2minecraft.rendering.ray_caster.shading import normal_of
-from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, PANE, TURN
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, PANE, TURN, SceneTables
 
 # Where the light of a path goes: found at its first surface that is no glass.
 UNDECIDED, MATT, GLOSS = 0, 1, 2
@@ -55,6 +57,15 @@ _DULL, _FADE = 0.50, 0.15  # Width from which no gloss is left, and how it fades
 _MIRROR = 0.04  # What glass and lacquer mirror straight ahead.
 
 
+class PathScene(NamedTuple):
+    """What the kernels read of a scene."""
+
+    tables: SceneTables
+    material: np.ndarray  # uint8 [L, M, 5], see ``rendering.atlas``
+    side_px: int  # of a texture
+    decode: np.ndarray  # float32 [256], sRGB to linear light
+
+
 def new_path() -> np.ndarray:
     """Return the record of a path, an array of one."""
     return np.zeros(1, PATH)
@@ -85,8 +96,9 @@ def glass_texel(tables, side_px, n, face, i, j, k, x, y, z):
 
 
 @inlined
-def load_surface(tables, material, side_px, decode, s):
+def load_surface(scene, s):
     """Fill the path's surface from what ``first_hit`` gave: t, cell, face and element."""
+    tables, material, side_px, decode = scene
     i, j, k = s.cell[0], s.cell[1], s.cell[2]
     n = s.element
     if n < 0:

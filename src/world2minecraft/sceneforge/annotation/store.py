@@ -154,6 +154,10 @@ class AnnotationStore:
             if name not in self._number:
                 raise InputError(self.out, f"speaks of trajectory {name!r}, which is not there")
             line = {"trajectory_id": name, "annotator_id": instruction.annotator}
-            line |= {"instruction": instruction.text, "language": instruction.language, "level": instruction.level}
+            line |= {
+                "instruction": instruction.text,
+                "language": instruction.language,
+                "level": instruction.level,
+            }
             lines.append(line)
         return lines

@@ -153,7 +153,11 @@ def _is_address(name: str) -> bool:
 async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
     """Set the cookie and go on to the page without the token in the address bar."""
     cookie_header = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
-    headers = [(b"location", b"/"), (b"set-cookie", cookie_header.encode()), (b"content-length", b"0")]
+    headers = [
+        (b"location", b"/"),
+        (b"set-cookie", cookie_header.encode()),
+        (b"content-length", b"0"),
+    ]
     send = _with_headers(scope, send)
     await send({"type": "http.response.start", "status": 303, "headers": headers})
     await send({"type": "http.response.body", "body": b""})

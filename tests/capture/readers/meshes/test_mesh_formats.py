@@ -3,9 +3,9 @@
 import json
 import struct
 
+import mesh_writers as writers
 import numpy as np
 import pytest
-import mesh_writers as writers
 import trimesh
 from mesh_rooms import SIZE_M, room_quads
 

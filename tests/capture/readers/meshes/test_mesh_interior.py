@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy import ndimage
 from mesh_rooms import SIZE_M, box_quads, room_quads
+from scipy import ndimage
 
 from world2minecraft.capture.readers.meshes.interior import (
     enclosure_votes,

@@ -2,9 +2,9 @@
 
 import json
 
+import mesh_writers as writers
 import numpy as np
 import pytest
-import mesh_writers as writers
 from mesh_rooms import room_quads
 
 from world2minecraft.capture.readers.meshes.attributes import class_of_name

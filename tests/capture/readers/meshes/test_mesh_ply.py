@@ -1,8 +1,8 @@
 """PLY, byte by byte: orders, kinds, polygons, what lies between, and clouds of millions."""
 
+import mesh_writers as writers
 import numpy as np
 import pytest
-import mesh_writers as writers
 
 from world2minecraft.capture.readers.meshes.attributes import to_uint8_colours
 from world2minecraft.capture.readers.meshes.ply import load_ply, read_ply, triangulate_fans

@@ -2,11 +2,11 @@
 
 from itertools import permutations
 
+import mesh_writers as writers
 import numpy as np
 import pytest
-import mesh_writers as writers
-from scipy import ndimage
 from mesh_rooms import Quads
+from scipy import ndimage
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.options import ScanOptions
