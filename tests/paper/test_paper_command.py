@@ -155,7 +155,7 @@ def test_no_line_is_wider_than_a_page(name):
     assert [line for line in text.splitlines() if len(line) > 100] == []
 
 
-def test_a_wide_table_goes_on_below_with_the_same_labels_and_loses_no_cell():
+def test_wide_table_wraps_and_loses_no_cell():
     grid = grid_of(*filled(read_table("occupancy")))
     lines = as_text(*filled(read_table("occupancy"))).splitlines()
     heads = [line for line in lines if line.split()[:2] == ["Setting", "Method"]]

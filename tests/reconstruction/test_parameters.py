@@ -32,7 +32,7 @@ def test_settings_reach_their_stage():
     assert Parameters().fuse.min_points == 2, "the defaults stay"
 
 
-def test_the_papers_method_stops_where_the_paper_stops_and_settings_still_change_it():
+def test_paper_method_presets_can_be_changed_by_settings():
     assert with_method(Parameters(), "best") == Parameters()
     paper = with_method(Parameters(), "paper")
     assert paper.find.paper_compat and paper.furnish.paper_compat and paper.register.passes == 0

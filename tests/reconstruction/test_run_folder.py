@@ -100,7 +100,7 @@ def test_times_lie_in_run_json_and_nowhere_else(tmp_path):
     }
 
 
-def test_times_of_one_stage_add_up_and_nothing_is_written_before_it_begins(tmp_path):
+def test_stage_times_add_up_and_are_written_from_begin_on(tmp_path):
     run = RunFolder(tmp_path / "out", STAGES)
     with run.timed("scan"):
         sum(range(200_000))
@@ -139,7 +139,7 @@ def test_the_hash_sees_names_and_bytes_but_no_hidden_files(tmp_path):
     assert len({first, renamed, hash_capture(tmp_path)}) == 3
 
 
-def test_the_manifest_knows_the_palette_and_the_furniture_of_ones_own(tmp_path, monkeypatch):
+def test_manifest_hashes_palette_and_user_furniture(tmp_path, monkeypatch):
     capture, palette, own = tmp_path / "scan", tmp_path / "mine.json", tmp_path / "furniture"
     capture.mkdir()
     own.mkdir()

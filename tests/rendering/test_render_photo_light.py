@@ -13,8 +13,9 @@ from world2minecraft.rendering.path_tracing import emitters_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.light_sampling import UNSEEN_SOFT
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
-from world2minecraft.rendering.path_tracing.scattering import new_path
+from world2minecraft.rendering.path_tracing.scattering import PathScene, new_path
 from world2minecraft.rendering.path_tracing.sky_light import SkyLight, sky_light, uniform_sky
+from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.texture import Texture
 
@@ -71,10 +72,11 @@ def film_of(
     pose = np.ascontiguousarray((scene.room_to_grid @ look_at(eye, target))[:3])
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
     film = new_film(camera.height_px, camera.width_px)
+    decode = LightSettings().tone.decode
     trace_rows(
-        scene.tables, scene.material, scene.side_px, LightSettings().tone.decode,
-        emitters_of(scene) if lamps is None else lamps, sky, pose, rays, (0, camera.height_px),
-        (0, samples), np.uint32(seed), depth, new_path(), film,
+        PathScene(scene.tables, scene.material, scene.side_px, decode),
+        emitters_of(scene) if lamps is None else lamps, sky, GridCamera(pose, rays, 1.0),
+        (0, camera.height_px), (0, samples), np.uint32(seed), depth, new_path(), film,
     )  # fmt: skip
     return film
 

@@ -132,9 +132,9 @@ def retry_wait_s(state: Any) -> float:
     threads do not retry together.
     """
     error = state.outcome.exception()
-    asked = getattr(error, "retry_after_s", None)
-    if asked is not None:
-        return min(asked, MAX_WAIT_S)
+    requested_s = getattr(error, "retry_after_s", None)
+    if requested_s is not None:
+        return min(requested_s, MAX_WAIT_S)
     longest = min(MAX_WAIT_S, FIRST_WAIT_S * 2 ** (state.attempt_number - 1))
     return longest * random.uniform(0.5, 1.0)
 

@@ -102,11 +102,11 @@ def ask_structured(
         ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
     """
     tries: list[Attempt] = []
-    asked = turns if form.is_said else _with_words(turns, form.words)
+    request = turns if form.is_said else _with_words(turns, form.words)
     left, rung = repairs, max(model.rung, form.rung)
     while True:
         try:
-            tried, value = _ask_once(model, asked, form, RUNGS[rung], sample)
+            tried, value = _ask_once(model, request, form, RUNGS[rung], sample)
         except RefusedQuestionError as error:
             if rung == len(RUNGS) - 1:
                 raise
@@ -119,7 +119,7 @@ def ask_structured(
         if value is not None or left == 0:
             return StructuredReply(value, tuple(tries))
         left -= 1
-        asked = (*asked, *_repair(tried, form))
+        request = (*request, *_repair(tried, form))
 
 
 def _with_words(turns: tuple[Turn, ...], words: str) -> tuple[Turn, ...]:

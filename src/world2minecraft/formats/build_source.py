@@ -107,18 +107,18 @@ def _read_file(path: Path, box: Box | None) -> BuildSource:
 
 
 def _read_world(
-    world: Path, asked: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
+    world: Path, given: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
 ) -> BuildSource:
-    """Read the box of a world that is asked for, that of its scene, or the one chosen."""
-    scene, folder = _find_scene(asked)
+    """Read the given box of a world, that of its scene, or the one chosen."""
+    scene, folder = _find_scene(given)
     if scene is None or folder is None:
         chosen, note = (box, "") if box else choose(world)
-        source = BuildSource(read_world(world, box=chosen), world.name, asked)
+        source = BuildSource(read_world(world, box=chosen), world.name, given)
         source.notes += [note] if note else []
         return source
     own = _box_of(scene, folder / "scene.json")
     volume = _with_labels(read_world(world, box=box or own), scene, folder)
-    source = BuildSource(volume, asked.resolve().stem, asked, _start_of(scene), folder)
+    source = BuildSource(volume, given.resolve().stem, given, _start_of(scene), folder)
     if not (folder / "scene.npz").is_file():
         source.notes.append("scene.npz is not there: classes and objects are empty")
     return source

@@ -212,7 +212,7 @@ def _voxel_list(value: Any) -> Any:
 
 
 def _has_class_list(value: Mapping[str, Any], name: str) -> bool:
-    """Whether a list of places has its classes in a list beside it."""
+    """Whether a list of places has its classes in a second list."""
     return any(
         isinstance(value.get(other), list) and len(value[other]) == len(value[name])
         for other in _CLASSES

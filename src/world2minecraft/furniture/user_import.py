@@ -266,7 +266,7 @@ def _pack(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _notes(volume: BlockVolume) -> list[str]:
-    """Return what is to be said of the blocks: those that would not stay, and mods'."""
+    """Return notes on the blocks: those that are unstable, and those of mods."""
     from world2minecraft.minecraft.block_states import known_blocks  # noqa: PLC0415
     from world2minecraft.minecraft.rules.stability import find_unstable_cells  # noqa: PLC0415
 

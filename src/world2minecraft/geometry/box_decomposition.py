@@ -319,11 +319,11 @@ def decompose_boxes(labels: np.ndarray) -> np.ndarray:
     Raises:
         ValueError: the labels have not three axes.
     """
-    apart = partition_boxes(labels)
-    if len(apart) < MIN_COVER_BOXES or labels.size > MAX_COVER_SEARCH_CELLS:
-        return apart
-    over = cover_boxes(labels)
-    return over if len(over) <= MAX_COVER_SHARE * len(apart) else apart
+    disjoint = partition_boxes(labels)
+    if len(disjoint) < MIN_COVER_BOXES or labels.size > MAX_COVER_SEARCH_CELLS:
+        return disjoint
+    covering = cover_boxes(labels)
+    return covering if len(covering) <= MAX_COVER_SHARE * len(disjoint) else disjoint
 
 
 def cover_boxes(labels: np.ndarray) -> np.ndarray:
@@ -386,7 +386,7 @@ def _cover(labels, orders, boxes):  # pragma: no cover
 @njit
 def _prune(times, boxes, count):  # pragma: no cover
     """Drop, from the last to the first, the boxes whose every cell another covers too."""
-    kept = 0
+    count_left = 0
     needed = np.ones(count, np.bool_)
     for n in range(count - 1, -1, -1):
         a, b, c, d, e, f = boxes[n, 1:]
@@ -395,9 +395,9 @@ def _prune(times, boxes, count):  # pragma: no cover
             _add_in_box(times, boxes[n, 1:], -1)
     for n in range(count):
         if needed[n]:
-            boxes[kept] = boxes[n]
-            kept += 1
-    return kept
+            boxes[count_left] = boxes[n]
+            count_left += 1
+    return count_left
 
 
 @njit

@@ -56,7 +56,7 @@ class FileFormat:
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """What a writer may be told; a format takes what it needs."""
+    """Options of writers; a format reads those that it needs."""
 
     mc_version: str = "1.20.1"
     name: str = "room"

@@ -250,7 +250,7 @@ def read_nbt(
 
 
 def tree_bytes(value: Any) -> int:
-    """Return about how much memory a value of NBT takes, to bound what is kept of many files."""
+    """Return about how much memory a value of NBT takes, to bound what is held of many files."""
     if isinstance(value, dict):
         return 200 + sum(100 + len(key) + tree_bytes(held) for key, held in value.items())
     if isinstance(value, list):
@@ -261,7 +261,7 @@ def tree_bytes(value: Any) -> int:
 
 
 class NbtReader:
-    """A place in the bytes, and how much the tree has asked for; ``read_nbt`` is its use."""
+    """A position in the bytes, and how much the tree has requested; ``read_nbt`` is its use."""
 
     must_end = True  # Whether bytes after the tree are refused.
     dialect, encoding = "NBT", "modified UTF-8"  # As errors name them.

@@ -195,8 +195,8 @@ def _json_of(text: Any, depth: int) -> Any:
             found[key] = [_json_of(part, depth + 1) for part in value]
         elif key == "click_event" and isinstance(value, dict):
             action = str(value.get("action", ""))
-            said = value.get(_CLICKS.get(action, "value"), "")
-            found["clickEvent"] = {"action": action, "value": str(said)}
+            target = value.get(_CLICKS.get(action, "value"), "")
+            found["clickEvent"] = {"action": action, "value": str(target)}
         elif isinstance(value, str):
             found[key] = value
         elif isinstance(value, int):

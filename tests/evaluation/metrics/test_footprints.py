@@ -95,7 +95,7 @@ def test_a_triangle_has_an_area_and_a_line_has_none():
     assert area_m2(triangle[:2]) == area_m2(triangle[:0]) == 0.0
 
 
-def test_a_corner_of_an_l_is_outside_though_all_corners_are_within():
+def test_inner_corner_of_an_l_is_outside():
     across = box(1.0, 1.0, size=(2.6, 0.2, 1.0), yaw=135)
     assert inside_polygon(plan_corners_m(across), ELL, 0.0).all()
     assert outside_share(across, ELL, 0.0) > 0.01

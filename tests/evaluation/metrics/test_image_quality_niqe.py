@@ -107,7 +107,7 @@ def test_it_is_scikit_videos_score_with_its_parameters(name, blur_px):
 
 
 @pytest.mark.parametrize(("name", "blur_px"), LIVE_SCORES)
-def test_the_authors_parameters_give_the_values_of_the_reference_run(name, blur_px):
+def test_authors_parameters_give_the_reference_scores(name, blur_px):
     score = niqe(photograph(name, blur_px), niqe_model("live"))
     assert score == pytest.approx(LIVE_SCORES[name, blur_px], abs=0.02)
 
@@ -134,7 +134,7 @@ def test_a_picture_of_the_models_own_statistics_is_near_zero():
     assert niqe(photograph("china"), model) == pytest.approx(0, abs=1e-6)
 
 
-def test_flat_patches_are_left_out_and_a_flat_picture_has_no_score():
+def test_flat_patches_are_skipped_flat_pictures_unscored():
     picture = photograph("china")[:192, :384].copy()
     assert math.isnan(niqe(np.full((192, 192, 3), 80, np.uint8), niqe_model()))
     picture[:96, :96] = 80

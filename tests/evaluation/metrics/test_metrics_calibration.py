@@ -21,7 +21,7 @@ def test_a_case_counted_by_hand():
     ]
 
 
-def test_the_table_is_told_to_a_hundredth_of_a_percent_and_its_edges_to_a_thousandth():
+def test_calibration_table_is_rounded():
     counts = count_calibration(np.array([0.4, 0.5, 0.61]), np.array([True, False, False]), bins=3)
     row = {"from": 0.333, "to": 0.667, "cells": 3, "confidence": 0.5033, "right": 0.3333}
     assert counts.rows() == [row]

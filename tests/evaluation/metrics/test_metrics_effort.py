@@ -50,7 +50,7 @@ def test_operations_are_counted_by_what_they_count_as():
     assert found.active_s == 5 and found.total_s == 35
 
 
-def test_the_mean_is_over_scenes_and_of_automatic_times_over_those_known():
+def test_effort_means_are_over_scenes_with_known_times():
     one = effort_of("a", [event(0), event(5)], 10.0)
     two = effort_of("b", [event(0, counts_as="orient")])
     row = mean_row([one, two])

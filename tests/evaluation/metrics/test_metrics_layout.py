@@ -128,7 +128,7 @@ def test_a_room_may_have_three_corners():
     assert out_of_bounds([box(2.5, 0.6, size=(1.2, 1.0, 1.0))], triangle) == [0]
 
 
-def test_a_side_that_cuts_a_corner_is_out_though_all_corners_are_in():
+def test_side_that_cuts_a_corner_is_out_of_bounds():
     across = box(2, 2, size=(2.6, 0.2, 1), yaw_deg=135)
     assert inside_polygon(plan_corners_m(across), L_ROOM, 0.0).all()
     assert out_of_bounds([across], L_ROOM) == [0]

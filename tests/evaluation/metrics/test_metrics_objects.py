@@ -84,7 +84,7 @@ def test_scenes_add_up():
 
 
 @given(THINGS, THINGS)
-def test_a_scene_of_nothing_adds_nothing_and_absent_classes_have_no_f1(found, true):
+def test_empty_scenes_add_nothing_absent_classes_have_no_f1(found, true):
     counts = count_objects(found, true)
     more = counts + ObjectCounts()
     assert (more.turns_right, more.turns_asked) == (counts.turns_right, counts.turns_asked)

@@ -75,7 +75,7 @@ def test_ssc_scores_classes_on_the_surface_too():
     assert counts.geometry.table[2].sum() == 0
 
 
-def test_a_predicted_unknown_is_occupied_for_embodied_alone_and_of_no_class():
+def test_predicted_unknown_is_occupied_for_embodied_alone():
     said, truth = line([255, 255, 0]), KnownCells(line([0, 11, 0]))
     embodied = count_frame(PROTOCOLS["embodied"], said, truth)
     assert (embodied.geometry.true_positives, embodied.geometry.false_positives) == (1, 1)
@@ -100,7 +100,7 @@ def test_a_scene_is_scored_where_any_frame_looked():
     assert counts.geometry.false_negatives == 0  # Nobody looked at the second cell.
 
 
-def test_cells_outside_of_which_nothing_counts_narrow_a_protocol_s_own():
+def test_given_region_narrows_that_of_a_protocol():
     """Of the two cells that ssc scores, and the three of its classes, those that are within."""
     within = line([1, 1, 1, 0, 0, 0], bool)
     counts = count_frame(PROTOCOLS["ssc"], line(SAID), known(), within)
@@ -122,7 +122,7 @@ MASKS = stn.arrays(bool, (2, 3, 2))
 
 
 @given(LABELS, LABELS, MASKS, MASKS, MASKS)
-def test_no_protocol_counts_more_than_iso_and_monoscene_is_sscmetrics(said, truth, a, b, c):
+def test_iso_counts_most_and_monoscene_is_sscmetrics(said, truth, a, b, c):
     cells = KnownCells(truth, a, b, c & ~b)
     counts = {name: count_frame(one, said, cells) for name, one in PROTOCOLS.items()}
     assert counts["iso"].geometry.cells == truth.size
@@ -162,7 +162,7 @@ def test_a_frame_of_nothing_has_no_iou():
     assert macro_figures([])["iou"] == 0
 
 
-def test_the_interval_is_over_scenes_holds_the_figure_and_keeps_its_seed():
+def test_interval_over_scenes_holds_the_figure():
     rng = np.random.default_rng(3)
     frames = [
         FrameScore(f"s{n % 8}", counts_of([(2, 2)] * int(rng.integers(1, 20)) + [(0, 2)] * 5))
@@ -202,7 +202,7 @@ def test_precision_and_recall_of_the_paper_give_its_iou(name):
 
 
 @pytest.mark.parametrize("name", [*MINECRAFTOCC, *NYU])
-def test_classes_of_the_paper_give_its_miou_with_absent_ones_as_zero(name):
+def test_paper_classes_give_miou_with_absent_as_zero(name):
     values = row((MINECRAFTOCC | NYU)[name])
     classes = values[-11:]
     assert values[1] - np.mean(classes) == pytest.approx(MIOU_SLIPS.get(name, 0), abs=HALF_UNIT)

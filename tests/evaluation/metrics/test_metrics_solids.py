@@ -62,7 +62,7 @@ def test_solid_parts_fill_the_turned_box_to_its_sides(name, turns, x, y):
 
 
 @given(st.sampled_from(NAMES), st.sampled_from(NAMES), st.floats(-1, 1), st.integers(0, 3))
-def test_depth_goes_both_ways_and_never_exceeds_that_of_the_boxes(first, second, y, turns):
+def test_solid_depth_is_symmetric_and_within_box_depth(first, second, y, turns):
     one, other = solids_m(put(1, first, 0, 0)), solids_m(put(2, second, 0.6, y, turns))
     assert depth_m(one, other) == pytest.approx(depth_m(other, one))
     boxes = depth_m(box_m(put(1, first, 0, 0))[None], box_m(put(2, second, 0.6, y, turns))[None])
@@ -76,13 +76,13 @@ def test_a_chair_under_its_table_touches_only_the_table_s_box():
     assert collisions([table, tucked]) == []
 
 
-def test_a_back_through_a_thin_top_is_a_collision_though_the_top_is_thinner_than_forgiven():
+def test_back_through_a_thin_table_top_collides():
     table = put(1, "dining_table", 0, 0, size=(0.9, 1.6, 0.75))
     through = put(2, "chair", 0.1, 0, turns=2)
     assert collisions([table, through]) == [(0, 1)]
 
 
-def test_beside_a_box_of_which_no_parts_are_known_all_of_it_is_solid():
+def test_box_of_unknown_parts_is_solid_throughout():
     """A chair under a table whose parts are known touches nothing; under a mere box it does."""
     tucked = put(2, "chair", 0.45, 0, turns=2)
     table = LayoutObject(8, np.array([0, 0, 0.375]), np.array([0.9, 1.6, 0.75]), 0.0)
@@ -115,7 +115,7 @@ def test_own_cells_are_solid_where_they_lie_and_nowhere_else():
     assert collisions([wide, over], grid=grid) == [(0, 1)]
 
 
-def test_own_cells_are_those_whose_centres_lie_in_the_box_wherever_the_grid_begins():
+def test_own_cells_have_their_centres_in_the_box():
     """Slow reading: every cell of the object's number, its centre against the box's sides."""
     random = np.random.default_rng(3)
     cells = np.unique(random.integers(0, 20, (400, 3)), axis=0)
@@ -165,7 +165,7 @@ def test_category_integrity_is_the_paper_s_ratio():
     assert category_integrity(set(), set()) == 1.0
 
 
-def test_an_object_is_kept_where_blocks_of_its_number_and_class_stand():
+def test_object_survives_where_its_blocks_stand():
     cells = np.array([[x, 5, z] for x in range(10, 16) for z in range(6)], np.int32)
     grid = grid_with({1: [tuple(cell) for cell in cells.tolist()]})
     one = ObjectInstance(

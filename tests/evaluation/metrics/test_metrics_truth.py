@@ -65,7 +65,7 @@ def test_the_majority_names_a_cell_and_the_lowest_id_a_tie():
     assert result.reshape(-1).tolist() == [8, 7]
 
 
-def test_mostly_unknown_cells_and_all_beyond_the_truth_are_unknown():
+def test_cells_mostly_unknown_or_beyond_truth_are_unknown():
     fine = np.zeros((4, 4, 4), np.uint8)
     fine[:3] = 255
     result = carry_truth(fine, FINE_M, np.zeros(3), np.eye(4), (2, 1, 1), np.zeros(3), COARSE_M)

@@ -98,7 +98,7 @@ def test_a_run_that_fails_does_not_wait(started):
 @pytest.mark.parametrize(
     "what", [("is_compiled", lambda kernel: True), ("usable_cores", lambda: 1)]
 )
-def test_nothing_is_started_where_all_is_there_or_nobody_to_do_it(started, monkeypatch, what):
+def test_warmup_starts_only_where_needed_and_possible(started, monkeypatch, what):
     monkeypatch.setattr(ahead, *what)
     with ahead.pictures_compiled_meanwhile():
         assert not started

@@ -91,7 +91,7 @@ def test_counts_objects_and_layout():
     assert facts["blocks"] == 500 + 70
 
 
-def test_all_of_a_true_world_is_explained_and_none_of_an_empty_one():
+def test_true_world_is_explained_empty_world_is_not():
     scene = floor_and_table()
     assert surface_explained(scene) == {"exact": 1.0, "within_one_voxel": 1.0}
     blank = BlockVolume(

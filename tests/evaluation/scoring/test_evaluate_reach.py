@@ -40,7 +40,7 @@ def test_the_kernel_marks_what_a_slow_walk_marks(yaw_deg):
     assert len(met ^ ends) <= 0.02 * len(ends)
 
 
-def test_a_wall_whose_first_millimetres_reach_into_a_cell_is_scored_with_the_cell_behind():
+def test_wall_that_grazes_a_cell_is_scored_in_the_cell_behind():
     truth = true_room()
     frames = [frame(CAMERA, pose) for pose in cameras()]
     truth_to_room = np.eye(4)
@@ -56,7 +56,7 @@ def test_a_wall_whose_first_millimetres_reach_into_a_cell_is_scored_with_the_cel
     assert not straight.met[at[0]][inner].any()
 
 
-def test_more_rays_reach_no_fewer_cells_and_nothing_is_reached_from_nowhere():
+def test_more_rays_reach_no_fewer_cells():
     truth, frames = true_room(), [frame(CAMERA, cameras()[0])]
     few = reached_cells(truth, frames, np.eye(4), VOXEL_M, rays_wide=40)
     many = reached_cells(truth, frames, np.eye(4), VOXEL_M, rays_wide=160)

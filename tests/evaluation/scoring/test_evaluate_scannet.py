@@ -81,7 +81,7 @@ def test_the_truth_is_the_rooms_own_within_one_voxel(room, found):
     assert (labels == room.labels)[touched].mean() > 0.99
 
 
-def test_free_is_what_cameras_saw_through_and_the_rest_is_unknown(room, found):
+def test_only_cells_seen_through_are_free(room, found):
     truth, _, moved = found
     labels = in_room(truth.labels, truth, moved, room, 255)
     air = room.labels == 0

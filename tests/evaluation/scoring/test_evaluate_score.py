@@ -122,7 +122,7 @@ def test_an_object_that_no_ray_met_is_not_asked_for(perfect, capture, tmp_path):
     assert facts["objects"]["true"] == 2 and facts["objects"]["f1"] == 1.0
 
 
-def test_true_poses_decide_and_old_truths_fall_back_to_the_stated(tmp_path):
+def test_true_poses_score_and_old_truths_use_stated_ones(tmp_path):
     """Stated poses are off by 10 cm; a truth without true poses believes them."""
     off = write_capture(tmp_path / "off", pose_off_m=0.1)
     run = write_perfect(tmp_path / "run", off)

@@ -23,7 +23,7 @@ def test_the_table_and_the_file_hold_the_scores(perfect, capture, tmp_path, caps
     )
 
 
-def test_openings_and_placements_stand_in_the_table_where_they_are_known(perfect, capture):
+def test_known_openings_and_placements_are_in_the_table(perfect, capture):
     facts = evaluate_reconstruction(perfect, capture)
     names = dict(score_rows(facts))
     assert "collisions" not in names and "poses, stated" in names

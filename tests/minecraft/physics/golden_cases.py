@@ -1,7 +1,7 @@
 """The walks that Python and TypeScript must agree on, and what writes them down.
 
-``python -m tests.minecraft.physics.golden_cases`` writes ``golden.json`` beside this file: for each walk the
-boxes, the keys and where the player is after every fourth tick.
+``python -m tests.minecraft.physics.golden_cases`` writes ``golden.json`` next to this file: for
+each walk the boxes, the keys and where the player is after every fourth tick.
 """
 
 import json
@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.minecraft.collision_shapes import boxes_of
-from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
-from world2minecraft.minecraft.physics import step
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys, step
 
 GOLDEN = Path(__file__).with_name("golden.json")
 EVERY = 4  # Ticks between the places written down.

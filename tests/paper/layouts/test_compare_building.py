@@ -51,7 +51,7 @@ def test_a_name_or_else_a_class_finds_what_stands_for_a_thing(name, size, expect
     assert design_of(thing(name, (1, 1, size[2] / 2), size)).template == expected
 
 
-def test_things_stand_in_their_boxes_and_look_where_they_are_told():
+def test_things_stand_in_their_boxes_and_face_as_stated():
     held = cells_of_plan(plan_of(scene(BED, CHAIR)))
     bed, chair = held.placements
     assert (bed.class_id, bed.template) == (int(SemanticClass.BED), "double_bed")
@@ -71,7 +71,7 @@ def test_a_front_that_looks_at_a_wall_is_left_so():
     assert placed.quarter_turns == 2
 
 
-def test_what_lies_in_a_wall_is_cut_and_the_larger_of_two_keeps_the_place():
+def test_things_in_walls_are_cut_and_larger_ones_stay():
     out = thing("desk", (4.3, 1.5, 0.37), (1.2, 1.2, 0.74))
     held = cells_of_plan(plan_of(scene(out)))
     cells = np.argwhere(held.grid.instance == 1) * 0.08 + held.grid.origin_m

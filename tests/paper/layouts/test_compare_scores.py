@@ -48,7 +48,7 @@ def test_out_of_bounds(item, outside, reaching):
     assert (bool(told.outside), bool(told.reaching)) == (outside, reaching)
 
 
-def test_nothing_is_too_high_under_a_ceiling_that_is_only_guessed():
+def test_guessed_ceilings_make_nothing_too_high():
     tall = scene(thing(1, 1, (0.2, 0.2, 3.0)))
     assert score_scene(tall).outside == (0,)
     assert score_scene(replace(tall, is_height_stated=False)).outside == ()

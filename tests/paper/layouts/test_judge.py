@@ -29,7 +29,7 @@ def said(realism, completeness, atmosphere):
     )
 
 
-def test_three_repeats_are_three_questions_and_the_record_answers_them_again(tmp_path):
+def test_repeats_ask_anew_and_the_record_replays_them(tmp_path):
     with scripted([said(5, 6, 7), said(6, 6, 7), said(7, 6, 7)]) as server:
         chat = open_chat(server.url, store=ReplyStore(tmp_path / "r.jsonl"), temperature=None)
         told = grade(chat, "room", "ours", SHOWN, wish="A bedroom.")

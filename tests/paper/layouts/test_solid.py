@@ -37,7 +37,7 @@ def test_parts_are_those_of_the_placement_that_is_built(name, quarters):
 
 
 @pytest.mark.parametrize(("yaw", "met"), [(90.0, 0), (270.0, 1)])
-def test_a_tucked_chair_meets_nothing_but_its_back_through_the_top_does(yaw, met):
+def test_tucked_chair_is_clear_its_back_through_top_is_not(yaw, met):
     room = scene(thing(*TABLE), thing("chair", (2.0, 0.62, 0.44), (0.45, 0.45, 0.88), yaw))
     assert len(score_scene(room).colliding) == 1
     assert solid_collisions(room) == met

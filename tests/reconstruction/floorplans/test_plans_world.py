@@ -118,7 +118,7 @@ def test_a_finished_run_is_left_without_photos(place, tmp_path):
         assert (out / name).read_bytes() == (again / name).read_bytes()
 
 
-def test_rooms_of_a_structure_are_parted_by_walls_and_joined_by_doors(tmp_path):
+def test_rooms_are_parted_by_walls_and_joined_by_doors(tmp_path):
     """Two rooms side by side, 12 cm apart, with one door that both of them hold."""
     first = layout(np.array([[0, 0], [3, 0], [3, 3], [0, 3]], float))
     second = layout(np.array([[3.12, 0], [6, 0], [6, 3], [3.12, 3]], float))

@@ -49,7 +49,7 @@ def test_a_box_of_a_town_is_refused_before_memory_is_taken():
     assert blocks.table.size == 0
 
 
-def test_places_are_found_at_both_ends_of_a_box_that_grew_on_every_side():
+def test_cells_are_found_after_growth_on_every_side():
     blocks = Blocks()
     blocks.reserve_box(np.array([0, 0, 0]), np.array([9, 9, 9]), 0.08)
     corners = [(0, 0, 0), (-9, -17, -25), (25, 33, 41)]
@@ -66,7 +66,7 @@ def test_places_are_found_at_both_ends_of_a_box_that_grew_on_every_side():
     assert len(blocks.log_odds) >= (3 + 2 + 1) * BLOCK_CELLS
 
 
-def test_memory_is_taken_for_what_is_used_and_asked_and_never_twice():
+def test_memory_is_reserved_once_for_what_is_used():
     blocks = Blocks()
     blocks.used[:] = 1000, 50
     blocks.reserve_box(np.zeros(3, np.int64), np.array([8, 8, 8]), 0.08)
@@ -88,7 +88,7 @@ def test_a_capture_that_fills_too_many_cells_is_refused():
 
 
 @pytest.mark.parametrize(("share", "fits"), [(0.98, True), (1.02, False)])
-def test_what_was_seen_far_apart_is_refused_where_its_votes_could_not_be_read_again(share, fits):
+def test_maps_whose_votes_cannot_be_read_back_are_refused(share, fits):
     """Of evidence.npz, in which they are halves, twelve a cell; zeros take no memory here."""
     map_ = EvidenceMap(np.eye(4))
     side = round((share * MAX_ARRAY_BYTES / (2 * CLASS_COUNT)) ** (1 / 3) / SIDE) * SIDE

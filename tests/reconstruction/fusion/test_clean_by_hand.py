@@ -102,7 +102,7 @@ def test_a_hole_of_32_cm_is_closed_and_a_wider_one_is_not(class_id, axis, _what,
     np.testing.assert_array_equal(found.confidence[labels != 255], 1)
 
 
-def test_only_what_is_unknown_is_filled_and_by_the_colour_beside_it():
+def test_only_unknown_cells_are_filled_by_adjacent_colour():
     labels = np.zeros((24, 24, 3), np.uint8)
     labels[:, :, 1] = 2
     labels[8:12, 8:12, 1] = 255
@@ -140,7 +140,7 @@ def test_log_odds_say_what_a_cell_is_and_how_surely():
     assert grid.confidence.ravel()[3:] == pytest.approx([0.5, 0.5], abs=1e-3)
 
 
-def test_the_class_with_most_votes_names_a_cell_and_empty_has_no_vote():
+def test_most_votes_name_a_cell_and_empty_has_no_vote():
     votes = np.zeros((4, 1, 1, 12), np.float16)
     votes[0, 0, 0, [0, 3, 8]] = 9, 1, 2
     votes[1, 0, 0, 0] = 9

@@ -60,7 +60,7 @@ def scene(seed: int = 0) -> tuple[OccupancyGrid, FusedEvidence]:
     return grid, evidence
 
 
-def test_only_confidence_changes_and_each_kind_of_cell_has_its_own():
+def test_calibration_changes_confidence_only_by_cell_kind():
     grid, evidence = scene()
     found = calibrate(grid, evidence, TABLE)
     for name in ("labels", "source", "colour", "instance"):
@@ -72,7 +72,7 @@ def test_only_confidence_changes_and_each_kind_of_cell_has_its_own():
     assert len(np.unique(observed)) > 20
 
 
-def test_the_chance_is_the_logistic_of_the_features_read_cell_by_cell():
+def test_confidence_is_the_logistic_of_cell_features():
     grid, evidence = scene(3)
     found = calibrate(grid, evidence, TABLE)
     padded = np.pad(grid.labels, 1, constant_values=255)
@@ -126,7 +126,7 @@ def test_the_chance_of_a_free_cell_is_read_cell_by_cell(seed):
     assert len(kinds) == 3
 
 
-def test_without_a_vote_no_label_has_a_share_and_log_odds_have_a_bound():
+def test_unvoted_labels_have_no_share_and_log_odds_a_bound():
     grid, evidence = scene(2)
     votes = np.zeros_like(evidence.votes)
     votes[::2, ..., :] = 0.02  # Twelve of them are less than one vote.
@@ -140,7 +140,7 @@ def test_without_a_vote_no_label_has_a_share_and_log_odds_have_a_bound():
     assert not rows[:, 7].any(), "what the labeller said is no feature unless it is asked for"
 
 
-def test_what_a_labeller_said_counts_for_those_whose_table_says_so():
+def test_labeller_confidence_counts_if_its_table_says_so():
     grid, evidence = scene(1)
     unsure = replace(grid, confidence=np.full(grid.shape, 0.5, np.float16))
     silent = ConfidenceTable(TABLE.occupied, TABLE.classes, TABLE.free, TABLE.completed, True)

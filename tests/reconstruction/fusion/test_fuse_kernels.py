@@ -172,7 +172,7 @@ def test_points_are_carried_by_the_transform_and_bounded():
 
 
 @pytest.mark.parametrize("count", [1, 4])
-def test_a_normal_is_turned_and_where_none_is_given_it_faces_the_camera(count):
+def test_normals_are_turned_and_default_to_the_camera(count):
     points = np.zeros((count, 3), np.float32)
     normals = np.array([[1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, 0]], np.float32)[:count]
     turn = rotation_about_z(90)[:3, :3]

@@ -38,7 +38,7 @@ def cell(grid, point_m):
     return tuple(np.floor((np.array(point_m) - grid.origin_m) / grid.voxel_m).astype(int))
 
 
-def test_before_the_wall_is_free_the_wall_is_occupied_behind_it_is_unknown():
+def test_free_before_occupied_at_unknown_behind_a_wall():
     grid = extract_grid(fused(looking_at_wall(2.0)))
     assert grid.labels[cell(grid, (1.0, 0, 1.2))] == 0
     assert grid.labels[cell(grid, (2.02, 0, 1.2))] == 11
@@ -151,7 +151,7 @@ def test_floaters_go_and_thin_legs_stay():
     assert (cleaned.labels[15, 15, 12:14] == 0).all()
 
 
-def test_holes_of_the_floor_are_closed_and_marked_but_free_cells_stay_free():
+def test_floor_holes_are_closed_and_marked_free_stays_free():
     labels = np.zeros((30, 30, 10), np.uint8)
     labels[:, :, 0] = 2
     labels[10:14, 10:14, 0] = 255

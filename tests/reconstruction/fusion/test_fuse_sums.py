@@ -90,7 +90,7 @@ def row_of(map_: EvidenceMap, cell) -> tuple[int, int]:
 
 @settings(max_examples=5)
 @given(seeds, st.floats(-180, 180), st.tuples(*[st.floats(-2, 2)] * 3))
-def test_planes_hits_and_colours_of_a_view_follow_their_definition(seed, yaw_deg, shift_m):
+def test_planes_hits_and_colours_follow_their_definition(seed, yaw_deg, shift_m):
     scan_to_room, item = tumbled(yaw_deg, shift_m), cloud(seed)
     map_ = EvidenceMap(scan_to_room, RULES)
     map_.add(item)
@@ -116,7 +116,7 @@ def test_planes_hits_and_colours_of_a_view_follow_their_definition(seed, yaw_deg
     assert taken == map_.blocks.used[1] > 0
 
 
-def test_measurements_of_two_views_add_up_and_certainty_has_a_limit():
+def test_measurements_add_up_and_log_odds_have_a_limit():
     rules = FuseParameters(min_points=1, min_share=0.0, limit_log_odds=1.5)
     one, other, both = (EvidenceMap(np.eye(4), rules) for _ in range(3))
     first, second = cloud(1), cloud(2)
@@ -144,7 +144,7 @@ def test_a_single_point_is_noise_and_carves_nothing(count):
     assert carved == (12 if count == 2 else 0), "all but the surface's own cell, the 13th"
 
 
-def test_a_label_is_one_vote_and_what_is_no_class_votes_for_nothing():
+def test_a_label_is_one_vote_and_no_class_is_none():
     points_m = np.tile(np.array([[1.02, 0.03, 0.03]], np.float32), (6, 1))
     labels = np.array([0, 1, 11, 11, 12, 255], np.uint8)
     weight = np.full(6, 0.01, np.float32)
@@ -154,7 +154,7 @@ def test_a_label_is_one_vote_and_what_is_no_class_votes_for_nothing():
     assert votes[1] == 1 and votes[11] == 2 and votes.sum() == 3
 
 
-def test_a_ray_carves_each_cell_once_and_stops_before_its_surface():
+def test_ray_carves_cells_once_and_stops_before_surface():
     """Along +x through cells of 0.08 m, to a surface at 1.00 m of which 0.3 m are kept clear."""
     rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.3, clear_growth=0.0)
     points_m = np.array([[1.0, 0.04, 0.04], [1.0, 0.05, 0.04]], np.float32)
@@ -171,7 +171,7 @@ def test_a_ray_carves_each_cell_once_and_stops_before_its_surface():
 
 
 @pytest.mark.parametrize(("trust", "carved"), [(0.5, True), (0.49, False)])
-def test_a_surface_that_is_half_trusted_carves_and_one_that_is_less_does_not(trust, carved):
+def test_only_surfaces_trusted_by_half_carve(trust, carved):
     points_m = np.array([[1.0, 0.04, 0.04], [1.0, 0.05, 0.04]], np.float32)
     map_ = EvidenceMap(np.eye(4))
     weight, sure = np.full(2, 0.01, np.float32), np.full(2, trust, np.float32)
@@ -179,7 +179,7 @@ def test_a_surface_that_is_half_trusted_carves_and_one_that_is_less_does_not(tru
     assert (map_.blocks.log_odds < 0).any() == carved
 
 
-def test_what_was_hit_more_often_than_is_written_down_keeps_its_mean():
+def test_means_survive_hit_counts_beyond_their_type():
     points_m = np.array([[1.02, 0.03, 0.03], [1.02, 0.04, 0.03]], np.float32)
     colour = np.full((2, 3), (10, 200, 30), np.uint8)
     map_ = EvidenceMap(np.eye(4))
@@ -215,7 +215,7 @@ def test_the_map_tells_the_memory_of_its_arrays():
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize(("edge_m", "side", "cell"), [(0.0, 1, -1), (0.64, -1, 8)])
-def test_matter_behind_the_last_point_has_a_place_in_the_next_block(axis, edge_m, side, cell):
+def test_matter_behind_the_last_point_reaches_the_next_block(axis, edge_m, side, cell):
     """The points lie a millimetre before a block's edge, their matter behind it."""
     points_m = np.full((4, 3), 0.25, np.float32)
     points_m[:, axis] = edge_m + 0.001 * side
@@ -260,7 +260,7 @@ def test_a_map_of_nothing_is_one_cell_of_which_nothing_is_known():
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize(("side", "way", "carved"), [(1, 12.0, 12), (-1, 12.0, 12), (1, 0.9, 1)])
-def test_a_ray_along_an_axis_carves_every_cell_before_its_surface(axis, side, way, carved):
+def test_axis_aligned_ray_carves_every_cell_before_surface(axis, side, way, carved):
     """From the middle of a cell, ``way`` cells far; the surface's own cell is left alone."""
     rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
     camera_m = np.full(3, 0.04)

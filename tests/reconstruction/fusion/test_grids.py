@@ -69,7 +69,7 @@ def test_the_order_of_views_plays_no_part(seeds):
     assert (one.log_odds[one.log_odds != 0] > 0).all()
 
 
-def test_a_sure_view_carves_as_one_ray_and_never_through_what_depth_saw():
+def test_sure_view_carves_as_one_ray_never_through_depth():
     rules = FuseParameters()
     for free in (0.99, 1.0):
         gains = grid_gains(grid(2, free=free), np.eye(4), rules).gains
@@ -124,7 +124,7 @@ def test_colours_are_those_of_the_view():
     assert found.colour_sum[found.log_odds > 0].mean() == pytest.approx(127, abs=25)
 
 
-def test_what_is_as_good_as_free_votes_for_nothing_and_has_no_colour():
+def test_nearly_free_cells_have_no_votes_and_no_colour():
     gains = grid_gains(grid(9, free=0.96), np.eye(4), FuseParameters())
     assert not gains.votes.any() and not gains.coloured.any()
     gains = grid_gains(grid(9, free=0.94), np.eye(4), FuseParameters())

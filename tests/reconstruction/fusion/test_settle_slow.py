@@ -205,7 +205,7 @@ def test_the_two_ends_of_the_map_are_no_neighbours(face):
 
 
 @given(st.floats(0, 0.1), st.floats(0.001, 0.05))
-def test_spill_is_what_noise_explains_and_a_twentieth_more_up_to_a_fifth(depth_m, sigma_m):
+def test_spill_share_is_noise_and_a_twentieth_up_to_a_fifth(depth_m, sigma_m):
     expected = min(stats.norm.sf(depth_m / sigma_m) + 0.05, 0.2)
     assert _spill_share(depth_m, sigma_m) == pytest.approx(expected)
 
@@ -306,7 +306,7 @@ def test_planes_of_neighbours_join_as_near_as_noise_explains(axis, sigmas_m, gap
     assert plane[axis] == pytest.approx(gap_m / 2 if joined else 0.0)
 
 
-def test_the_weight_before_a_cell_is_that_of_the_cell_which_its_face_looks_at():
+def test_weight_before_is_that_of_the_cell_a_face_looks_at():
     record = np.arange(27).reshape(3, 3, 3)
     faces = np.random.default_rng(0).random((27, 6, 8))
     for cell in np.ndindex(3, 3, 3):

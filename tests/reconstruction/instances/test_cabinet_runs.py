@@ -55,7 +55,7 @@ def test_what_hangs_over_a_counter_by_a_strip_is_its_own():
     assert parted[9, 10, 5] != parted[5, 10, 22]
 
 
-def test_an_l_of_counters_is_two_and_the_longer_arm_keeps_the_corner():
+def test_longer_arm_of_an_l_of_counters_keeps_the_corner():
     parted = _parted(_room((2, 2, 1, 10, 24, 12), (10, 2, 1, 38, 10, 12)))
     assert len(_numbers(parted)) == 2
     assert parted[3, 3, 11] == parted[30, 3, 11] != parted[3, 20, 11]

@@ -65,7 +65,7 @@ def test_turning_the_grid_turns_what_is_joined(seed, turns):
     np.testing.assert_array_equal(relabel_specks(turned), turn_grid(relabel_specks(labels), turns))
 
 
-def test_the_object_has_the_specks_cells_and_the_grid_keeps_its_labels():
+def test_object_owns_its_specks_and_grid_keeps_labels():
     labels = _room()
     labels[8:10, 7:9, 9] = OBJS
     found = find_objects(grid_of(labels))

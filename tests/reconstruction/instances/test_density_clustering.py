@@ -48,7 +48,7 @@ def test_clusters_are_those_of_scikit_learn(seed, radius, min_samples):
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_classes_never_share_a_cluster_and_numbers_rise_with_class_and_place(seed):
+def test_clusters_are_numbered_by_class_then_place(seed):
     rng = np.random.default_rng(seed)
     points = np.argwhere(rng.random((8, 8, 5)) < 0.3).astype(np.int32)
     classes = rng.integers(5, 8, len(points)).astype(np.uint8)

@@ -68,7 +68,7 @@ def test_touching_boxes_of_two_classes_stay_apart():
 
 @settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1), st.booleans())
-def test_every_object_cell_has_an_instance_of_its_class_or_is_counted(seed, paper_compat):
+def test_object_cells_have_an_instance_or_are_leftover(seed, paper_compat):
     labels = _noisy(seed)
     found = find_objects(grid_of(labels), FindParameters(paper_compat=paper_compat))
     objects = (labels >= 5) & (labels <= 11)

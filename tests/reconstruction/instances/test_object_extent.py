@@ -67,7 +67,7 @@ def test_a_shade_low_in_the_air_stands_on_an_unseen_post():
     assert _lamp(12) == [0, 14]
 
 
-def test_a_shade_high_in_the_air_or_over_a_table_hangs_from_the_ceiling():
+def test_high_shade_or_one_over_a_table_hangs_from_ceiling():
     assert _lamp(20, ceiling=True) == [19, 26]
     assert _lamp(14, below=8, ceiling=True) == [13, 26]
     assert _lamp(20) == [19, 22]
@@ -92,7 +92,7 @@ def test_a_pendant_hangs_from_the_ceiling_of_its_own_storey():
     assert vertical_extent(cells, grid, SemanticClass.OBJS) == (20, 27)
 
 
-def test_what_lies_on_a_table_or_hangs_on_a_wall_reaches_no_farther():
+def test_things_on_tables_or_walls_reach_no_farther():
     assert _lamp(8, below=8) == [7, 10]
     assert _lamp(20, beside=SemanticClass.WALL, ceiling=True) == [19, 22]
 

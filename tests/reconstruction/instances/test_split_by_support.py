@@ -101,7 +101,7 @@ def test_the_foot_and_the_cord_of_a_lamp_belong_to_its_shade():
     np.testing.assert_array_equal(merge_lamp_parts(owners, grid, RULES), owners > 0)
 
 
-def test_a_box_on_the_floor_under_a_table_is_no_foot_of_the_vase_upon_it():
+def test_box_under_a_table_is_no_foot_of_its_vase():
     grid = _room((8, 128, 8, 8, 9, 18, 18, 10), (11, BEIGE, 11, 11, 10, 14, 14, 14),
                  (11, GREEN, 11, 11, 1, 14, 14, 2))  # fmt: skip
     owners = np.zeros(SHAPE, np.int32)

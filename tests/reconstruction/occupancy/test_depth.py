@@ -57,7 +57,7 @@ def test_weight_is_the_area_of_a_pixel():
     assert np.allclose(evidence.weight, 9 / 900)
 
 
-def test_far_points_and_holes_are_left_out_and_views_without_depth_skipped():
+def test_far_points_holes_and_views_without_depth_are_skipped():
     depth_m = np.full((24, 32), 2, np.float32)
     depth_m[:5], depth_m[5:9] = 0, 9
     assert len(lift(depth_m, DEPTH).points_m) == 15 * 32

@@ -69,7 +69,7 @@ def test_a_semantic_one_is_what_the_library_says(folders):
 
 
 @pytest.mark.parametrize("kind", ["mask2former", "maskformer", "oneformer"])
-def test_a_universal_one_says_what_the_librarys_own_read_out_says(folders, kind):
+def test_universal_model_agrees_with_the_library(folders, kind):
     """Its label of most score at each pixel, by the processor's sum over masks."""
     import torch
 

@@ -147,7 +147,7 @@ def test_soft_votes_reach_the_map():
     assert votes[..., [1, 2, 3, 4, 6, 8, 9, 10, 11]].max() == 0
 
 
-def test_a_monocular_network_votes_by_the_cell_that_holds_a_point(tmp_path):
+def test_monocular_network_votes_by_the_cell_of_a_point(tmp_path):
     """Its cells of the nearer half are tables, beyond they are furniture; points vote so."""
     bias = np.zeros((12, 60, 60, 36))
     bias[8, :, :20], bias[10, :, 20:] = 30.0, 30.0

@@ -71,9 +71,7 @@ def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, netwo
         assert (again / name).read_bytes() == (out / name).read_bytes(), name
 
 
-def test_with_depth_by_a_network_the_room_tells_where_the_photo_was_taken(
-    tmp_path, photo, monkeypatch
-):
+def test_network_depth_places_the_photo_in_its_room(tmp_path, photo, monkeypatch):
     monkeypatch.setattr(one_photo, "depth_model", lambda name: KnowsTheRoom())
     chosen = Parameters(depth_model="fake:room", capture={"fov_deg": str(FOV_DEG)})
     scan = open_prepared(photo, tmp_path / "OUT", chosen)

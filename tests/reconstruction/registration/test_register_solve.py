@@ -86,7 +86,7 @@ def wall(x: float, count: int = 60):
     return points, np.tile([1.0, 0.0, 0.0], (count, 1))
 
 
-def test_looks_at_a_wall_from_both_sides_of_a_cell_s_edge_stay_together():
+def test_patches_of_a_wall_at_a_cell_edge_share_a_surfel():
     """0.099 and 0.101 lie in two cells of 10 cm; they are one wall."""
     points = np.concatenate([wall(0.099)[0], wall(0.101)[0]])
     points[60:, 1:] = points[:60, 1:]

@@ -33,7 +33,7 @@ def test_a_box_on_a_table_begins_at_its_top():
         assert [one.object_id for one in cleared] == [one.object_id for one in order]
 
 
-def test_two_cabinets_that_share_a_column_part_and_the_longer_gives_way():
+def test_longer_of_two_overlapping_cabinets_gives_way():
     short = _put(1, "cabinet", (0, 0, 0), (0.48, 0.8, 0.8))
     long = _put(2, "cabinet", (0, 0.72, 0), (0.48, 2.4, 0.8))
     first, second = clear_overlaps([short, long], 0.08)
@@ -57,7 +57,7 @@ def test_what_is_as_small_as_it_may_be_leaves_it_to_the_other():
     assert collisions([first, second]) == []
 
 
-def test_a_tucked_chair_a_deep_overlap_and_runs_of_one_object_stay():
+def test_tucked_chairs_deep_overlaps_and_own_runs_stay():
     table = _put(1, "dining_table", (0, 0, 0), (0.8, 1.6, 0.72))
     chair = _put(2, "chair", (0.72, 0.4, 0), (1.2, 0.88, 0.88))
     deep = _put(3, "box", (2.0, 2.0, 0), (2.4, 2.4, 0.4))

@@ -45,7 +45,7 @@ def test_the_turn_that_is_asked_for_is_taken(turns):
     assert np.abs(placed.center_m - one.center_m)[:2].max() < 0.6
 
 
-def test_an_object_without_cells_keeps_its_place_and_stands_where_it_stood():
+def test_object_without_cells_keeps_its_place():
     grid, found = found_object("chair")
     no_cells = np.zeros((0, 3), np.int32)
     one = ObjectInstance(4, 5, found.center_m, found.size_m, 90.0, no_cells, 0.5)
@@ -57,7 +57,7 @@ def test_an_object_without_cells_keeps_its_place_and_stands_where_it_stood():
     assert fit_template(grid, one, "cells").size_m == pytest.approx(one.size_m)
 
 
-def test_what_is_built_from_cells_takes_their_box_along_its_own_axes():
+def test_object_of_own_cells_takes_their_box():
     grid, one = found_object("desk", 1)
     placed = fit_template(grid, one, "cells", 1)
     low, high = one.cells.min(axis=0), one.cells.max(axis=0) + 1

@@ -49,7 +49,7 @@ PLACEMENTS = st.lists(
 
 @settings(max_examples=40, deadline=None)
 @given(PLACEMENTS, st.sampled_from([ROOM, ELL, CUT]))
-def test_whatever_was_matched_nothing_collides_and_nothing_lies_outside(rows, room):
+def test_settled_placements_neither_collide_nor_lie_outside(rows, room):
     placed = [
         put(number, name, x, y, z, turns) for number, (name, x, y, z, turns) in enumerate(rows, 1)
     ]
@@ -67,7 +67,7 @@ def test_what_lies_within_and_apart_stays_as_it_is(room):
         np.testing.assert_allclose(box_m(after), box_m(before), atol=1e-4)
 
 
-def test_a_chair_under_its_table_stays_and_one_through_its_top_is_moved_off():
+def test_tucked_chair_stays_one_through_the_top_moves():
     table = put(1, "dining_table", 2.0, 1.5)
     tucked = put(2, "chair", 2.4, 1.5, turns=2)  # Its back stands before the top.
     assert box_m(settle([table, tucked], EMPTY)[1]) == pytest.approx(box_m(tucked))
@@ -87,7 +87,7 @@ def test_a_picture_that_lies_in_the_wall_is_moved_onto_it():
     np.testing.assert_allclose(inside.size_m, picture.size_m)
 
 
-def test_what_reaches_into_a_wall_is_cut_and_what_may_not_be_smaller_is_moved():
+def test_placements_in_walls_are_cut_or_moved():
     cabinet = within_rooms(put(1, "cabinet", 0.16, 1.0), [ROOM], VOXEL_M)
     assert cabinet is not None
     np.testing.assert_allclose(box_m(cabinet)[:, 0], [0.0, 0.4])
@@ -102,7 +102,7 @@ def test_a_thing_in_the_notch_of_an_l_goes_to_the_nearer_leg():
     assert np.abs(sofa.center_m - [2.05, 2.1, 0.4]).max() <= 0.6
 
 
-def test_a_thing_far_outside_is_left_out_and_one_upstairs_stays_upstairs():
+def test_far_outside_is_left_out_upstairs_stays_upstairs():
     assert within_rooms(put(1, "chair", 6.0, 1.0), [ROOM], VOXEL_M) is None
     upper = Layout(ROOM.floor_polygon_m, 2.4, floor_z_m=2.8)
     bed = within_rooms(put(1, "cabinet", 1.0, 1.0, z=2.72), [ROOM, upper], VOXEL_M)

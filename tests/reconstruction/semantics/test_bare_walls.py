@@ -120,7 +120,7 @@ def test_unseen_parts_of_a_seen_shell_are_completed_and_marked():
     assert np.array_equal(again.labels, found.labels)
 
 
-def test_what_was_carved_from_a_wall_is_closed_and_windows_are_not():
+def test_carved_wall_is_closed_windows_stay_open():
     whole = labelled_room()
     labels = whole.labels.copy()
     small, window = box((-1, 0), (5, 10), (5, 10)), box((-1, 0), (14, 28), (10, 25))

@@ -63,7 +63,7 @@ def test_what_was_seen_stays_though_the_network_calls_all_empty(scanned):
     assert np.array_equal(result.source, base.source)
 
 
-def test_free_stays_free_and_far_stays_unseen_though_it_calls_all_solid(scanned):
+def test_free_and_far_cells_stay_if_network_says_solid(scanned):
     grid, evidence, _ = scanned
     base = GeometricLabeller().label(grid, evidence)
     result = labelled(scanned, always(3), reach_cells=2, hint_share=0.0)
@@ -141,7 +141,7 @@ def test_the_shipped_weights_name_a_small_room(scanned):
     assert np.array_equal(result.confidence, again.confidence)
 
 
-def test_surface_is_kept_and_other_cells_are_solid_where_that_is_likelier():
+def test_surface_stays_and_likelier_solid_cells_are_filled():
     chance = np.full((12, 4, 1, 1), 0.05, np.float32)
     chance[0] = np.array([0.9, 0.45, 0.55, 0.9])[:, None, None]
     chance[3], chance[8] = 0.08, 0.06
@@ -153,7 +153,7 @@ def test_it_is_found_by_name():
     assert isinstance(labeller("completion"), CompletionLabeller)
 
 
-def test_votes_decide_where_they_agree_and_the_network_where_they_do_not(scanned):
+def test_agreeing_votes_decide_else_the_network(scanned):
     grid, evidence, _ = scanned
     chairs, split = np.zeros_like(evidence.votes), np.zeros_like(evidence.votes)
     chairs[grid.occupied, 5] = 9
@@ -166,7 +166,7 @@ def test_votes_decide_where_they_agree_and_the_network_where_they_do_not(scanned
         assert (result.labels[things] == kind).all()
 
 
-def test_auto_takes_the_network_for_measured_depth_in_cells_of_the_size_that_it_learnt(scanned):
+def test_auto_takes_network_for_measured_depth_at_its_cell_size(scanned):
     evidence = scanned[1]
     assert choose_labeller(evidence, from_photos=False) == "completion"
     assert choose_labeller(evidence, from_photos=True) == "geometric"

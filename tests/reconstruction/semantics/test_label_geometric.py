@@ -68,7 +68,7 @@ def test_a_wardrobe_up_to_man_height_is_furniture():
     assert rooms.label_share(result, truth, 10) > 0.9
 
 
-def test_a_dark_plate_before_a_wall_is_a_screen_and_a_bright_one_is_not():
+def test_dark_plate_before_a_wall_is_a_screen_bright_is_not():
     box = (3.04, 1.4, 1.0, 3.1, 2.5, 1.6)
     dark, truth = labelled(rooms.SmallRoom().add(box, 9, rooms.DARK))
     assert rooms.label_share(dark, truth, 9) > 0.8
@@ -150,7 +150,7 @@ def test_evidence_wins_and_nothing_is_invented(kind, seed):
 
 
 @pytest.mark.parametrize("shift_m", [0.0, 0.012, 0.03, -0.012])
-def test_a_wall_is_one_cell_thick_and_in_the_layer_that_holds_its_matter(shift_m):
+def test_wall_is_one_cell_thick_in_its_matter_layer(shift_m):
     # The wall towards x = 0 stands before or behind the edge of two cells by a shift.
     room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
     if shift_m > 0:

@@ -121,7 +121,7 @@ def test_an_upper_storey_is_labelled_as_if_it_were_alone():
     assert (result.labels[:, :, half:] == alone.labels).mean() > 0.99
 
 
-def test_a_sloped_ceiling_and_the_low_wall_under_it_are_structure():
+def test_sloped_ceiling_and_its_low_wall_are_structure():
     room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
     steps = np.arange(0.0, 1.2, 0.04)
     for start in steps:  # A roof that rises from 1.0 m at x = 0 to 2.2 m at x = 1.2.

@@ -42,7 +42,7 @@ def test_an_easy_chair_beside_boxes_is_one_chair():
     assert rooms.label_share(result, truth, 10) > 0.7
 
 
-def test_the_back_of_an_open_shelf_is_the_shelf_and_a_picture_is_not():
+def test_back_of_an_open_shelf_is_shelf_a_picture_is_not():
     room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
     shelf(room, 0.4, 1.2, 0.0, 0.32)
     room.add((2.2, 0.0, 1.1, 2.8, 0.04, 1.6), 11, rooms.RED)
@@ -59,7 +59,7 @@ def test_a_lit_monitor_on_a_table_is_a_screen():
     assert rooms.label_share(result, truth, 9) > 0.8
 
 
-def test_the_foot_of_a_chair_whose_post_is_unseen_is_of_the_chair():
+def test_foot_of_a_chair_with_unseen_post_is_chair():
     room = rooms.SmallRoom()
     x, y = 1.6, 2.0
     room.add((x - 0.24, y - 0.24, 0.44, x + 0.24, y + 0.24, 0.48), 5, rooms.DARK)

@@ -168,8 +168,8 @@ def _count_losses(volume: BlockVolume, losses: Losses) -> None:
             losses.add("blocks with a state that Bedrock does not tell", count)
     state_at = _states_by_place(volume)
     for entity in volume.block_entities:
-        kept = bedrock_data(state_at.get(entity.block_pos, AIR), (entity.id, entity.nbt))
-        if kept is None and entity.nbt:
+        data = bedrock_data(state_at.get(entity.block_pos, AIR), (entity.id, entity.nbt))
+        if data is None and entity.nbt:
             losses.add(f"data of blocks ({entity.id.removeprefix('minecraft:')})")
     losses.add("entities", len(volume.entities))
 
@@ -233,10 +233,10 @@ def _trim_palette(
     block_entities: list[BlockEntity],
 ) -> BlockVolume:
     """Return the volume with the states of its palette that it has, and air."""
-    kept = sorted({0, *np.unique(states).tolist()})
+    used = sorted({0, *np.unique(states).tolist()})
     lookup = np.zeros(len(palette), np.uint16)
-    lookup[kept] = np.arange(len(kept))
-    names = tuple(palette[number] for number in kept)
+    lookup[used] = np.arange(len(used))
+    names = tuple(palette[number] for number in used)
     return unlabelled_volume(lookup[states], names, corner, block_entities)
 
 

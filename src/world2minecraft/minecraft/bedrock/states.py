@@ -22,7 +22,7 @@ TABLE_FILE = "data/bedrock_states.json.gz"
 
 @dataclass(frozen=True)
 class BedrockTable:
-    """The table as it is kept; see the tool that makes it."""
+    """The table as stored; see the tool that makes it."""
 
     version: int  # what entries of a palette carry
     states: tuple[str, ...]

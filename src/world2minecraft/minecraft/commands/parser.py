@@ -98,7 +98,7 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
 
 @dataclass
 class _BuildState:
-    """What the commands have asked for so far."""
+    """What the commands have built so far."""
 
     path: Path
     losses: Losses

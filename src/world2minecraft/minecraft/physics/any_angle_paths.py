@@ -164,7 +164,7 @@ def _relax_bends(lattice, edges, order, away, bend):
 
 @njit
 def _level_distance(lattice, here, there):
-    """Return how far apart two places are, level."""
+    """Return the horizontal distance between two places."""
     x = lattice.xs_m[lattice.at[here, 0]] - lattice.xs_m[lattice.at[there, 0]]
     z = lattice.zs_m[lattice.at[here, 1]] - lattice.zs_m[lattice.at[there, 1]]
     return np.sqrt(x * x + z * z)

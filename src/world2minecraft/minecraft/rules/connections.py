@@ -303,8 +303,8 @@ def _requested_chests(grid: StateGrid, cells: np.ndarray) -> None:
         asks = (block[other] == block[own]) & (facing[other] == facing[own])
         asks &= (variant[own] == 0) & (variant[other] > 0) & (partner[other] == OPPOSITE[side])
         chosen[asks & (chosen == 0)] = 3 - variant[other][asks & (chosen == 0)]
-    asked = chosen > 0
-    grid.change(cells[asked], chosen[asked][:, None], lambda row: {"type": TYPES[row[0]]})
+    joins = chosen > 0
+    grid.change(cells[joins], chosen[joins][:, None], lambda row: {"type": TYPES[row[0]]})
 
 
 def _partner(grid: StateGrid) -> np.ndarray:
@@ -326,22 +326,22 @@ def _stairs(grid: StateGrid) -> None:
         turned = facing[other]
         bends = (kind[other] == STAIRS) & (top[other] == half) & ((turned - side) % 2 == 1)
         # A stair of the same turn beside it, where the corner would open, keeps it straight.
-        beside = grid.towards(cells, np.where(first == 3, turned + 2, turned) % 4)
-        alike = (kind[beside] == STAIRS) & (facing[beside] == side) & (top[beside] == half)
+        adjacent = grid.towards(cells, np.where(first == 3, turned + 2, turned) % 4)
+        alike = (kind[adjacent] == STAIRS) & (facing[adjacent] == side) & (top[adjacent] == half)
         bends &= ~alike & (shape == 0)
         shape[bends] = first + (turned[bends] != (side[bends] + 3) % 4)
     grid.change(cells, shape[:, None], lambda row: {"shape": SHAPES[row[0]]})
 
 
 def _gates(grid: StateGrid) -> None:
-    """A gate beside a wall hangs lower."""
+    """A gate next to a wall hangs lower."""
     cells = grid.cells_of(GATE)
     if not len(cells):
         return
     walls = np.isin(grid.column("kind"), (WALL, OLD_WALL))
     facing = grid.column("facing")[grid.at(cells)]
-    beside = [walls[grid.towards(cells, (facing + turn) % 4)] for turn in (1, 3)]
-    sunk = (beside[0] | beside[1]).astype(int)
+    adjacent = [walls[grid.towards(cells, (facing + turn) % 4)] for turn in (1, 3)]
+    sunk = (adjacent[0] | adjacent[1]).astype(int)
     grid.change(cells, sunk[:, None], lambda row: {"in_wall": _text(row[0])})
 
 

@@ -44,7 +44,7 @@ class SupportOption(NamedTuple):
     """
 
     directions: tuple[int, ...]
-    asked: str
+    offer: str
     none: bool
 
 
@@ -89,12 +89,12 @@ def support_demands(text: str) -> tuple[Demand, ...]:
 
 
 @lru_cache(maxsize=1 << 18)
-def offers_support(text: str, asked: str, direction: int) -> bool:
-    """Whether a block state gives what is asked of it.
+def offers_support(text: str, offer: str, direction: int) -> bool:
+    """Whether a block state gives what is offer of it.
 
     Args:
         text: the state.
-        asked: a word of the rules, such as ``full`` or ``block:stone``.
+        offer: a word of the rules, such as ``full`` or ``block:stone``.
         direction: where it lies, seen from the block that asks.
 
     Raises:
@@ -102,7 +102,7 @@ def offers_support(text: str, asked: str, direction: int) -> bool:
         KeyError: the rules know no such word.
     """
     state = complete(parse_state(text))
-    word, _, rest = asked.partition(":")
+    word, _, rest = offer.partition(":")
     toward = OPPOSITE[direction]
     bare = state.name.partition(":")[2]
     faces = faces_of(text)
@@ -144,11 +144,11 @@ def is_floodable(text: str) -> bool:
 
 
 def _support_option(need: str, state: BlockState) -> SupportOption:
-    where, _, asked = need.partition(" ")
+    where, _, offer = need.partition(" ")
     where, dash, _ = where.partition("-")
-    if asked.startswith("same:"):
-        asked = f"exact:{state.name}:{asked.removeprefix('same:')}"
-    return SupportOption(_directions(where, state), asked, bool(dash))
+    if offer.startswith("same:"):
+        offer = f"exact:{state.name}:{offer.removeprefix('same:')}"
+    return SupportOption(_directions(where, state), offer, bool(dash))
 
 
 def _directions(where: str, state: BlockState) -> tuple[int, ...]:
@@ -288,17 +288,17 @@ def _is_met(grid: StateGrid, cells: np.ndarray, demand: Demand) -> np.ndarray:
     met = np.zeros(len(cells), bool)
     for option in demand.options:
         answers = [
-            _offers_each(grid, grid.at(cells, way), option.asked, way) for way in option.directions
+            _offers_each(grid, grid.at(cells, way), option.offer, way) for way in option.directions
         ]
         if answers:
             met |= ~np.any(answers, axis=0) if option.none else np.any(answers, axis=0)
     return met
 
 
-def _offers_each(grid: StateGrid, neighbours: np.ndarray, asked: str, way: int) -> np.ndarray:
-    """Return which neighbours, uint16 [N], give what is asked of them, bool [N]."""
+def _offers_each(grid: StateGrid, neighbours: np.ndarray, offer: str, way: int) -> np.ndarray:
+    """Return which neighbours, uint16 [N], offer what is needed, bool [N]."""
     met, index = np.unique(neighbours, return_inverse=True)
-    return np.array([offers_support(grid.palette[one], asked, way) for one in met], bool)[
+    return np.array([offers_support(grid.palette[one], offer, way) for one in met], bool)[
         index.ravel()
     ]
 

@@ -74,18 +74,18 @@ ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """``parts`` int32 [X, Y, Z], 0 for none; each measure float64 [things + 1]."""
+    """Pieces of furniture: ``parts`` int32 [X, Y, Z], 0 for none; measures float64 [pieces + 1]."""
 
     parts: np.ndarray
     measures: dict[str, np.ndarray]
 
 
 def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) -> Pieces:
-    """Return things with their measures.
+    """Return pieces with their measures.
 
     Args:
-        parts: int32 [X, Y, Z], the number of the thing that each block is part of, 0 for none.
-        count: how many things there are.
+        parts: int32 [X, Y, Z], the number of the piece that each block is part of, 0 for none.
+        count: how many pieces there are.
         ground: int16 [X, Y, Z], the layer of the floor under each block.
         scale: blocks per metre.
     """
@@ -110,11 +110,11 @@ def measure_pieces(parts: np.ndarray, count: int, ground: np.ndarray, scale: flo
 
 
 def kind_shares(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
-    """Return the share of each thing's blocks that each kind has, float64 [things + 1, count]."""
-    things = int(parts.max(initial=0)) + 1
+    """Return the share of each piece's blocks that each kind has, float64 [pieces + 1, count]."""
+    pieces = int(parts.max(initial=0)) + 1
     inside = parts > 0
     pairs = parts[inside].astype(np.int64) * count + kinds[inside]
-    counts = np.bincount(pairs, minlength=things * count).reshape(things, count)
+    counts = np.bincount(pairs, minlength=pieces * count).reshape(pieces, count)
     return counts / np.maximum(counts.sum(1, keepdims=True), 1)
 
 
@@ -353,9 +353,9 @@ class Context:
         ground = self.zones.ground
         inside = self.filled & (self.zones.zone == INSIDE) & ~self._are(rules.apart)[kinds]
         sheets, plates = self._are(rules.sheets)[kinds], self._are(rules.plates)[kinds]
-        pieces = segment_pieces(inside, blocks, sheets, plates, ground, scale)
-        self.things = measure_pieces(*pieces, ground, scale)
-        self.shares = kind_shares(self.things.parts, kinds, len(names))
+        parts, count = segment_pieces(inside, blocks, sheets, plates, ground, scale)
+        self.pieces = measure_pieces(parts, count, ground, scale)
+        self.shares = kind_shares(self.pieces.parts, kinds, len(names))
         self._found: dict[str, np.ndarray] = {
             "turned": turned,
             "coarse": np.full(kinds.shape, scale < COARSE_BLOCKS_PER_METRE),
@@ -368,20 +368,22 @@ class Context:
             truth = self.condition(name.removeprefix("not ")).ravel()[at]
             result &= ~truth if name.startswith("not ") else truth
         if rule.spans or rule.shares:
-            parts = self.things.parts.ravel()[at]
+            parts = self.pieces.parts.ravel()[at]
             result &= parts > 0
             for name, span in rule.spans.items():
                 own = name == "at_m"
                 result &= (
-                    _in_span(self._at_m(at), span) if own else self._of_things(name, span)[parts]
+                    _in_span(self._at_m(at), span)
+                    if own
+                    else self._pieces_within(name, span)[parts]
                 )
             for name, span in rule.shares.items():
                 share = self.shares[:, self._are((name,))].sum(1)
                 result &= _in_span(share, span)[parts]
         return result
 
-    def _of_things(self, name: str, span: Span) -> np.ndarray:
-        return _in_span(self.things.measures[name], span)
+    def _pieces_within(self, name: str, span: Span) -> np.ndarray:
+        return _in_span(self.pieces.measures[name], span)
 
     def _at_m(self, at: np.ndarray) -> np.ndarray:
         """Return how high over their floor blocks stand, in metres."""

@@ -95,7 +95,7 @@ class RoomTour:
     volume: BlockVolume
     scene: BlockScene
     room: TourRoom
-    grounds: WalkArea
+    area: WalkArea
     rule: TourRule
     seed: int
     kinds: YawKindCounts
@@ -160,7 +160,7 @@ class RoomTour:
     def _poses(self, wanted: int, rng: np.random.Generator) -> np.ndarray:
         """Return the poses along a walk, float64 [N, 5]: x, y, z of the eye, yaw, pitch."""
         rule = self.rule
-        way = plan_walk(self.grounds, rng)
+        way = plan_walk(self.area, rng)
         spacing_m = len(way) * SAMPLE_M / (OVERSAMPLING * wanted)
         every = max(1, round(float(np.clip(spacing_m, rule.spacing_m, MAX_SPACING_M)) / SAMPLE_M))
         feet, spacing_m = way[int(rng.integers(every)) % len(way) :: every], every * SAMPLE_M
@@ -240,8 +240,8 @@ def plan_views(
     ready, kinds = scene or prepare_scene(volume), YawKindCounts()
     tours = []
     for room in rooms:
-        grounds = WalkArea(graph.part(room.places), solid, volume.corner)
-        tours.append(RoomTour(volume, ready, room, grounds, how, seed, kinds))
+        area = WalkArea(graph.part(room.places), solid, volume.corner)
+        tours.append(RoomTour(volume, ready, room, area, how, seed, kinds))
     _fill(tours, count, progress)
     return [view for tour in tours for view in tour.views()]
 

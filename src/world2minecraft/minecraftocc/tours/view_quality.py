@@ -15,10 +15,8 @@ NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than
 CLOSE_M = 0.95  # or half of it is nearer than this.
 OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
 MIN_CLASSES, MIN_OBJECTS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
-MIN_CELLS, MAX_CLASSES_ASKED = (
-    20,
-    60,
-)  # or few blocks: this, and one more for each in a square metre.
+# or few blocks: this, and one more for each in a square metre, up to the second.
+MIN_CELLS, MIN_CELLS_LIMIT = 20, 60
 FLAT_SHARE = 0.55  # Flat: so much of it is one wall,
 PLANE_SHARE = 0.85  # or so much of it faces one way, whatever hangs there.
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small picture.
@@ -26,7 +24,7 @@ MIN_BRIGHTNESS, MAX_BRIGHTNESS = 0.10, 0.97  # Of 1, the mean of the small pictu
 
 @dataclass(frozen=True, eq=False)
 class ViewQuality:
-    """What N small pictures tell, float64 [N] each."""
+    """What is measured on N small pictures, float64 [N] each."""
 
     near: np.ndarray  # the share of pixels nearer than NEAR_M
     middle_m: np.ndarray  # the median depth
@@ -39,9 +37,9 @@ class ViewQuality:
     bright: np.ndarray  # 0 to 1
 
     def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
-        """Tell which views are worth a picture, bool [N]."""
+        """Return which views are worth a picture, bool [N]."""
         blocked = (self.near > NEAR_SHARE) | (self.middle_m < CLOSE_M)
-        cells = min(MAX_CLASSES_ASKED, MIN_CELLS + blocks_per_metre**2)
+        cells = min(MIN_CELLS_LIMIT, MIN_CELLS + blocks_per_metre**2)
         empty = (self.out > OUT_SHARE) | (self.classes < MIN_CLASSES) | (self.cells < cells)
         if labelled:
             empty |= self.things < MIN_OBJECTS
@@ -53,7 +51,7 @@ class ViewQuality:
 def assess_views(
     scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule
 ) -> ViewQuality:
-    """Return what small pictures tell.
+    """Render views small, and measure them.
 
     Args:
         scene: ``prepare_scene`` of a volume.

@@ -53,35 +53,35 @@ class WalkArea:
         return (self.graph.spacing / self.graph.blocks_per_metre) ** 2
 
 
-def plan_walk(grounds: WalkArea, rng: np.random.Generator) -> np.ndarray:
+def plan_walk(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
     """Return a smooth walk, the feet every ``SAMPLE_M``, float64 [N, 3] in world blocks."""
-    stops = _stops(grounds, rng)
-    feet = [grounds.graph.feet[stops[:1]]]
-    for a, b in pairwise(_in_order(grounds.graph, stops)):
-        path = shortest_path(grounds.graph, a, b, grounds.weights)
+    stops = _stops(area, rng)
+    feet = [area.graph.feet[stops[:1]]]
+    for a, b in pairwise(_in_order(area.graph, stops)):
+        path = shortest_path(area.graph, a, b, area.weights)
         if path is not None:
             feet.append(path.feet[1:])
     if len(feet) == 1:
         return feet[0]
-    first = grounds.graph.feet[[_in_order(grounds.graph, stops)[0]]]
+    first = area.graph.feet[[_in_order(area.graph, stops)[0]]]
     way = np.concatenate([first, *feet[1:]])
-    return _smooth(grounds, _resample(way, SAMPLE_M * grounds.graph.blocks_per_metre))
+    return _smooth(area, _resample(way, SAMPLE_M * area.graph.blocks_per_metre))
 
 
-def _stops(grounds: WalkArea, rng: np.random.Generator) -> np.ndarray:
+def _stops(area: WalkArea, rng: np.random.Generator) -> np.ndarray:
     """Return places of one part that are spread over it; large parts are drawn more often."""
-    sizes = np.bincount(grounds.part).astype(float)
+    sizes = np.bincount(area.part).astype(float)
     sizes[sizes < max(sizes.max() / 4, 2)] = 0  # A nook that no way leads to is left out.
     if not sizes.any():
-        sizes = np.bincount(grounds.part).astype(float)
-    own = np.flatnonzero(grounds.part == rng.choice(len(sizes), p=sizes / sizes.sum()))
-    count = int(np.clip(round(len(own) * grounds.cell_m2 / STOP_M2), *STOPS))
+        sizes = np.bincount(area.part).astype(float)
+    own = np.flatnonzero(area.part == rng.choice(len(sizes), p=sizes / sizes.sum()))
+    count = int(np.clip(round(len(own) * area.cell_m2 / STOP_M2), *STOPS))
     stops = [int(rng.choice(own))]
-    near = distances_m(grounds.graph, stops[0])[own]
+    near = distances_m(area.graph, stops[0])[own]
     while len(stops) < min(count, len(own)):
         worth = np.where(np.isfinite(near), near, 0.0) * rng.uniform(0.5, 1.0, len(own))
         stops.append(int(own[worth.argmax()]))
-        near = np.minimum(near, distances_m(grounds.graph, stops[-1])[own])
+        near = np.minimum(near, distances_m(area.graph, stops[-1])[own])
     return np.array(stops)
 
 
@@ -101,14 +101,14 @@ def _resample(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.column_stack([np.interp(places, along, column) for column in points.T])
 
 
-def _smooth(grounds: WalkArea, feet: np.ndarray) -> np.ndarray:
+def _smooth(area: WalkArea, feet: np.ndarray) -> np.ndarray:
     """Return a way with its corners rounded, but where that leads through something."""
     sigma = SMOOTH_M / SAMPLE_M
     best = gaussian_filter1d(feet, sigma, axis=0, mode="nearest")
     share = np.ones(len(feet))
     for _ in range(ROUNDS):
         mixed = share[:, None] * best + (1 - share[:, None]) * feet
-        free = fits_at(grounds, mixed)
+        free = fits_at(area, mixed)
         if free.all():
             return mixed
         share[~free] = 0
@@ -116,9 +116,9 @@ def _smooth(grounds: WalkArea, feet: np.ndarray) -> np.ndarray:
     return feet
 
 
-def fits_at(grounds: WalkArea, feet: np.ndarray) -> np.ndarray:
+def fits_at(area: WalkArea, feet: np.ndarray) -> np.ndarray:
     """Tell where a body fits over what it would step up on, bool [N]."""
-    scale, blocks = grounds.graph.scale, grounds.graph.blocks_per_metre
+    scale, blocks = area.graph.scale, area.graph.blocks_per_metre
     half = 0.3 * scale - 0.02 * blocks
     heights = (STEP_HEIGHT * scale, HEIGHT * scale)
-    return bodies_fit(grounds.solid, grounds.corner, feet, half, heights)
+    return bodies_fit(area.solid, area.corner, feet, half, heights)

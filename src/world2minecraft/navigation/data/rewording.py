@@ -130,7 +130,8 @@ def reword_set(
     """Return a set with the program's words, as items use them, said again by a model.
 
     Args:
-        navigation_set: the set; walks that have the model's words of a level are not asked about again.
+        navigation_set: the set; walks that have the words of the model of a level are not asked
+            about again.
         ask: the model; several threads may call it.
         model: what it is called.
         jobs: questions at a time.

@@ -168,7 +168,7 @@ class Embodied(nn.Module):
         return SceneEvidence(evidence), depth_logits
 
     def read(self, evidence: SceneEvidence) -> Tensor:
-        """Return logits [B, 12, X, Y, Z] of a box of cells; see ``SceneStream`` for whole scenes."""
+        """Return logits [B, 12, X, Y, Z] of a box of cells; see ``SceneStream`` for scenes."""
         return self.read_cells(self.enter(evidence.readable()))[0]
 
 
