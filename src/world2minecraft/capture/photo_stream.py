@@ -16,9 +16,8 @@ from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Photo
 
-MAX_SIDE_PX = (
-    1024  # Features of a 12-megapixel photo are found as well at this size, 16 times faster.
-)
+# Features of a 12-megapixel photo are found as well at this size, 16 times faster.
+MAX_SIDE_PX = 1024
 
 
 @dataclass(eq=False, repr=False)

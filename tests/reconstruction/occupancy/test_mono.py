@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotat
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_of
+from world2minecraft.minecraftocc.labels.region import RegionRule, label_region
 from world2minecraft.reconstruction.fusion import extract_grid, fuse_views
 from world2minecraft.reconstruction.occupancy import monocular as mono
 from world2minecraft.reconstruction.occupancy import predictor
@@ -44,7 +44,7 @@ def network(tmp_path):
 @pytest.mark.parametrize("pose", POSES)
 def test_the_box_is_the_one_that_training_labels_have(pose):
     for facts in (FACTS, sized((60, 60, 36), 0.08)):
-        expected = region_of(pose, RegionRule(), floor_m=0.0)
+        expected = label_region(pose, RegionRule(), floor_m=0.0)
         found = region_before(pose, facts)
         assert np.array_equal(found.region_to_room, expected.region_to_room)
         assert found.shape == facts.grid_shape and found.voxel_m == facts.voxel_m

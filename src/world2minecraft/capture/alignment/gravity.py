@@ -18,9 +18,8 @@ ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
 MAX_FACING_DEG = 20.0
 MAX_HINT_OFFSET_DEG = 10.0  # ARKit's own world leans by under a degree, one that drifted by a few.
 MIN_FLOOR_M2 = 0.3
-MIN_FLOOR_SHARE = (
-    0.15  # Of the largest level surface: a table top is smaller than that many floors.
-)
+# Of the largest level surface: a table top is smaller than that many floors.
+MIN_FLOOR_SHARE = 0.15
 FLOOR_BAND_M = 0.15  # The first guess of up is off by under 2 degrees, over 4 m.
 PATCH_M = 0.05
 MAX_BELOW_SHARE = 0.02  # Points that reflections and noise put under a true floor.

@@ -20,9 +20,8 @@ from world2minecraft.capture.scale.known_lengths import (
 from world2minecraft.capture.scale.measurements import LevelFace, RoomMeasurements, measure_room
 from world2minecraft.geometry.oriented_points import OrientedPoints
 
-LOG_RANGE = (
-    1.2  # Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
-)
+# Of the natural logarithm, both ways from the guess by the camera: a factor of 3.3.
+LOG_RANGE = 1.2
 STEPS = 961
 MIN_SIGMA = 0.03  # No prior of furniture is better than that.
 OUTLIER_PROBABILITY = 0.02  # Of the knowns: a slip of the tape, or another table was meant.

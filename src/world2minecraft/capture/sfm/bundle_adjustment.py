@@ -128,7 +128,7 @@ def triangulate_and_adjust(
         parameters: the seed and more.
         free: move poses and lenses, not points alone.
         tolerance: adjusting ends when a step gains a smaller share.
-        stated: poses that hold their photos where these see little (see ``anchors``).
+        stated: poses that hold their photos where these see little (see the module).
     """
     unit = pixel_unit(photos)
     gate_px = gate_px * unit

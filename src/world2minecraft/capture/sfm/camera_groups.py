@@ -8,12 +8,10 @@ import numpy as np
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.core.types import Camera
 
-DEFAULT_FOCAL = (
-    0.8  # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
-)
-SAME_FOCAL_TOLERANCE = (
-    0.02  # Focal lengths nearer than that are one lens that breathes with its focus.
-)
+# Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
+DEFAULT_FOCAL = 0.8
+# Focal lengths nearer than that are one lens that breathes with its focus.
+SAME_FOCAL_TOLERANCE = 0.02
 MIN_FOCAL, MAX_FOCAL = 0.3, 2.0  # Focal lengths by the longer side that rooms are taken with.
 MAX_DISTORTION = 0.6  # Terms of distortion; wide phones have 0.3.
 

@@ -28,13 +28,11 @@ MAX_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
 
 Pair = tuple[int, int]
 MAX_TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
-MAX_ERROR_SHARE = (
-    0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.
-)
+# Of the longer side: matches of larger pictures lie that far off, 4 px at least.
+MAX_ERROR_SHARE = 0.004
 PLANAR_CONFIGS = (4, 5, 6)  # COLMAP's numbers of planar, panoramic, and either.
-MAX_ROTATION_STRETCH = (
-    1.1  # A turn has singular values that are all one; a focal length 10 % off shows so.
-)
+# A turn has singular values that are all one; a focal length 10 % off shows so.
+MAX_ROTATION_STRETCH = 1.1
 
 
 def match_descriptors(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Any depth network that the transformers library can run, by its name or from a folder."""
+"""Depth networks of the transformers library, by name or from a folder."""
 
 import numpy as np
 from PIL import Image

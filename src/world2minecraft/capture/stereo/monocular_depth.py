@@ -28,22 +28,17 @@ SURE_TRUST = 255
 MAX_FIT_ERROR = 0.15  # Guess: beyond this a network has not understood the picture.
 MAX_LOCAL_ERROR = 0.05  # Guess: about a voxel at two metres.
 POINT_WEIGHT = 9.0  # A sparse point counts as a sure patch of 3x3 pixels.
-MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is fitted to anything.
+MIN_WEIGHT = 90.0  # Weight in the picture below which nothing is fitted.
 MIN_LOCAL_WEIGHT = 45.0  # Likewise around a hole: five points.
-WINDOW_SHARES = (
-    1 / 4,
-    1 / 8,
-    1 / 16,
-    1 / 32,
-)  # Half widths of what is around, by the picture's width.
+# Half widths of the local windows, as shares of the picture's width.
+WINDOW_SHARES = (1 / 4, 1 / 8, 1 / 16, 1 / 32)
 MAX_LOG_CORRECTION = 0.25  # One wrong point must not outweigh all that is right around it.
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest of what was measured.
 DEPTH_MODELS = Registry(
     "depth_model", {"hf": "world2minecraft.capture.stereo.hf_depth:HuggingFaceDepth"}
 )
-NETWORK_TRUST = (
-    160  # More than half, so that it is registered; less than what several photos confirm.
-)
+# More than half, so that it is registered; less than what several photos confirm.
+NETWORK_TRUST = 160
 WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.
 STAGE = "stereo"
 

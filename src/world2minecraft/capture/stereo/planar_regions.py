@@ -8,17 +8,15 @@ What is guessed here counts only where other photos, guessing alike, agree.
 import numpy as np
 from scipy import ndimage
 
-MAX_LEVEL_RANGE = (
-    20  # Levels between the brightest and darkest of 3x3 pixels that are of one colour.
-)
+# Levels between the brightest and darkest of 3x3 pixels that are of one colour.
+MAX_LEVEL_RANGE = 20
 MIN_PATCH_SHARE = 0.002  # Of the picture: a smaller patch is not worth a plane.
 RIM_PX = 3  # To either side of a patch's outline; windows reach no farther.
 MIN_RIM_PX = 40
 MIN_INLIER_SHARE = 0.5  # Of the rim's depths that must lie on the plane.
 TOLERANCE = 0.02  # Of the depth, likewise: less than what agrees with another photo.
-REFLECTION_SHARE = (
-    0.04  # Of the depth: what is found so far behind the rim's plane is a reflection.
-)
+# Of the depth: what is found so far behind the rim's plane is a reflection.
+REFLECTION_SHARE = 0.04
 RANSAC_TRIALS = 80  # A plane that holds half of the rim is missed once in 40,000.
 
 

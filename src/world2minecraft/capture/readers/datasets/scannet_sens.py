@@ -1,4 +1,4 @@
-"""ScanNet's ``.sens``: one file with the cameras and all frames of a scan, packed one by one.
+"""Reader of ScanNet's ``.sens``: one file with the cameras and all frames of a scan.
 
 The layout, little-endian, of version 4::
 

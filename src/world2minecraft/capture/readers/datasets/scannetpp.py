@@ -1,4 +1,4 @@
-"""ScanNet++, the iPhone's part: ``pose_intrinsic_imu.json``, a video and ``depth.bin``.
+"""Reader of ScanNet++'s iPhone data: ``pose_intrinsic_imu.json``, video, ``depth.bin``.
 
 The JSON has an entry a frame, ``frame_000012``: ``aligned_pose`` (4x4, camera to world, OpenCV
 axes, z up) or ``pose``, and ``intrinsic`` (3x3, of the video's size). Pictures are those of

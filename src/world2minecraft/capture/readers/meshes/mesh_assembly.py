@@ -12,9 +12,8 @@ from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import DamagedFileError, LimitError
 
-MAX_TEXTURE_PIXELS = (
-    48_000_000  # Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
-)
+# Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
+MAX_TEXTURE_PIXELS = 48_000_000
 
 
 @dataclass(frozen=True, eq=False)
