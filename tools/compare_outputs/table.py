@@ -227,7 +227,7 @@ FAST = (
             "dataset export DATA --format nyu --out NYU",
             "dataset export DATA --format occscannet --out OCC",
             "dataset export DATA --format embodied --out EMB",
-            "dataset export DATA --format npz --out NPZ --limit 4",
+            "dataset export DATA --format npz --out NPZ",
             "dataset show DATA --picture look.png",
         ),
         {"DATA": "dataset/DATA"},
@@ -345,6 +345,7 @@ LEFT = (
     ),
 )
 
+_FRAME = "house_0002-r01t000-000000"
 CAPTURES = (
     Step(
         "photos",
@@ -442,7 +443,7 @@ CAPTURES = (
             "rooms scan room --out capture --frames 6 --labels --label-error 0.1"
             " --depth-scale-sigma 0.03 --coverage 0.6",
             "rooms scan --seed 7 --sensor photos --frames 4 --out photos",
-            "rooms scan --seed 7 --sensor video --frames 4 --out video",
+            "rooms scan --seed 7 --sensor video --frames 16 --out video",
             "scan video --no-picture",
         ),
     ),
@@ -458,10 +459,13 @@ CAPTURES = (
     Step(
         "occupy-frame",
         (
-            "reconstruct living --out OUT",
-            "occupy living/frame-000000.depth.png --grid grid.npz --out pred.npz --depth-code mm",
+            f"occupy NYU/{_FRAME}.png --grid NYU/{_FRAME}.bin --out depth.npz",
+            f"occupy NYU/{_FRAME}.png --grid NYU/{_FRAME}.bin --out both.npz"
+            f" --colour NYU/{_FRAME}_color.jpg",
+            f"occupy NYU/{_FRAME}_color.jpg --grid NYU/{_FRAME}.bin --out photo.npz"
+            " --predictor mono",
         ),
-        {"living": Shared("real_captures/nyu_frames/living")},
+        {"NYU": "dataset-exports/NYU/NYUtest"},
     ),
 )
 
@@ -493,7 +497,7 @@ BUILDS = (
             "clean OUT --dry-run",
             "clean OUT",
         ),
-        {"OUT": "kitchen/OUT"},
+        {"OUT": "demo/OUT"},
     ),
     Step(
         "server",
@@ -507,7 +511,7 @@ BUILDS = (
         "builds-of-others",
         (
             "convert a.schem a-world",
-            "convert a-world a.nbt --box -2,60,-2,20,80,20",
+            "convert a-world a.nbt --box 0,64,0,9,72,9",
             "convert a.schem a3.schem --schem-version 3",
             "convert a.schem a.mcstructure --mc-version 1.21.4",
             "convert b.nbt b.litematic",
