@@ -278,7 +278,7 @@ def follow(
         idle_s: seconds without a new frame after which it ends.
         show_s: seconds between two pictures, at least.
         poll_s: seconds between two looks at the folder.
-        progress: told of the stage ``follow``, of unknown length.
+        progress: called with the stage ``follow``, of unknown length.
         wait: sleeps for so many seconds.
         clock: tells the time in seconds.
 

@@ -66,7 +66,7 @@ def reconstruct(
         start: the stage to begin at; None goes on where a run that was cut off stopped.
         until: the last stage to run; all of them where it is None.
         labels: a folder of 2D label images, one a view.
-        progress: told of each step.
+        progress: called at each step.
 
     Raises:
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.

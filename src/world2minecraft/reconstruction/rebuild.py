@@ -61,7 +61,7 @@ def blocks_of(
         source: a run's folder, an occupancy file, or any file or world that holds blocks; the
             last are returned as they are, whatever the parameters.
         parameters: how to build.
-        progress: told of each step.
+        progress: called at each step.
 
     Raises:
         InputError: ``source`` cannot be read.

@@ -37,7 +37,7 @@ class Resumed:
 
 
 def resume_parameters(
-    out: Path, start: str | None, stages: Sequence[str], asked: Parameters
+    out: Path, start: str | None, stages: Sequence[str], requested: Parameters
 ) -> Resumed:
     """Return the parameters with which a run in ``out`` goes on from a stage.
 
@@ -45,15 +45,15 @@ def resume_parameters(
         out: the run's folder, with its manifest; where it has none, all is as asked.
         start: the stage to begin at; None keeps nothing, a name that is none of ``stages`` all.
         stages: all stages, in order.
-        asked: what the user asks for now.
+        requested: what the user asks for now.
 
     Raises:
         UsageError: a setting that kept stages were made with is asked for with another value.
     """
     old = {} if start is None else _manifest(out)
-    kept = stages[: stages.index(start)] if start in stages else stages
-    default, chosen, changed = Parameters().as_json(), asked, []
-    for key, was, now in _differing(old.get("parameters"), asked.as_json(), kept):
+    retained = stages[: stages.index(start)] if start in stages else stages
+    default, chosen, changed = Parameters().as_json(), requested, []
+    for key, was, now in _differing(old.get("parameters"), requested.as_json(), retained):
         if now != _at(default, key):
             raise UsageError(
                 f"--from {start} keeps what was made with {key} {_shown(was)}, not {_shown(now)}; "
@@ -61,25 +61,27 @@ def resume_parameters(
             )
         chosen = _with_value(chosen, key.split("."), was, out)
         changed.append(f"{key}={_shown(was)}")
-    files = [name for name, by in FILES_READ_FIRST_BY.items() if by in kept and name in old]
+    files = [name for name, by in FILES_READ_FIRST_BY.items() if by in retained and name in old]
     return Resumed(chosen, {name: old[name] for name in files}, tuple(changed))
 
 
-def resume_manifest(out: Path, start: str | None, now: Mapping[str, Any], kept: Resumed) -> dict:
+def resume_manifest(
+    out: Path, start: str | None, now: Mapping[str, Any], retained: Resumed
+) -> dict:
     """Return a manifest whose hashes of files are those that kept stages read.
 
     Raises:
         InputError: the capture is another than then. UsageError: other labels are given now.
     """
-    if kept.facts.get("capture", now["capture"]) != now["capture"]:
+    if retained.facts.get("capture", now["capture"]) != now["capture"]:
         raise InputError(
             out, "was made of another capture, or its files have changed since; leave out --from"
         )
-    if now["labels"] is not None and kept.facts.get("labels", now["labels"]) != now["labels"]:
+    if now["labels"] is not None and retained.facts.get("labels", now["labels"]) != now["labels"]:
         raise UsageError(
             f"--from {start} keeps what was made without these --labels; begin with --from fuse"
         )
-    return {**now, **kept.facts}
+    return {**now, **retained.facts}
 
 
 def _manifest(out: Path) -> Mapping[str, Any]:
@@ -93,12 +95,12 @@ def _manifest(out: Path) -> Mapping[str, Any]:
 
 
 def _differing(
-    stated: Any, asked: Mapping[str, Any], kept: Sequence[str]
+    stated: Any, requested: Mapping[str, Any], retained: Sequence[str]
 ) -> Iterator[tuple[str, Any, Any]]:
     """Give the key, the value of then and that of now where kept stages read another one."""
     for key, was in _flat(stated if isinstance(stated, dict) else {}):
-        now = _at(asked, key)
-        if first_reader(key) in kept and now is not ... and now != was:
+        now = _at(requested, key)
+        if first_reader(key) in retained and now is not ... and now != was:
             yield key, was, now
 
 

@@ -105,7 +105,7 @@ def test_the_oldest_go_when_too_much_is_kept(tmp_path, monkeypatch):
     shares = np.random.default_rng(0).integers(0, 256, (4, 4, 12), dtype=np.uint8)
     for number in range(12):
         key = kept.key_of(np.full((2, 2, 3), number, np.uint8))
-        kept.kept(key, lambda: shares, tmp_path)
+        kept.cached_prediction(key, lambda: shares, tmp_path)
     files = list(tmp_path.glob("*/*.npz"))
     assert 0 < len(files) < 12 and sum(path.stat().st_size for path in files) <= 2_000
 
@@ -116,9 +116,9 @@ def test_a_cache_that_is_damaged_or_closed_is_done_without(tmp_path):
     path = tmp_path / key[:2] / f"{key}.npz"
     path.parent.mkdir()
     path.write_bytes(b"damaged")
-    assert kept.kept(key, lambda: shares, tmp_path).all()
+    assert kept.cached_prediction(key, lambda: shares, tmp_path).all()
     (tmp_path / "file").write_text("")
-    assert kept.kept(key, lambda: shares, tmp_path / "file").all()
+    assert kept.cached_prediction(key, lambda: shares, tmp_path / "file").all()
 
 
 def test_shares_are_spread_over_the_picture():

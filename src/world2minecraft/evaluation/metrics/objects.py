@@ -107,9 +107,11 @@ def count_objects(
         )
     ):
         counts[row] = np.bincount(np.array(classes, np.int64), minlength=CLASS_COUNT)
-    asked = [(found[m], true[n]) for m, n in matches if true[n].class_id in TURNED_CLASSES]
-    right = sum(turn_between_deg(_yaw_deg(a), _yaw_deg(b)) <= TURN_TOLERANCE_DEG for a, b in asked)
-    return ObjectCounts(*counts, turns_asked=len(asked), turns_right=int(right))
+    compared = [(found[m], true[n]) for m, n in matches if true[n].class_id in TURNED_CLASSES]
+    right = sum(
+        turn_between_deg(_yaw_deg(a), _yaw_deg(b)) <= TURN_TOLERANCE_DEG for a, b in compared
+    )
+    return ObjectCounts(*counts, turns_asked=len(compared), turns_right=int(right))
 
 
 def match_objects(
@@ -130,8 +132,8 @@ def match_objects(
     # A pair that may not match costs more than all that may, so that most matches come first.
     cost = np.where(allowed, apart_m, distance_m * (len(found) + len(true) + 1) + 1.0)
     rows, columns = linear_sum_assignment(cost)
-    kept = allowed[rows, columns]
-    return sorted(zip(rows[kept].tolist(), columns[kept].tolist(), strict=True))
+    retained = allowed[rows, columns]
+    return sorted(zip(rows[retained].tolist(), columns[retained].tolist(), strict=True))
 
 
 def turn_between_deg(yaw_deg: float, other_deg: float) -> float:

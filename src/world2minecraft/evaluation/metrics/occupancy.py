@@ -147,9 +147,9 @@ def count_occupancy(
         if mask.shape != truth.shape:
             raise ValueError(f"mask must have shape {truth.shape}, not {mask.shape}")
         scored &= mask.astype(bool)
-    said = predicted[scored].astype(np.int64)
-    said[said == UNKNOWN] = 0 if unknown_as == "empty" else CLASS_COUNT - 1
-    pairs = truth[scored].astype(np.int64) * CLASS_COUNT + said
+    predictions = predicted[scored].astype(np.int64)
+    predictions[predictions == UNKNOWN] = 0 if unknown_as == "empty" else CLASS_COUNT - 1
+    pairs = truth[scored].astype(np.int64) * CLASS_COUNT + predictions
     table = np.bincount(pairs, minlength=CLASS_COUNT**2).reshape(CLASS_COUNT, CLASS_COUNT)
     return OccupancyCounts(table)
 

@@ -76,8 +76,8 @@ def _depth_apart(view: View, scan: Scan, scene) -> tuple[float | None, float | N
     both = (measured > 0) & (built > 0)
     if not both.any():
         return None, None
-    apart = np.abs(measured - built)[both]
-    return round(float(np.median(apart)), 4), round(float((apart <= AGREES_M).mean()), 4)
+    difference = np.abs(measured - built)[both]
+    return round(float(np.median(difference)), 4), round(float((difference <= AGREES_M).mean()), 4)
 
 
 def as_data_uri(image: np.ndarray, *, lossless: bool = False) -> str:

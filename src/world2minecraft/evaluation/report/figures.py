@@ -33,8 +33,8 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
     """
     placed = scene.placements
     outside = out_of_rooms(placed, scene.rooms)
-    kept = kept_objects(scene.volume, scene.instances, scene.grid)
-    lost = sorted(set(range(len(scene.instances))) - set(kept))
+    surviving = kept_objects(scene.volume, scene.instances, scene.grid)
+    lost = sorted(set(range(len(scene.instances))) - set(surviving))
     found = {one.class_id for one in scene.instances}
     return {
         "collisions": len(collisions(placed, grid=scene.grid)),
@@ -45,7 +45,7 @@ def layout_facts(scene: FinishedScene) -> dict[str, Any]:
         "floaters_seen": floaters(scene.grid.labels).parts,
         "semantic_integrity": {
             "categories": round(category_integrity(built_categories(scene), found), 4),
-            "objects": round(len(kept) / max(len(scene.instances), 1), 4)
+            "objects": round(len(surviving) / max(len(scene.instances), 1), 4)
             if scene.instances
             else 1.0,
             "lost": [scene.instances[index].id for index in lost],

@@ -77,7 +77,7 @@ def _changes_of(run: Path) -> dict[str, np.ndarray]:
 
 def _options_of(run: Path) -> dict[str, str]:
     try:
-        told = read_json(run / "manifest.json")["parameters"]["capture"]
-        return {str(key): str(value) for key, value in told.items()}
+        stated = read_json(run / "manifest.json")["parameters"]["capture"]
+        return {str(key): str(value) for key, value in stated.items()}
     except (InputError, KeyError, TypeError, AttributeError):
         return {}

@@ -118,7 +118,7 @@ def write_report(
         folder: the run's folder.
         scan: its scan; six of its views are shown.
         truth: a capture's folder with ``truth.npz``, to be scored against.
-        progress: told of each step.
+        progress: called at each step.
 
     Returns:
         What ``report.json`` holds.

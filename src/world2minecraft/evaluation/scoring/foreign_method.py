@@ -73,8 +73,8 @@ def read_foreign(path: Path) -> ForeignResult:
         moved[:3, 3] = whole_m - origin_m
         grid = labels_grid(arrays["labels"], path, voxel_m, whole_m)
         if "confidence" in arrays:
-            told = np.where(grid.labels == UNKNOWN, 0, arrays["confidence"]).astype(np.float16)
-            grid = replace(grid, confidence=told)
+            stated = np.where(grid.labels == UNKNOWN, 0, arrays["confidence"]).astype(np.float16)
+            grid = replace(grid, confidence=stated)
     except (ValueError, TypeError) as error:
         raise DamagedFileError(path, f"is no result ({error})") from error
     objects = tuple(

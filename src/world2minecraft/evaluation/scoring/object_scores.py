@@ -51,8 +51,8 @@ def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> T
 def object_counts(found: Sequence[Any], true: TrueObjects) -> ObjectCounts:
     """Count the objects of a run; nobody asks for those that no ray met."""
     matched = {n for _, n in match_objects(found, true.objects)}
-    asked = [item for n, item in enumerate(true.objects) if bool(true.seen[n]) or n in matched]
-    counts = count_objects(found, asked)
+    expected = [item for n, item in enumerate(true.objects) if bool(true.seen[n]) or n in matched]
+    counts = count_objects(found, expected)
     return counts if true.have_fronts else replace(counts, turns_asked=0, turns_right=0)
 
 

@@ -32,17 +32,17 @@ def opening_facts(
         truth_to_room: 4x4 rigid.
         reached: where rays came.
     """
-    said = _once(_middles(found, np.eye(4)))
+    reported = _once(_middles(found, np.eye(4)))
     there = _once(_middles(true, truth_to_room))
     facts: dict[str, Any] = {}
     sums = np.zeros(3, np.int64)
     for kind in KINDS:
-        places = np.array([middle for k, middle, _ in said if k == kind]).reshape(-1, 3)
+        places = np.array([middle for k, middle, _ in reported if k == kind]).reshape(-1, 3)
         wanted = [(middle, face) for k, middle, face in there if k == kind]
         pairs = _matched(places, np.array([middle for middle, _ in wanted]).reshape(-1, 3))
         matched = {n for _, n in pairs}
-        asked = [n for n, (_, face) in enumerate(wanted) if n in matched or _seen(face, reached)]
-        counts = np.array([len(places), len(asked), len(pairs)])
+        expected = [n for n, (_, face) in enumerate(wanted) if n in matched or _seen(face, reached)]
+        counts = np.array([len(places), len(expected), len(pairs)])
         sums += counts
         if counts.any():
             facts[kind] = _rates(counts)
@@ -82,23 +82,25 @@ def _middles(rooms: Sequence[Layout], to_room: np.ndarray) -> list[tuple[str, np
 
 def _once(rows: list[tuple[str, np.ndarray, Any]]) -> list[tuple[str, np.ndarray, Any]]:
     """Leave out an opening that another room has told already, from the wall's other side."""
-    kept: list[tuple[str, np.ndarray, Any]] = []
+    unique: list[tuple[str, np.ndarray, Any]] = []
     for row in rows:
         if not any(
-            row[0] == k and np.linalg.norm(row[1] - m) < MATCH_DISTANCE_M for k, m, _ in kept
+            row[0] == k and np.linalg.norm(row[1] - m) < MATCH_DISTANCE_M for k, m, _ in unique
         ):
-            kept.append(row)
-    return kept
+            unique.append(row)
+    return unique
 
 
 def _matched(found_m: np.ndarray, true_m: np.ndarray) -> list[tuple[int, int]]:
     """Return the pairs that match: the most, then those with the least distance."""
     if not (len(found_m) and len(true_m)):
         return []
-    apart = np.linalg.norm(found_m[:, None] - true_m[None], axis=2)
+    distance = np.linalg.norm(found_m[:, None] - true_m[None], axis=2)
     far = MATCH_DISTANCE_M * (len(found_m) + len(true_m) + 1)
-    rows, columns = linear_sum_assignment(np.where(apart <= MATCH_DISTANCE_M, apart, far))
-    return [(m, n) for m, n in zip(rows, columns, strict=True) if apart[m, n] <= MATCH_DISTANCE_M]
+    rows, columns = linear_sum_assignment(np.where(distance <= MATCH_DISTANCE_M, distance, far))
+    return [
+        (m, n) for m, n in zip(rows, columns, strict=True) if distance[m, n] <= MATCH_DISTANCE_M
+    ]
 
 
 def _seen(face_m: np.ndarray, reached: Reached) -> bool:

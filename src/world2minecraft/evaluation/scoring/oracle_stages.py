@@ -107,9 +107,9 @@ def _add_view(
     hits = cast_voxels(scene, camera, camera_to_truth)
     rows, columns = np.nonzero(hits.voxel_index >= 0)
     surface, cell = _ends(room, camera, camera_to_truth, hits, rows, columns, occupied)
-    kept = cell >= 0
-    cell, surface = cell[kept], surface[kept]
-    pixels = _pixels(stated, camera, rows[kept], columns[kept])
+    valid = cell >= 0
+    cell, surface = cell[valid], surface[valid]
+    pixels = _pixels(stated, camera, rows[valid], columns[valid])
     # Sums over the cells that this view touches alone: a house has far more.
     touched, at = np.unique(cell, return_inverse=True)
     count = len(touched)
@@ -122,9 +122,9 @@ def _add_view(
             tone = view.colour[..., axis][pixels].astype(np.float64)
             sums.colour[touched, axis] += np.bincount(at, tone, count)
     if view.labels is not None:
-        said = view.labels[pixels].astype(np.int64)
-        voting = (said > 0) & (said < CLASS_COUNT)
-        pairs = at[voting] * CLASS_COUNT + said[voting]
+        voted = view.labels[pixels].astype(np.int64)
+        voting = (voted > 0) & (voted < CLASS_COUNT)
+        pairs = at[voting] * CLASS_COUNT + voted[voting]
         votes = np.bincount(pairs, minlength=count * CLASS_COUNT)
         sums.votes[touched] += votes.reshape(count, CLASS_COUNT).astype(np.float32)
 

@@ -112,8 +112,8 @@ def scale_error(left: Sequence[float]) -> dict[str, float]:
 
 
 def _mean_mm(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> float:
-    apart = [np.linalg.norm(g[:3, 3] - t[:3, 3]) for g, t in zip(given, true, strict=True)]
-    return float(1000 * np.mean(apart))
+    distances = [np.linalg.norm(g[:3, 3] - t[:3, 3]) for g, t in zip(given, true, strict=True)]
+    return float(1000 * np.mean(distances))
 
 
 def _mean_deg(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> float:

@@ -96,7 +96,7 @@ def stage_losses(out: Path, truth: Path, *, progress: Progress = no_progress) ->
     Args:
         out: the folder of a finished run; it is left as it is.
         truth: the folder of the capture with its truth.
-        progress: told of the stage ``truth``.
+        progress: called with the stage ``truth``.
 
     Returns:
         The facts of ``score_run`` by the name of the stage after which truth was put in, in the

@@ -224,8 +224,8 @@ def _size_words(item: Any) -> str:
 
 
 def _count(number: int, name: str) -> str:
-    told = _COUNTS[number] if number < len(_COUNTS) else str(number)
-    return f"{told} {name if number == 1 else plural_of(name)}"
+    number_word = _COUNTS[number] if number < len(_COUNTS) else str(number)
+    return f"{number_word} {name if number == 1 else plural_of(name)}"
 
 
 def plural_of(name: str) -> str:

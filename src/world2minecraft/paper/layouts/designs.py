@@ -60,8 +60,8 @@ def design_of(item: LayoutObject, floor_z_m: float = 0.0) -> Design:
         return known if not category else Design(known.template, category)
     if not category:
         return Design(OWN_CELLS, _hint(item, floor_z_m))
-    told = PlanObject(category, item.center_m, item.size_m, item.yaw_deg)
-    return Design(template_of(told, floor_z_m), category)
+    thing = PlanObject(category, item.center_m, item.size_m, item.yaw_deg)
+    return Design(template_of(thing, floor_z_m), category)
 
 
 def _named(name: str) -> Design | None:

@@ -65,17 +65,17 @@ def read_scene(path: str | Path) -> ComparedScene:
     Raises:
         InputError: the file is missing. DamagedFileError: it is no scene.
     """
-    told = read_json(path, MAX_BYTES)
+    data = read_json(path, MAX_BYTES)
     try:
         return ComparedScene(
-            name=str(told["name"]),
-            method=str(told["method"]),
-            rooms=tuple(layout_from_json(row) for row in told["rooms"]),
-            objects=tuple(_object(row) for row in told["objects"]),
-            unplaced=tuple(str(name) for name in told["unplaced"]),
-            skipped=tuple(str(name) for name in told["skipped"]),
-            is_height_stated=bool(told["is_height_stated"]),
-            collided=None if told["collided"] is None else int(told["collided"]),
+            name=str(data["name"]),
+            method=str(data["method"]),
+            rooms=tuple(layout_from_json(row) for row in data["rooms"]),
+            objects=tuple(_object(row) for row in data["objects"]),
+            unplaced=tuple(str(name) for name in data["unplaced"]),
+            skipped=tuple(str(name) for name in data["skipped"]),
+            is_height_stated=bool(data["is_height_stated"]),
+            collided=None if data["collided"] is None else int(data["collided"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
         raise DamagedFileError(path, f"is no scene of w2m compare ({error})") from error

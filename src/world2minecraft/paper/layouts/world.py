@@ -39,7 +39,7 @@ def build_scene(
         scene: a layout; its boxes are written to ``compared.json`` beside the world.
         out: the folder.
         parameters: cells, scale, style and palette count.
-        progress: told of each step.
+        progress: called at each step.
 
     Raises:
         UsageError: it is a run, which has its world, or it is too large for such cells.
@@ -47,8 +47,8 @@ def build_scene(
     """
     plan = plan_of(scene)
     write_scene(out / SCENE_FILE, scene)
-    told = json.dumps(read_json(out / SCENE_FILE), sort_keys=True)
-    source = {"layout": hashlib.sha256(told.encode()).hexdigest(), "method": scene.method}
+    text = json.dumps(read_json(out / SCENE_FILE), sort_keys=True)
+    source = {"layout": hashlib.sha256(text.encode()).hexdigest(), "method": scene.method}
     built = build_captured(
         plan, out, parameters or Parameters(), source, progress=progress,
         name=f"{PLACE} {scene.method}", as_told=True,

@@ -53,7 +53,7 @@ def build_plan(
         place: the JSON, as ``find_roomplan`` finds it.
         out: the folder of the results.
         parameters: cells, scale, style and palette count.
-        progress: told of each step.
+        progress: called at each step.
         name: what the scene is called.
 
     Raises:
@@ -83,7 +83,7 @@ def build_captured(
         out: the folder of the results.
         parameters: cells, scale, style and palette count.
         source: what the manifest says of where the plan is from.
-        progress: told of each step.
+        progress: called at each step.
         name: what the scene is called.
         as_told: leave furniture that meets other furniture where it is, cut by what is larger.
 
@@ -98,8 +98,8 @@ def build_captured(
     check_writable(out)
     scan = scan_of_plan(plan, name)
     _write_run(out, held, layouts, scan)
-    told = {"program": __version__, "parameters": parameters.as_json(), **source}
-    write_json(out / "manifest.json", told)
+    manifest = {"program": __version__, "parameters": parameters.as_json(), **source}
+    write_json(out / "manifest.json", manifest)
     progress("plan", 1, 1)
     run_stage("build", out, parameters, progress)
     return PlanWorld(scan, layouts, len(held.instances))

@@ -40,7 +40,7 @@ class LaidPlan:
 
     plan: CapturedPlan
     fit: float
-    told: str
+    note: str
 
 
 def laid_plan(plan: CapturedPlan, evidence: FusedEvidence) -> LaidPlan:
@@ -54,8 +54,8 @@ def laid_plan(plan: CapturedPlan, evidence: FusedEvidence) -> LaidPlan:
     if same is not None:
         fit = fit_of(same, evidence, upright)
         if fit >= SAME_FIT:
-            told = f"the plan shares the scan's frame; {fit:.0%} of its walls meet the scan"
-            return LaidPlan(same, fit, told)
+            note = f"the plan shares the scan's frame; {fit:.0%} of its walls meet the scan"
+            return LaidPlan(same, fit, note)
     return _laid_on_walls(straightened(plan), evidence, upright)
 
 
@@ -133,8 +133,8 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
             rivals.append(place)
     laid = [moved_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
     if len(laid) == 1:
-        told = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
-        return LaidPlan(laid[0], rivals[0][0], told)
+        note = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
+        return LaidPlan(laid[0], rivals[0][0], note)
     inner = [furniture_fit(one, evidence) for one in laid]
     order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
     first, second = order[:2]
@@ -145,8 +145,8 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
             "from one walk, so that they share one frame"
         )
     fit = rivals[first][0]
-    told = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
-    return LaidPlan(laid[first], fit, told)
+    note = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
+    return LaidPlan(laid[first], fit, note)
 
 
 def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:

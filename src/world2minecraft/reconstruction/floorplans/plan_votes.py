@@ -53,11 +53,11 @@ def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
         _vote_for_objects(points, room, label, weight)
         _vote_for_openings(points, room, label, weight)
     votes = evidence.votes.astype(np.float32)
-    said = label > 0
-    at = tuple(cells[said].T)
+    named = label > 0
+    at = tuple(cells[named].T)
     own = votes[at].sum(axis=1)
-    added = np.zeros((int(said.sum()), CLASS_COUNT), np.float32)
-    added[np.arange(len(added)), label[said]] = weight[said] * (1 + PLAN_SHARE * own)
+    added = np.zeros((int(named.sum()), CLASS_COUNT), np.float32)
+    added[np.arange(len(added)), label[named]] = weight[named] * (1 + PLAN_SHARE * own)
     votes[at] += added
     return replace(evidence, votes=np.minimum(votes, np.finfo(np.float16).max).astype(np.float16))
 
@@ -151,9 +151,9 @@ def _on_wall(opening: Opening, layout: Layout) -> Opening | None:
 
 def _meet(one: Opening, other: Opening) -> bool:
     """Whether two openings lie in the same place of a wall."""
-    apart = np.linalg.norm((one.start_m + one.end_m) / 2 - (other.start_m + other.end_m) / 2)
+    distance = np.linalg.norm((one.start_m + one.end_m) / 2 - (other.start_m + other.end_m) / 2)
     reach = np.linalg.norm(one.end_m - one.start_m) + np.linalg.norm(other.end_m - other.start_m)
-    return bool(apart < reach / 2)
+    return bool(distance < reach / 2)
 
 
 def voted_by_plan(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, tuple[str, ...]]:
@@ -163,7 +163,7 @@ def voted_by_plan(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, t
         InputError: the file is no plan. CaptureError: the plan is of another room.
     """
     laid = _laid(plan, evidence)
-    return plan_votes(evidence, laid.plan), (laid.told,)
+    return plan_votes(evidence, laid.plan), (laid.note,)
 
 
 def add_plan_openings(folder: Path, plan: Path) -> None:

@@ -111,7 +111,7 @@ def occupied_features(
 
     Log-odds are in units of 6, hits logarithmic in units of 8; ``share`` is the part of the votes
     that the label has, ``same_class`` and ``occupied_around`` the parts of the 26 neighbours,
-    ``said`` the log-odds of the labeller's own confidence.
+    ``reported`` the log-odds of the labeller's own confidence.
     """
     if evidence.log_odds.shape != grid.shape:
         raise ValueError(f"evidence {evidence.log_odds.shape} and grid {grid.shape} differ")
@@ -121,7 +121,7 @@ def occupied_features(
     share = votes[np.arange(len(labels)), labels] / np.maximum(total, 1e-9) * (total > 0)
     around, same = _around(grid, cells)
     own = np.clip(grid.confidence[cells].astype(np.float64), LEAST, MOST)
-    said = np.log(own / (1 - own)) * uses_said
+    reported = np.log(own / (1 - own)) * uses_said
     return np.column_stack(
         [
             np.clip(evidence.log_odds[cells].astype(np.float64), -6, 6) / 6,
@@ -131,7 +131,7 @@ def occupied_features(
             share**2,
             same,
             around,
-            said,
+            reported,
         ]
     )
 
@@ -139,15 +139,15 @@ def occupied_features(
 def free_features(grid: OccupancyGrid, evidence: FusedEvidence, cells: np.ndarray) -> np.ndarray:
     """Return float64 [N, 6], the ``FREE_FEATURES`` of chosen cells bool [X, Y, Z]."""
     box = np.ones((3, 3, 3), bool)
-    beside = np.asarray(ndimage.binary_dilation(grid.occupied, box), bool)
-    two_off = np.asarray(ndimage.binary_dilation(beside, box), bool) & ~beside
+    adjacent = np.asarray(ndimage.binary_dilation(grid.occupied, box), bool)
+    two_off = np.asarray(ndimage.binary_dilation(adjacent, box), bool) & ~adjacent
     unknown = np.asarray(ndimage.binary_dilation(grid.labels == UNKNOWN, box), bool)
     return np.column_stack(
         [
             np.ones(np.count_nonzero(cells)),
             np.clip(evidence.log_odds[cells].astype(np.float64), -6, 6) / 6,
             evidence.hits[cells] > 0,
-            beside[cells],
+            adjacent[cells],
             two_off[cells],
             unknown[cells],
         ]

@@ -157,14 +157,14 @@ def _joined_plane(i, j, k, f, record, faces, voxel_m, rules: SurfaceRules, plane
         other = faces[record[a, b, c], f]
         if other[0] <= 0:
             continue
-        apart, length = 0.0, 0.0
+        distance, length = 0.0, 0.0
         for m in range(3):
             shift = step * voxel_m if m == axis else 0.0
             normal = own[4 + m] + other[4 + m]
-            apart += (other[1 + m] / other[0] + shift - own[1 + m] / own[0]) * normal
+            distance += (other[1 + m] / other[0] + shift - own[1 + m] / own[0]) * normal
             length += normal * normal
         sigma = max(own[7] / own[0], other[7] / other[0])
-        if abs(apart) < (rules.merge_m + rules.merge_sigmas * sigma) * np.sqrt(length):
+        if abs(distance) < (rules.merge_m + rules.merge_sigmas * sigma) * np.sqrt(length):
             weight += other[0]
             for m in range(6):
                 plane[m] += other[1 + m]

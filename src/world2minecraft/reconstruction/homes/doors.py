@@ -52,9 +52,9 @@ def doorways_of(run: Run) -> tuple[Doorway, ...]:
 
 
 def _is_same(one: Doorway, other: Doorway) -> bool:
-    apart = np.abs(np.array(one.middle_m) - other.middle_m).max()
+    distance = np.abs(np.array(one.middle_m) - other.middle_m).max()
     level = abs(one.floor_z_m - other.floor_z_m) < 1.0
-    return bool(apart < SAME_PLACE_M) and one.outward == other.outward and level
+    return bool(distance < SAME_PLACE_M) and one.outward == other.outward and level
 
 
 def _of_opening(opening: Opening, layout: Layout) -> Doorway | None:

@@ -89,7 +89,7 @@ def join(
         out: the folder of the results.
         parameters: how the world is built.
         places: where runs stand, each ``NAME=X,Y,TURNS``; the others find their doors.
-        progress: told of each step.
+        progress: called at each step.
 
     Returns:
         what a scan would say of the whole; it has no views.
@@ -124,7 +124,7 @@ def _scan_of(home: Home, placed: Placed) -> Scan:
         room_size_m=home.size_m,
         frames_used=(),
         source="joined",
-        notes=(*placed.told, *home.told),
+        notes=(*placed.lines, *home.lines),
         name=home.run.name.replace("_", " "),
     )
 

@@ -32,7 +32,7 @@ class Home:
 
     run: Run
     size_m: np.ndarray
-    told: tuple[str, ...]
+    lines: tuple[str, ...]
 
 
 def merged(placed: Placed, name: str = "") -> Home:
@@ -63,11 +63,11 @@ def merged(placed: Placed, name: str = "") -> Home:
     high = np.max([layout.floor_polygon_m.max(axis=0) for layout in layouts], axis=0)
     top = max(layout.floor_z_m + layout.wall_height_m for layout in layouts)
     count = len(placed.doors)
-    told = [f"{count} door{'s' * (count != 1)} between the rooms stand open"]
+    lines = [f"{count} door{'s' * (count != 1)} between the rooms stand open"]
     if dropped:
-        told.append(f"{dropped} objects that were seen through doors are those of the next room")
+        lines.append(f"{dropped} objects that were seen through doors are those of the next room")
     run = Run(name, cells.grid(instances), instances, placements, layouts)
-    return Home(run, np.round(np.array([*high, top]), 6), tuple(told))
+    return Home(run, np.round(np.array([*high, top]), 6), tuple(lines))
 
 
 def _room_name(run: Run, name: str) -> str:
@@ -233,18 +233,18 @@ def _objects(
     placements: list[Placement] = []
     dropped = 0
     for run, offset in zip(runs, offsets, strict=False):
-        kept: set[int] = set()
+        retained: set[int] = set()
         for one in run.instances:
             number = one.id + offset
             if left[number] < KEPT_SHARE * max(len(one.cells), 1):
                 dropped += 1
                 continue
-            kept.add(one.id)
+            retained.add(one.id)
             start, end = np.searchsorted(owners, [number, number + 1])
             instances.append(replace(one, id=number, cells=cells[start:end]))
         placements += [
             replace(one, object_id=one.object_id + offset)
             for one in run.placements
-            if one.object_id in kept
+            if one.object_id in retained
         ]
     return tuple(instances), tuple(placements), dropped

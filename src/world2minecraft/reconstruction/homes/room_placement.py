@@ -106,8 +106,8 @@ def fits(run: Run, placed: Sequence[Run]) -> list[Fit]:
 
 
 def _is_near(one: Move, other: Move) -> bool:
-    apart = np.abs(np.array(one.cells) - other.cells).max()
-    return one.quarter_turns == other.quarter_turns and apart < NEAR_CELLS
+    distance = np.abs(np.array(one.cells) - other.cells).max()
+    return one.quarter_turns == other.quarter_turns and distance < NEAR_CELLS
 
 
 def _alike(own: Doorway, theirs: Doorway) -> bool:
@@ -185,9 +185,9 @@ def _score(
 
 
 def _meet(door: Doorway, other: Doorway) -> bool:
-    apart = np.abs(np.array(door.middle_m) - other.middle_m).max()
+    distance = np.abs(np.array(door.middle_m) - other.middle_m).max()
     opposite = (door.outward - other.outward) % 4 == 2
-    return bool(other.sure and opposite and apart <= 0.4 and _alike(door, other))
+    return bool(other.sure and opposite and distance <= 0.4 and _alike(door, other))
 
 
 def agreement(one: Known, other: Known, wall: tuple[int, int] | None = None) -> tuple[int, float]:
@@ -252,7 +252,7 @@ class Placed:
 
     runs: tuple[Run, ...]
     moves: tuple[Move, ...]
-    told: tuple[str, ...]
+    lines: tuple[str, ...]
     doors: tuple[tuple[Doorway, Doorway], ...]
 
 
@@ -269,8 +269,8 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     hand = dict(by_hand or {})
     first = runs[0].name
     moves: dict[str, Move] = {first: hand.get(first, Move())}
-    told = {run.name: f"{run.name} stands where it was put by hand" for run in runs}
-    told[first] = f"{first} stands where it was scanned" if first not in hand else told[first]
+    lines = {run.name: f"{run.name} stands where it was put by hand" for run in runs}
+    lines[first] = f"{first} stands where it was scanned" if first not in hand else lines[first]
     moves |= {run.name: hand[run.name] for run in runs if run.name in hand}
     left = [run for run in runs if run.name not in moves]
     met: list[tuple[Doorway, Doorway]] = []
@@ -283,7 +283,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
         best = max(sure, key=lambda name: (options[name][0].score, -_index(runs, name)))
         fit = options[best][0]
         moves[best] = fit.move
-        told[best] = (
+        lines[best] = (
             f"{best} was set beside {fit.beside} at a door {fit.doors[0].width_m:.2f} m wide"
         )
         met.append(fit.doors)
@@ -294,7 +294,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     return Placed(
         placed,
         tuple(moves[run.name] for run in runs),
-        tuple(told[run.name] for run in runs),
+        tuple(lines[run.name] for run in runs),
         tuple(met),
     )
 
@@ -386,9 +386,9 @@ def doors_between(placed: Sequence[Run]) -> list[tuple[Doorway, Doorway]]:
     for number, own in enumerate(doors):
         for others in doors[number + 1 :]:
             for mine, theirs in product(own, others):
-                apart = np.array(theirs.middle_m) - mine.middle_m
+                distance = np.array(theirs.middle_m) - mine.middle_m
                 opposite = (mine.outward - theirs.outward) % 4 == 2
-                if opposite and np.abs(apart).max() < MET_M:
+                if opposite and np.abs(distance).max() < MET_M:
                     pairs.append((mine, theirs))
     return pairs
 

@@ -1,4 +1,4 @@
-"""Small things side by side on one support, told apart by their colours: a ball beside bricks.
+"""Split small things side by side on one support by their colours: a ball beside bricks.
 
 What lies over or under another colour is part of the same thing: a lamp's foot and shade, a pot
 and its leaves, the books of a pile.
@@ -73,9 +73,9 @@ def _colour_patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
     _, number = connected_components(graph, directed=False)
     number = number.reshape(own.shape)
     counts = np.bincount(number[own], minlength=int(number.max()) + 1)
-    kept = np.flatnonzero(counts >= MIN_CELLS)
+    retained = np.flatnonzero(counts >= MIN_CELLS)
     place = np.zeros(len(counts), np.int32)
-    place[kept] = np.arange(1, len(kept) + 1)
+    place[retained] = np.arange(1, len(retained) + 1)
     return np.where(own, place[number], 0).astype(np.int32)
 
 

@@ -1,4 +1,4 @@
-"""Small things that touch, told apart by what holds them: the floor, a table, a cupboard, a wall.
+"""Split small things that touch by what supports them: the floor, a table, a cupboard, a wall.
 
 A lamp on a sideboard and the plant on the floor beside it are one cluster of ``objs``; what they
 stand on is not one.
@@ -96,14 +96,14 @@ def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Local
     """
     sheet = own & plan[:, :, None]
     around = ndimage.binary_dilation(plan, PLAN_BOX, iterations=AROUND_CELLS)
-    beside = own & (around & stood)[:, :, None]
+    adjacent = own & (around & stood)[:, :, None]
     if np.count_nonzero(sheet) < MIN_SHEET_CELLS:
         return False
-    if not beside.any():
+    if not adjacent.any():
         return True
-    tops = [np.flatnonzero(cells.any(axis=(0, 1)))[-1] for cells in (sheet, beside)]
+    tops = [np.flatnonzero(cells.any(axis=(0, 1)))[-1] for cells in (sheet, adjacent)]
     above_m = float(tops[0] - tops[1]) * scene.voxel_m
-    difference = np.median(scene.colour[sheet], axis=0) - np.median(scene.colour[beside], axis=0)
+    difference = np.median(scene.colour[sheet], axis=0) - np.median(scene.colour[adjacent], axis=0)
     unlike = float(np.linalg.norm(difference)) >= MIN_COLOUR_DIFFERENCE
     return above_m >= MIN_CLEAR_RISE_M or (unlike and above_m >= MIN_RISE_M)
 
@@ -172,14 +172,14 @@ def _floating_shades(
 ) -> list[np.ndarray]:
     """Return what floats before a curtain, bool [X, Y, Z] each: a lamp whose post is unseen."""
     pieces, count = label_components(rest)
-    beside = ndimage.binary_dilation(stood, np.ones((3, 3), np.bool_))[:, :, None]
+    adjacent = ndimage.binary_dilation(stood, np.ones((3, 3), np.bool_))[:, :, None]
     curtain = np.median(scene.colour[hung], axis=0)
     found = [pieces == piece for piece in range(1, count + 1)]
     return [
         piece
         for piece in found
         if np.count_nonzero(piece) >= MIN_SHADE_CELLS
-        and not (piece & beside).any()
+        and not (piece & adjacent).any()
         and np.linalg.norm(np.median(scene.colour[piece], axis=0) - curtain)
         >= MIN_COLOUR_DIFFERENCE
     ]
@@ -201,8 +201,8 @@ def _supports(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: in
             continue
         near = (slice(max(x - 1, 0), x + 2), slice(max(y - 1, 0), y + 2))
         below = holder[x, y, max(first - UNDER_CELLS, 0) : first]
-        beside = holder[near][:, :, max(first - 1, 0) : first + 1]
-        for held in (below[::-1], np.sort(beside.reshape(-1))[::-1]):
+        adjacent = holder[near][:, :, max(first - 1, 0) : first + 1]
+        for held in (below[::-1], np.sort(adjacent.reshape(-1))[::-1]):
             known = held[held >= 0]
             if len(known):
                 support[x, y] = known[0]
@@ -227,5 +227,5 @@ def _merge_small_parts(parts: np.ndarray) -> np.ndarray:
     if not keep.any():
         return np.ones(len(parts), np.int32)
     largest = int(np.where(keep, counts, 0).argmax())
-    kept = np.where(keep[parts], parts, largest)
-    return (np.unique(kept, return_inverse=True)[1] + 1).astype(np.int32)
+    merged = np.where(keep[parts], parts, largest)
+    return (np.unique(merged, return_inverse=True)[1] + 1).astype(np.int32)

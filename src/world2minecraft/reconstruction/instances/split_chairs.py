@@ -1,4 +1,4 @@
-"""Chairs that touch, told apart: whole chairs are laid over a voxels that is too wide for one."""
+"""Split chairs that touch: whole chairs are laid over cells that are too wide for one."""
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -72,8 +72,8 @@ def merge_chair_backs(
         if box[0][2] >= floor + MAX_SEAT_HEIGHT_M / grid.voxel_m:
             backs.append(number)
     for number in backs:
-        apart = {n: _gap_cells(pieces[n][1], pieces[number][1]) for n in seats if n != number}
-        near = {one: gap for one, gap in apart.items() if gap is not None}
+        distances = {n: _gap_cells(pieces[n][1], pieces[number][1]) for n in seats if n != number}
+        near = {one: gap for one, gap in distances.items() if gap is not None}
         wide = {one: _joint_width(pieces[one][1], pieces[number][1]) for one in near}
         fitting = [one for one in near if wide[one] <= MAX_CHAIR_M / grid.voxel_m]
         if fitting:
@@ -139,8 +139,8 @@ def _chair_of_cells(
     fits = _fit_chairs(code.copy(), own, floor - int(corner[2]), voxel_m, look)
     if len(fits) < 2 or not _clearly_better(fits, code, own, floor - int(corner[2]), voxel_m):
         return np.zeros(len(cells), np.int32)
-    apart = np.stack([KDTree(fit.cells).query(own)[0] for fit in fits])
-    return np.round(apart, 9).argmin(axis=0).astype(np.int32)
+    distances = np.stack([KDTree(fit.cells).query(own)[0] for fit in fits])
+    return np.round(distances, 9).argmin(axis=0).astype(np.int32)
 
 
 def _crop(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

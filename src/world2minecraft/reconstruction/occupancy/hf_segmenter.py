@@ -90,28 +90,28 @@ class HuggingFaceSemantics:
         try:
             words = self._transformers.AutoTokenizer.from_pretrained(self._model)
             length = getattr(self._config, "task_seq_len", None) or 77
-            told = words([TASK], padding="max_length", max_length=length, truncation=True)
+            encoded = words([TASK], padding="max_length", max_length=length, truncation=True)
         except Exception as error:  # Whatever another library raises on what it cannot read.
             raise InputError(
                 self._model, f"its tokenizer cannot be loaded: {first_line(error)}"
             ) from None
-        tokens = np.array(told["input_ids"]) * np.array(told["attention_mask"])
+        tokens = np.array(encoded["input_ids"]) * np.array(encoded["attention_mask"])
         return {"task_inputs": torch.from_numpy(tokens)}
 
 
 def _kind(model: str, config: Any, transformers: Any) -> Any:
     """Return the class of the library that loads a segmenter."""
-    told = (getattr(config, "architectures", None) or [""])[0]
+    architecture = (getattr(config, "architectures", None) or [""])[0]
     families = transformers.models.auto.modeling_auto
     universal = families.MODEL_FOR_UNIVERSAL_SEGMENTATION_MAPPING_NAMES
     semantic = families.MODEL_FOR_SEMANTIC_SEGMENTATION_MAPPING_NAMES
-    if config.model_type in universal and told in ("", universal[config.model_type]):
+    if config.model_type in universal and architecture in ("", universal[config.model_type]):
         return transformers.AutoModelForUniversalSegmentation
-    if config.model_type in semantic and told in ("", semantic[config.model_type]):
+    if config.model_type in semantic and architecture in ("", semantic[config.model_type]):
         return transformers.AutoModelForSemanticSegmentation
     raise InputError(
         model,
-        f"is a {told or config.model_type}, no segmenter; take one of "
+        f"is a {architecture or config.model_type}, no segmenter; take one of "
         f"{', '.join(sorted({**universal, **semantic}))}",
     )
 

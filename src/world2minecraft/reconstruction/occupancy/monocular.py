@@ -167,14 +167,14 @@ def cell_colours(
     A cell that another hides takes the colour of the nearest one in sight.
     """
     pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
-    asked = occupied & inside
+    requested = occupied & inside
     colour = np.zeros((*region.shape, 3), np.uint8)
-    if not asked.any():
+    if not requested.any():
         return colour
-    u, v = pixels[asked].T
-    first = _first_depth(u, v, depth_m[asked], region.voxel_m, camera)
-    shown = np.zeros_like(asked)
-    shown[asked] = depth_m[asked] <= first[v, u] + HIDDEN_CELLS * region.voxel_m
+    u, v = pixels[requested].T
+    first = _first_depth(u, v, depth_m[requested], region.voxel_m, camera)
+    shown = np.zeros_like(requested)
+    shown[requested] = depth_m[requested] <= first[v, u] + HIDDEN_CELLS * region.voxel_m
     at_px = pixels[shown]
     colour[shown] = picture[at_px[:, 1], at_px[:, 0]]
     nearest = ndimage.distance_transform_edt(~shown, return_distances=False, return_indices=True)

@@ -52,7 +52,9 @@ def key_of(colour: np.ndarray, *states: bytes) -> str:
     return digest.hexdigest()
 
 
-def kept(key: str, ask: Callable[[], np.ndarray], folder: Path | None = None) -> np.ndarray:
+def cached_prediction(
+    key: str, ask: Callable[[], np.ndarray], folder: Path | None = None
+) -> np.ndarray:
     """Return uint8 [h, w, 12] that was kept under a key, or ask for it and keep it.
 
     A cache that cannot be read or written is done without.
@@ -155,7 +157,9 @@ class PixelVoter:
             return np.floor(found * FULL + np.float32(0.5)).astype(np.uint8)
 
         states = (network.name.encode(), network.identity.encode(), matrix.tobytes())
-        return spread(kept(key_of(colour, *states), ask), colour.shape[1], colour.shape[0])
+        return spread(
+            cached_prediction(key_of(colour, *states), ask), colour.shape[1], colour.shape[0]
+        )
 
 
 def spread(shares: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
@@ -184,12 +188,12 @@ class CellVoter:
         result = np.zeros((len(points_m), CLASS_COUNT), np.float32)
         if view.colour is None:
             return result
-        said = self.predictor.look(view, scan_to_room)
-        at_m = apply(invert_rigid(said.grid_to_scan), points_m.astype(np.float64))
-        cells = np.floor(at_m / said.voxel_m).astype(np.int64)
-        held = np.flatnonzero(((cells >= 0) & (cells < said.seen.shape)).all(axis=1))
-        held = held[said.seen[tuple(cells[held].T)]]
-        result[held] = said.probabilities[tuple(cells[held].T)]
+        predicted = self.predictor.look(view, scan_to_room)
+        at_m = apply(invert_rigid(predicted.grid_to_scan), points_m.astype(np.float64))
+        cells = np.floor(at_m / predicted.voxel_m).astype(np.int64)
+        held = np.flatnonzero(((cells >= 0) & (cells < predicted.seen.shape)).all(axis=1))
+        held = held[predicted.seen[tuple(cells[held].T)]]
+        result[held] = predicted.probabilities[tuple(cells[held].T)]
         result[:, 0] = 0
         return result
 

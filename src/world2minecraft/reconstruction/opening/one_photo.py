@@ -69,13 +69,13 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         options = parse_options(chosen.capture)
         pose, size_m = placed(options.eye_height_m, options.pitch_deg)
         views = _bare(judged, pose)
-        told = (
+        note = (
             f"the photo has no depth: its camera is taken to stand {options.eye_height_m:g} m over "
             f"the floor and to look {_way(options.pitch_deg)}; capture.eye_height_m and "
             "capture.pitch_deg tell otherwise"
         )
         room = {"scan_to_room": np.eye(4).tolist(), "size_m": size_m.tolist()}
-        stated |= {"scale_sigma": SIGMA_NONE, "notes": [*judged.notes, told], "room": room}
+        stated |= {"scale_sigma": SIGMA_NONE, "notes": [*judged.notes, note], "room": room}
     for name in ("depth", "trust"):  # Of the same photo with other networks.
         for path in (folder / name).glob("*"):
             path.unlink()

@@ -103,9 +103,9 @@ def without_scale(before: State, after: State) -> State:
     """Return the state ``after`` some passes with the depth as it was ``before`` them."""
     change = after.total - before.total
     change[:, 6] = 0.0
-    kept = Step(change, np.zeros_like(change), after.bend_m)
+    accepted = Step(change, np.zeros_like(change), after.bend_m)
     sigmas = after.sigmas * [1.0, 1.0, 0.0]
-    return replace(_stepped(before, kept), sigmas=sigmas)
+    return replace(_stepped(before, accepted), sigmas=sigmas)
 
 
 def surfels_of(surface: OrientedPoints, cell_m: float, gap_m: float) -> Surfels:
@@ -180,7 +180,7 @@ def _rotation(vector: np.ndarray) -> np.ndarray:
 class Verdict:
     """Whether corrections are kept, and the held-out misfit without and with them."""
 
-    kept: bool
+    accepted: bool
     before_m: float | None
     after_m: float | None
 
@@ -208,7 +208,7 @@ def register(
     Args:
         scan: an aligned scan; its views are read once, depth alone where they can be.
         parameters: see ``RegisterParameters``.
-        progress: told of the stage ``register``.
+        progress: called with the stage ``register``.
     """
     total = len(scan.views) + 1
     most_each = max(MIN_PATCHES_PER_FRAME, MAX_PATCHES // max(1, len(scan.views)))
@@ -246,9 +246,9 @@ def register_surface(
         rigid_m = _misfit_m(rigid.surface, held, chosen)
         if moved.sigmas[2] < chosen.least_scale_sigma or not _fell(rigid_m, after_m):
             moved, after_m = rigid, rigid_m
-    kept = _fell(before_m, after_m)
+    accepted = _fell(before_m, after_m)
     return _registered(
-        surface, moved if kept else still, scan_to_room, Verdict(kept, before_m, after_m)
+        surface, moved if accepted else still, scan_to_room, Verdict(accepted, before_m, after_m)
     )
 
 
@@ -305,7 +305,7 @@ def _facts(state: State, verdict: Verdict) -> dict[str, Any]:
     """Return the figures for ``scan.json``."""
     shift_mm = 1000 * np.linalg.norm(state.total[:, 3:6], axis=1)
     turn_deg = np.degrees(np.linalg.norm(state.total[:, :3], axis=1))
-    scaled = verdict.kept and state.sigmas[2] > 0
+    scaled = verdict.accepted and state.sigmas[2] > 0
     figures = {
         "moved_median_mm": _median(shift_mm),
         "moved_most_mm": float(shift_mm.max(initial=0)),
@@ -317,7 +317,7 @@ def _facts(state: State, verdict: Verdict) -> dict[str, Any]:
     }
     rounded = {name: None if v is None else round(v, 4) for name, v in figures.items()}
     return {
-        "kept": verdict.kept,
+        "kept": verdict.accepted,
         "depth_scaled": bool(scaled),
         "frames": len(state.total),
     } | rounded

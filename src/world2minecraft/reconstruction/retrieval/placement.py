@@ -57,20 +57,20 @@ def tidied(
         matched: the cells of each run that has a template.
         boxes: the first cell and the one past the last of each of these templates.
     """
-    kept = [one for one in crumbs if len(one) >= FEWEST and not _is_hidden(one, boxes)]
+    retained = [one for one in crumbs if len(one) >= FEWEST and not _is_hidden(one, boxes)]
     placed = np.concatenate(matched) if matched else np.zeros((0, 3), np.int32)
     joined = True
     while joined:
         joined = False
-        for m in range(len(kept)):
-            for n in range(m + 1, len(kept)):
-                if _belong(kept[m], kept[n], placed):
-                    kept[m] = np.concatenate([kept[m], kept.pop(n)])
+        for m in range(len(retained)):
+            for n in range(m + 1, len(retained)):
+                if _belong(retained[m], retained[n], placed):
+                    retained[m] = np.concatenate([retained[m], retained.pop(n)])
                     joined = True
                     break
             if joined:
                 break
-    return kept
+    return retained
 
 
 def _is_hidden(cells: np.ndarray, boxes: list[Box]) -> bool:
@@ -179,8 +179,8 @@ def _with_tidy_crumbs(
     crumbs = [_cells_of(part) for part in parts if not part.matches]
     reach = reach_of(templates_of_class(instance.class_id), grid.voxel_m)
     front = parts[0].quarter_turns
-    kept = tidied(crumbs, [_cells_of(part) for part in placed], boxes)
-    return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in kept]
+    retained = tidied(crumbs, [_cells_of(part) for part in placed], boxes)
+    return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in retained]
 
 
 def _cells_of(part: Matched) -> np.ndarray:

@@ -125,8 +125,8 @@ def _sets(choices: Sequence[Choice]) -> list[list[int]]:
 def _same(one: Choice, other: Choice) -> bool:
     if one.placement.template != other.placement.template or not one.offers or not other.offers:
         return False
-    apart = np.abs(one.placement.size_m - other.placement.size_m).max()
-    return apart <= SAME_SIZE_M and _colours_apart(one.colour, other.colour) <= SAME_SET
+    distance = np.abs(one.placement.size_m - other.placement.size_m).max()
+    return distance <= SAME_SIZE_M and _colours_apart(one.colour, other.colour) <= SAME_SET
 
 
 def _colours_apart(one: np.ndarray | None, other: np.ndarray | None) -> float:
@@ -156,8 +156,8 @@ def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> fl
     if colour is None:
         return np.inf
     suited = srgb_to_oklab(np.array(design.suits, np.uint8))
-    apart = min(_colours_apart(colour, one) + _faded(colour, one) for one in suited)
-    return apart + SIZE_COST * far
+    distance = min(_colours_apart(colour, one) + _faded(colour, one) for one in suited)
+    return distance + SIZE_COST * far
 
 
 def _faded(colour: np.ndarray, suited: np.ndarray) -> float:

@@ -224,14 +224,14 @@ class CompletionLabeller:
         cells = base.occupied
         share = voted.reshape(CLASS_COUNT, -1)[1:, origin[cells]]
         share = share / np.maximum(share.sum(axis=0), MIN_CHANCE)
-        said = share + self._from_hint(hint.reshape(-1)[origin[cells]])
+        scores = share + self._from_hint(hint.reshape(-1)[origin[cells]])
         counts = votes.reshape(-1, CLASS_COUNT)[origin[cells], 1:].astype(np.float32).T
         has = counts.any(axis=0)
         shares = counts[:, has] / counts[:, has].sum(axis=0)
         prior = geometric_prior(base.labels[cells][has]).T
-        said[:, has] = shares + prior + self.parameters.beside_votes * share[:, has]
+        scores[:, has] = shares + prior + self.parameters.beside_votes * share[:, has]
         labels, confidence = base.labels.copy(), np.array(base.confidence, np.float32)
-        kinds = said.argmax(axis=0)
+        kinds = scores.argmax(axis=0)
         labels[cells] = kinds + 1
         confidence[cells] = share[kinds, np.arange(len(kinds))]
         labels = smooth_labels(labels, self.parameters.small_cells)
@@ -274,8 +274,8 @@ def hint_of(base: OccupancyGrid, origin: np.ndarray) -> np.ndarray:
         origin: int64 [X, Y, Z], where each cell's surface was seen, from there too.
     """
     hint = np.zeros(base.shape, np.uint8)
-    kept = base.occupied
-    hint.reshape(-1)[origin[kept]] = base.labels[kept]
+    retained = base.occupied
+    hint.reshape(-1)[origin[retained]] = base.labels[retained]
     return hint
 
 

@@ -383,8 +383,8 @@ def _stands_free(
     beyond = dilate(claimed, 2) & left & ~claimed
     count = int(beyond.sum())
     if plate.rim_share >= parameters.box_share:
-        apart = surface.oklab[beyond] - np.median(surface.oklab[claimed], axis=0)
-        count = int((np.linalg.norm(apart, axis=1) <= parameters.same_cloth).sum())
+        difference = surface.oklab[beyond] - np.median(surface.oklab[claimed], axis=0)
+        count = int((np.linalg.norm(difference, axis=1) <= parameters.same_cloth).sum())
     return count <= 0.25 * int(claimed.sum())
 
 

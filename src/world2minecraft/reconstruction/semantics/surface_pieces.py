@@ -58,8 +58,8 @@ def find_pieces(
     columns = wall.sum(axis=2) >= 2
     apart_m = np.full(columns.shape, np.inf)
     if columns.any():
-        apart = cast(np.ndarray, ndimage.distance_transform_edt(~columns))
-        apart_m = apart * surface.voxel_m
+        distance = cast(np.ndarray, ndimage.distance_transform_edt(~columns))
+        apart_m = distance * surface.voxel_m
     pieces = []
     for part, box in enumerate(ndimage.find_objects(parts, count), 1):
         start = np.array([side.start for side in box])

@@ -61,12 +61,12 @@ def identity_classes() -> np.ndarray:
 
 
 def classes_of_label_ids(
-    place: AnyPath, column: str, values: np.ndarray
+    path: AnyPath, column: str, values: np.ndarray
 ) -> tuple[np.ndarray | None, str]:
     """Return uint8 classes of a file's label numbers, and a note on how.
 
     Args:
-        place: the file.
+        path: the file.
         column: what the file calls them.
         values: [N] numbers.
 
@@ -79,7 +79,7 @@ def classes_of_label_ids(
     numbers = np.where((numbers < 0) | (numbers > MAX_LABEL_ID), MAX_LABEL_ID, numbers).astype(
         np.int64
     )
-    map_path = place.parent / f"{place.stem}.classes.json"
+    map_path = path.parent / f"{path.stem}.classes.json"
     if map_path.is_file():
         return _classes_from_map(map_path)[numbers], f"classes are told by {map_path.name}"
     known = numbers[(numbers != MAX_LABEL_ID) & (numbers != UNKNOWN)]

@@ -34,7 +34,7 @@ class MeshPart:
     label: int | np.ndarray = 255
 
 
-def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
+def check_sizes(path: AnyPath, vertices: int, faces: int) -> None:
     """Refuse what is too large. Raises LimitError."""
     for name, count, maximum in (
         ("vertices", vertices, MAX_VERTICES),
@@ -42,21 +42,21 @@ def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
     ):
         if count > maximum:
             raise LimitError(
-                place, f"has {count:,} {name}; at most {maximum:,} are read: export it coarser"
+                path, f"has {count:,} {name}; at most {maximum:,} are read: export it coarser"
             )
 
 
-def join_parts(place: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarray]:
+def join_parts(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndarray]:
     """Return one mesh near the origin, and the float64 [3] that was taken off its places.
 
     Raises:
         DamagedFileError: a place is not finite, a face names no vertex or a picture is damaged.
         LimitError: it is too large.
     """
-    check_sizes(place, sum(len(p.vertices) for p in parts), sum(len(p.faces) for p in parts))
+    check_sizes(path, sum(len(p.vertices) for p in parts), sum(len(p.faces) for p in parts))
     for part in parts:
         if len(part.faces) and not 0 <= part.faces.min() <= part.faces.max() < len(part.vertices):
-            raise DamagedFileError(place, "has faces of vertices that it lacks; export it again")
+            raise DamagedFileError(path, "has faces of vertices that it lacks; export it again")
     vertices = np.concatenate([np.zeros((0, 3)), *(part.vertices for part in parts)])
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = np.concatenate(
@@ -65,12 +65,12 @@ def join_parts(place: AnyPath, parts: Sequence[MeshPart]) -> tuple[Mesh, np.ndar
     good: np.ndarray = np.all(np.isfinite(vertices), axis=1)
     if len(good) and good.mean() < 0.5:
         raise DamagedFileError(
-            place, "has places that are no numbers (NaN, infinity): export it again"
+            path, "has places that are no numbers (NaN, infinity): export it again"
         )
     whole = good[faces].all(axis=1) if len(faces) else np.zeros(0, bool)
     offset = np.floor(np.median(vertices[good], axis=0)) if good.any() else np.zeros(3)
     vertices = np.where(good[:, None], vertices, offset)
-    pixels, sizes, numbers = _pictures(place, parts)
+    pixels, sizes, numbers = _pictures(path, parts)
     image = np.repeat(np.array(numbers, np.int16), [len(p.faces) for p in parts])
     labels = np.concatenate(
         [np.zeros(0, np.uint8), *(np.broadcast_to(p.label, len(p.faces)) for p in parts)]
@@ -103,9 +103,7 @@ def _uv(parts: Sequence[MeshPart]) -> np.ndarray:
     return np.nan_to_num(np.concatenate(uv), posinf=0, neginf=0).astype(np.float32)
 
 
-def _pictures(
-    place: AnyPath, parts: Sequence[MeshPart]
-) -> tuple[np.ndarray, np.ndarray, list[int]]:
+def _pictures(path: AnyPath, parts: Sequence[MeshPart]) -> tuple[np.ndarray, np.ndarray, list[int]]:
     """Return the pixels and the sizes of the distinct pictures, and which one each part has."""
     numbers: list[int] = []
     known: dict[tuple, int] = {}
@@ -115,7 +113,7 @@ def _pictures(
             numbers.append(-1)
             continue
         if part.picture.width * part.picture.height > MAX_PIXELS:
-            raise LimitError(place, "has a picture of over 64 megapixels: make it smaller")
+            raise LimitError(path, "has a picture of over 64 megapixels: make it smaller")
         key = (id(part.picture), part.tint)
         if key not in known:
             known[key] = len(chosen)
@@ -123,19 +121,19 @@ def _pictures(
         numbers.append(known[key])
     total = sum(picture.width * picture.height for picture, _ in chosen)
     shrink = max(1, int(np.ceil(np.sqrt(total / MAX_TEXTURE_PIXELS))))
-    arrays = [_decode_picture(place, picture, tint, shrink) for picture, tint in chosen]
+    arrays = [_decode_picture(path, picture, tint, shrink) for picture, tint in chosen]
     sizes = np.array([(a.shape[1], a.shape[0]) for a in arrays], np.int64).reshape(-1, 2)
     flat = [np.zeros((0, 3), np.uint8), *(a.reshape(-1, 3) for a in arrays)]
     return np.concatenate(flat), sizes, numbers
 
 
 def _decode_picture(
-    place: AnyPath, picture: Image.Image, tint: tuple[int, int, int], shrink: int
+    path: AnyPath, picture: Image.Image, tint: tuple[int, int, int], shrink: int
 ) -> np.ndarray:
     try:
         image = picture.convert("RGB")
     except (OSError, SyntaxError, ValueError, EOFError) as error:
-        raise DamagedFileError(place, "has a picture that is damaged; export it again") from error
+        raise DamagedFileError(path, "has a picture that is damaged; export it again") from error
     array = np.asarray(image.reduce(shrink) if shrink > 1 else image, np.uint8)
     if tint == (255, 255, 255):
         return array

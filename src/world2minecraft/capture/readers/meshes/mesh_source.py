@@ -80,40 +80,40 @@ MAX_BACKFACE_SHARE = 0.9  # Of what is seen from inside; a room of any export ha
 UNIT_ADVICE = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
 
 
-def find_mesh_file(place: AnyPath) -> AnyPath | None:
+def find_mesh_file(path: AnyPath) -> AnyPath | None:
     """Return the file of a place that is a mesh or a cloud, the folder of an S3DIS room, or None.
 
     Raises:
         CaptureError: a folder holds several different ones.
     """
-    if place.is_file():
-        return place if place.suffix.lower() in READERS else None
-    if not place.is_dir():
+    if path.is_file():
+        return path if path.suffix.lower() in READERS else None
+    if not path.is_dir():
         return None
-    if any((place / ANNOTATIONS).glob("*.txt")) if (place / ANNOTATIONS).is_dir() else False:
-        return place
+    if any((path / ANNOTATIONS).glob("*.txt")) if (path / ANNOTATIONS).is_dir() else False:
+        return path
     order = [suffix for suffix in READERS if suffix not in AMBIGUOUS_SUFFIXES]
-    found = [entry for entry in place.iterdir() if entry.suffix.lower() in order]
+    found = [entry for entry in path.iterdir() if entry.suffix.lower() in order]
     found = [entry for entry in found if entry.is_file() and not entry.name.startswith(".")]
     plain = [entry for entry in found if not entry.stem.endswith(LABELLED)] or found
     stems = {entry.stem for entry in plain}
     if len(stems) > 1:
         raise CaptureError(
-            place, f"holds {len(stems)} meshes or clouds ({', '.join(sorted(stems)[:4])}); name one"
+            path, f"holds {len(stems)} meshes or clouds ({', '.join(sorted(stems)[:4])}); name one"
         )
     return min(plain, key=lambda e: (order.index(e.suffix.lower()), e.name), default=None)
 
 
-def load_geometry(place: AnyPath) -> LoadedGeometry:
+def load_geometry(path: AnyPath) -> LoadedGeometry:
     """Read a file that ``find_mesh_file`` found. Raises what its reader raises."""
-    if place.is_dir():
-        return load_s3dis(place)
-    return MESH_READERS.load(place.suffix.lower())(place)
+    if path.is_dir():
+        return load_s3dis(path)
+    return MESH_READERS.load(path.suffix.lower())(path)
 
 
-def file_stamp(place: AnyPath) -> tuple[int, ...]:
+def file_stamp(path: AnyPath) -> tuple[int, ...]:
     """Return what changes when a file does: its size and time."""
-    file = Path(place.path) if isinstance(place, ArchivePath) else place
+    file = Path(path.path) if isinstance(path, ArchivePath) else path
     found = file.stat()
     return found.st_size, found.st_mtime_ns
 
@@ -226,39 +226,39 @@ class MeshSource:
             CaptureError: it shows no inside of a room. DamagedFileError: it is not what its
                 format says. LimitError: it is too large. MissingExtraError: its library is absent.
         """
-        place = find_mesh_file(folder)
-        if place is None:
+        path = find_mesh_file(folder)
+        if path is None:
             raise CaptureError(folder, "holds no mesh and no point cloud")
-        return _read_once(place, file_stamp(place), options)
+        return _read_once(path, file_stamp(path), options)
 
 
 @lru_cache(maxsize=1)
-def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
+def _read_once(path: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
     """Read a file; the same file is asked for twice, to be summarised and to be opened."""
-    loaded = load_geometry(place)
+    loaded = load_geometry(path)
     if not len(loaded.geometry.positions) or (
         isinstance(loaded.geometry, Mesh) and not len(loaded.geometry.faces)
     ):
-        raise CaptureError(place, "holds no surface at all: no triangles and no points")
-    file_to_world, frame_note = estimate_world_frame(place, loaded, options)
+        raise CaptureError(path, "holds no surface at all: no triangles and no points")
+    file_to_world, frame_note = estimate_world_frame(path, loaded, options)
     inside_m = None
     if options.inside is not None:
         inside_m = apply(file_to_world, np.array(options.inside) - loaded.offset)
     geometry = loaded.geometry.moved(file_to_world)
-    poses, spaces = _choose_poses(place, geometry, inside_m)
+    poses, spaces = _choose_poses(path, geometry, inside_m)
     if isinstance(geometry, Mesh):
         sorted_geometry, blocks = sort_mesh_into_blocks(geometry)
     else:
         sorted_geometry, blocks = sort_surfels_into_blocks(estimate_surfels(geometry))
     by_class = geometry.labels is not None and not geometry.coloured
-    renderer = ViewRenderer(place.name, sorted_geometry, CAMERA, poses, blocks, by_class)
+    renderer = ViewRenderer(path.name, sorted_geometry, CAMERA, poses, blocks, by_class)
     notes = (
         f"{_size_note(loaded)}; {frame_note}",
         f"looked at from {len(poses)} places in {spaces} closed space{'s' * (spaces > 1)}",
         *loaded.notes,
     )
     return Capture(
-        place,
+        path,
         f"solid ({loaded.kind})",
         tuple(_frame(renderer, view, geometry) for view in range(len(poses))),
         depth_unit="m",
@@ -269,12 +269,12 @@ def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> 
 
 
 def estimate_world_frame(
-    place: AnyPath, loaded: LoadedGeometry, options: ScanOptions
+    path: AnyPath, loaded: LoadedGeometry, options: ScanOptions
 ) -> tuple[np.ndarray, str]:
     """Return the 4x4 from the file's frame to metres with z up, and a note on size and unit."""
     samples = sample_surface(loaded.geometry)
     if not len(samples.points):
-        raise CaptureError(place, "holds no surface at all: its triangles have no area")
+        raise CaptureError(path, "holds no surface at all: its triangles have no area")
     orientation = find_orientation(samples, loaded.usual_up, loaded.up_stated, options.up)
     upright = samples.points @ orientation.turn.T
     low, high = np.quantile(upright, [0.002, 0.998], axis=0)
@@ -282,7 +282,7 @@ def estimate_world_frame(
     size = (high - low) * unit_m
     if (size < MIN_SIDES_M).any() or (size > MAX_SIDE_M).any():
         raise CaptureError(
-            place,
+            path,
             f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m "
             f"({unit_note}; {orientation.description}), "
             f"which is no room but an object or a landscape; {UNIT_ADVICE}",
@@ -296,23 +296,23 @@ def estimate_world_frame(
 
 
 def _choose_poses(
-    place: AnyPath, geometry: Geometry, inside_m: np.ndarray | None
+    path: AnyPath, geometry: Geometry, inside_m: np.ndarray | None
 ) -> tuple[np.ndarray, int]:
     """Return the poses of the views and how many spaces they look at."""
     low, high = sample_surface(geometry).box()
     try:
         grid = voxelise_surface(geometry, low - MARGIN_M, high + MARGIN_M)
     except ValueError as error:
-        raise CaptureError(place, str(error)) from error
+        raise CaptureError(path, str(error)) from error
     interior = find_interior(grid, inside_m)
     if interior is None:
-        raise CaptureError(place, _no_interior_reason(inside_m))
+        raise CaptureError(path, _no_interior_reason(inside_m))
     poses = choose_views(grid, interior)
     if isinstance(geometry, Mesh) and inside_m is None:
         share = backface_share(geometry, CAMERA, poses)
         if share > MAX_BACKFACE_SHARE:
             raise CaptureError(
-                place,
+                path,
                 "is seen from outside: all its faces look outward, as those of an object or of a "
                 "house's shell; if it is a room, name a point in it: --set capture.inside=x,y,z",
             )

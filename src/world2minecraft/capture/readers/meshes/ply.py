@@ -88,26 +88,26 @@ def locate_binary_lists(raw, rows, steps, big):
     """
     starts = np.zeros((rows, len(steps)), np.int64)
     counts = np.ones((rows, len(steps)), np.int64)
-    place = 0
+    offset = 0
     for row in range(rows):
         for p in range(len(steps)):
             head = steps[p, 0]
-            if place + head > len(raw):
+            if offset + head > len(raw):
                 return starts, counts, -1
             if head > 0:
                 count = 0
                 for b in range(head):
-                    byte = raw[place + b] if big else raw[place + head - 1 - b]
+                    byte = raw[offset + b] if big else raw[offset + head - 1 - b]
                     count = count * 256 + byte
                 if count > MAX_CORNERS:
                     return starts, counts, -1
                 counts[row, p] = count
-                place += head
-            starts[row, p] = place
-            place += counts[row, p] * steps[p, 1]
-            if place > len(raw):
+                offset += head
+            starts[row, p] = offset
+            offset += counts[row, p] * steps[p, 1]
+            if offset > len(raw):
                 return starts, counts, -1
-    return starts, counts, place
+    return starts, counts, offset
 
 
 @njit
@@ -115,32 +115,32 @@ def locate_text_lists(numbers, rows, listed):
     """Do what ``locate_binary_lists`` does among numbers, float64 [N]; ``listed`` bool [P]."""
     starts = np.zeros((rows, len(listed)), np.int64)
     counts = np.ones((rows, len(listed)), np.int64)
-    place = 0
+    offset = 0
     for row in range(rows):
         for p in range(len(listed)):
-            if place >= len(numbers):
+            if offset >= len(numbers):
                 return starts, counts, -1
             if listed[p]:
-                if not 0 <= numbers[place] <= MAX_CORNERS:
+                if not 0 <= numbers[offset] <= MAX_CORNERS:
                     return starts, counts, -1
-                counts[row, p] = int(numbers[place])
-                place += 1
-            starts[row, p] = place
-            place += counts[row, p]
-            if place > len(numbers):
+                counts[row, p] = int(numbers[offset])
+                offset += 1
+            starts[row, p] = offset
+            offset += counts[row, p]
+            if offset > len(numbers):
                 return starts, counts, -1
-    return starts, counts, place
+    return starts, counts, offset
 
 
 @njit
 def gather_bytes(raw, starts, counts, width):
     """Return the bytes of values that lie in runs: ``counts[i]`` of them from ``starts[i]``."""
     result = np.empty(counts.sum() * width, np.uint8)
-    place = 0
+    offset = 0
     for row in range(len(starts)):
         for b in range(counts[row] * width):
-            result[place] = raw[starts[row] + b]
-            place += 1
+            result[offset] = raw[starts[row] + b]
+            offset += 1
     return result
 
 
@@ -162,15 +162,15 @@ def triangulate_fans(counts: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
 @njit
 def _fans(counts, values, total):
     triangles, owner = np.empty((total, 3), np.int64), np.empty(total, np.int64)
-    place, made = 0, 0
+    offset, made = 0, 0
     for n in range(len(counts)):
         for k in range(counts[n] - 2):
-            triangles[made, 0] = values[place]
-            triangles[made, 1] = values[place + k + 1]
-            triangles[made, 2] = values[place + k + 2]
+            triangles[made, 0] = values[offset]
+            triangles[made, 1] = values[offset + k + 1]
+            triangles[made, 2] = values[offset + k + 2]
             owner[made] = n
             made += 1
-        place += counts[n]
+        offset += counts[n]
     return triangles, owner
 
 
@@ -217,22 +217,22 @@ class PlyFile:
     comments: tuple[str, ...] = ()
 
 
-def read_ply(place: AnyPath) -> PlyFile:
+def read_ply(path: AnyPath) -> PlyFile:
     """Read a file whole.
 
     Raises:
         DamagedFileError: it is not what its header says. LimitError: it is too large.
     """
-    data = memoryview(read_bytes(place, MAX_BYTES))
-    order, elements, comments, start = _header(place, bytes(data[:MAX_HEADER]))
+    data = memoryview(read_bytes(path, MAX_BYTES))
+    order, elements, comments, start = _header(path, bytes(data[:MAX_HEADER]))
     counts = {element.name: element.count for element in elements}
     most_vertices = MAX_VERTICES if counts.get("face") else MAX_POINTS
     for name, most in (("vertex", most_vertices), ("face", MAX_FACES)):
         if counts.get(name, 0) > most:
             raise LimitError(
-                place, f"has {counts[name]:,} {name} rows; at most {most:,} are read: thin it"
+                path, f"has {counts[name]:,} {name} rows; at most {most:,} are read: thin it"
             )
-    reader = _Ascii(place, data[start:]) if order == "" else _Binary(place, data[start:], order)
+    reader = _Ascii(path, data[start:]) if order == "" else _Binary(path, data[start:], order)
     vertex: dict[str, np.ndarray] = {}
     face: dict[str, np.ndarray] = {}
     lists = (np.zeros(0, np.int64), np.zeros(0, np.int64))
@@ -245,22 +245,22 @@ def read_ply(place: AnyPath) -> PlyFile:
         else:
             reader.read(element)
     if not {"x", "y", "z"} <= set(vertex):
-        raise DamagedFileError(place, "has no vertices with x, y and z: export it uncompressed")
+        raise DamagedFileError(path, "has no vertices with x, y and z: export it uncompressed")
     triangles, owner = triangulate_fans(*lists)
     held = len(vertex["x"])
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < held):
         raise DamagedFileError(
-            place, f"has faces of vertices that it lacks; it holds {held:,}: export it again"
+            path, f"has faces of vertices that it lacks; it holds {held:,}: export it again"
         )
     return PlyFile(vertex, triangles, owner, face, comments)
 
 
-def _header(place: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str, ...], int]:
+def _header(path: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str, ...], int]:
     """Return byte order, elements, comments and where the data begin."""
     end = re.search(rb"\nend_header[ \t]*\r?\n", data)
     if not data.startswith(b"ply") or end is None:
         raise DamagedFileError(
-            place, "is no PLY file (no ply ... end_header at its start): copy it again"
+            path, "is no PLY file (no ply ... end_header at its start): copy it again"
         )
     lines = data[: end.start()].decode("latin-1").splitlines()
     order, comments = None, []
@@ -276,25 +276,25 @@ def _header(place: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str,
         elif words[0] == "element" and len(words) == 3 and re.fullmatch(r"\d{1,12}", words[2]):
             tables.append((words[1], int(words[2]), []))
         elif words[0] == "property" and tables:
-            tables[-1][2].append(_with_unique_name(_property(place, words), tables[-1][2]))
+            tables[-1][2].append(_with_unique_name(_property(path, words), tables[-1][2]))
         elif words[0] != "obj_info":
             raise DamagedFileError(
-                place, f"has a header line that is not read: {line[:60]!r}; copy it again"
+                path, f"has a header line that is not read: {line[:60]!r}; copy it again"
             )
     if order is None:
-        raise DamagedFileError(place, f"has no format line; known are {', '.join(FORMATS)}")
+        raise DamagedFileError(path, f"has no format line; known are {', '.join(FORMATS)}")
     elements = [Element(name, count, tuple(own)) for name, count, own in tables]
     return order, elements, tuple(comments), end.end()
 
 
-def _property(place: AnyPath, words: list[str]) -> Property:
+def _property(path: AnyPath, words: list[str]) -> Property:
     kinds = [TYPES.get(word) for word in words[1:-1]]
     if len(words) == 3 and kinds[0]:
         return Property(words[2], kinds[0])
     if len(words) == 5 and words[1] == "list" and kinds[1] and kinds[2] and kinds[1][0] != "f":
         return Property(words[4], kinds[2], kinds[1])
     raise DamagedFileError(
-        place, f"has a property that is not read: {' '.join(words)[:60]!r}; export it again"
+        path, f"has a property that is not read: {' '.join(words)[:60]!r}; export it again"
     )
 
 
@@ -311,8 +311,8 @@ def _with_unique_name(new: Property, others: list[Property]) -> Property:
 class _Binary:
     """Reads one table after the other; ``data`` is what is left."""
 
-    def __init__(self, place: AnyPath, data: memoryview, order: str):
-        self.place, self.data, self.order = place, data, order
+    def __init__(self, path: AnyPath, data: memoryview, order: str):
+        self.path, self.data, self.order = path, data, order
 
     def read(self, element: Element) -> Table:
         """Return the columns of single values, and the counts and the values of the index list."""
@@ -396,7 +396,7 @@ class _Binary:
 
     def _refuse(self, element: Element) -> NoReturn:
         raise DamagedFileError(
-            self.place,
+            self.path,
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
             f"{len(self.data):,} bytes are there: copy it again",
         )
@@ -405,9 +405,9 @@ class _Binary:
 class _Ascii:
     """The same for text: all numbers are read at once."""
 
-    def __init__(self, place: AnyPath, data: memoryview):
-        self.place = place
-        self.data = parse_numbers(place, bytes(data))
+    def __init__(self, path: AnyPath, data: memoryview):
+        self.path = path
+        self.data = parse_numbers(path, bytes(data))
 
     def read(self, element: Element) -> Table:
         """Return the columns of single values, and the counts and the values of the index list."""
@@ -438,38 +438,38 @@ class _Ascii:
 
     def _refuse(self, element: Element) -> NoReturn:
         raise DamagedFileError(
-            self.place,
+            self.path,
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
             f"{len(self.data):,} numbers are there: copy it again",
         )
 
 
-def load_ply(place: AnyPath) -> LoadedGeometry:
+def load_ply(path: AnyPath) -> LoadedGeometry:
     """Read a mesh or a cloud. Raises what ``read_ply`` raises."""
-    file = read_ply(place)
-    twin = _labels_twin(place, file)
+    file = read_ply(path)
+    twin = _labels_twin(path, file)
     if len(file.triangles):
-        return _load_mesh(place, file, twin)
-    return _load_cloud(place, file, twin)
+        return _load_mesh(path, file, twin)
+    return _load_cloud(path, file, twin)
 
 
-def _labels_twin(place: AnyPath, file: PlyFile) -> PlyFile | None:
+def _labels_twin(path: AnyPath, file: PlyFile) -> PlyFile | None:
     """Return ScanNet's other file of the same mesh: the labels of colours, or the other way."""
-    stem = place.stem
+    stem = path.stem
     name = stem.removesuffix(".labels") if stem.endswith(".labels") else f"{stem}.labels"
-    other = place.parent / f"{name}.ply"
+    other = path.parent / f"{name}.ply"
     if not other.is_file():
         return None
     found = read_ply(other)
     return found if len(found.vertex["x"]) == len(file.vertex["x"]) else None
 
 
-def _labels(place: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray | None, str]:
+def _labels(path: AnyPath, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray | None, str]:
     """Return uint8 classes of the column that holds labels, and a note; None for none."""
     by_name = {name.lower(): values for name, values in columns.items()}
     for name in LABEL_NAMES:
         if name in by_name:
-            return classes_of_label_ids(place, name, by_name[name])
+            return classes_of_label_ids(path, name, by_name[name])
     return None, ""
 
 
@@ -478,28 +478,28 @@ def _vertex_positions(file: PlyFile) -> np.ndarray:
 
 
 def _vertex_attributes(
-    place: AnyPath, file: PlyFile, twin: PlyFile | None
+    path: AnyPath, file: PlyFile, twin: PlyFile | None
 ) -> tuple[np.ndarray | None, np.ndarray | None, str]:
     """Return colours and labels of the vertices, and a note."""
-    labels, note = _labels(place, file.vertex)
+    labels, note = _labels(path, file.vertex)
     colour = colours_of_columns(file.vertex)
     if twin is not None:
-        own_colours = place.stem.endswith(".labels")
+        own_colours = path.stem.endswith(".labels")
         colour = colours_of_columns(twin.vertex) if own_colours else colour
         if labels is None:
-            labels, note = _labels(place, twin.vertex)
-    elif place.stem.endswith(".labels"):
+            labels, note = _labels(path, twin.vertex)
+    elif path.stem.endswith(".labels"):
         colour = None  # Those of the classes, which are nothing's own.
     return colour, labels, note
 
 
-def _load_mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
-    colour, labels, note = _vertex_attributes(place, file, twin)
+def _load_mesh(path: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
+    colour, labels, note = _vertex_attributes(path, file, twin)
     face_labels = None
     if labels is not None:
         face_labels = _majority_label(labels[file.triangles])
     else:
-        own, more = _labels(place, file.face)
+        own, more = _labels(path, file.face)
         note = note or more
         face_labels = None if own is None else own[file.triangle_face]
     vertices, triangles = _vertex_positions(file), file.triangles
@@ -507,10 +507,10 @@ def _load_mesh(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeo
         vertices = vertices[triangles.reshape(-1)]
         colour = np.repeat(face_colour[file.triangle_face], 3, axis=0)
         triangles = np.arange(3 * len(triangles)).reshape(-1, 3)
-    picture, uv = _picture(place, file)
+    picture, uv = _picture(path, file)
     label = 255 if face_labels is None else face_labels
     mesh, offset = join_parts(
-        place, [MeshPart(vertices, triangles, colour, picture, uv, label=label)]
+        path, [MeshPart(vertices, triangles, colour, picture, uv, label=label)]
     )
     return LoadedGeometry(mesh, "PLY", offset, notes=(note,) if note else ())
 
@@ -521,13 +521,13 @@ def _majority_label(corners: np.ndarray) -> np.ndarray:
     return np.where(second == third, second, first).astype(np.uint8)
 
 
-def _picture(place: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndarray | None]:
+def _picture(path: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndarray | None]:
     """Return the picture that a comment names, and where on it each vertex lies."""
     names = [c.split(None, 1)[1] for c in file.comments if c.lower().startswith("texturefile ")]
     axes = next((pair for pair in PICTURE_AXES if set(pair) <= set(file.vertex)), None)
     if not names or axes is None:
         return None, None
-    found = place.parent / names[0].strip().replace("\\", "/").rpartition("/")[2]
+    found = path.parent / names[0].strip().replace("\\", "/").rpartition("/")[2]
     try:
         picture = Image.open(io.BytesIO(read_bytes(found, 1 << 30)))
     except (InputError, UnidentifiedImageError, OSError):
@@ -536,8 +536,8 @@ def _picture(place: AnyPath, file: PlyFile) -> tuple[Image.Image | None, np.ndar
     return picture, np.stack([u, 1 - v], axis=1)
 
 
-def _load_cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
-    colour, labels, note = _vertex_attributes(place, file, twin)
+def _load_cloud(path: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGeometry:
+    colour, labels, note = _vertex_attributes(path, file, twin)
     thinner = VoxelDownsampler()
     count = len(file.vertex["x"])
     opaque = np.ones(count, bool)
@@ -553,7 +553,7 @@ def _load_cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> LoadedGe
         )
     if count and thinner.offset is None:
         raise DamagedFileError(
-            place, "has places that are no numbers (NaN, infinity): export it again"
+            path, "has places that are no numbers (NaN, infinity): export it again"
         )
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
     notes = (note,) if note else ()

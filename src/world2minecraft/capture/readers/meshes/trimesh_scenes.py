@@ -34,7 +34,7 @@ UNSUPPORTED_EXTENSIONS = (
 KINDS = {".glb": "glTF", ".gltf": "glTF", ".obj": "OBJ", ".stl": "STL", ".off": "OFF"}
 
 
-def load_scene(place: AnyPath) -> LoadedGeometry:
+def load_scene(path: AnyPath) -> LoadedGeometry:
     """Read a mesh file with all that its scene places.
 
     Raises:
@@ -42,28 +42,28 @@ def load_scene(place: AnyPath) -> LoadedGeometry:
             needs is not there. MissingExtraError.
     """
     trimesh = import_optional("trimesh", "reading meshes")
-    data = read_bytes(place, MAX_BYTES)
-    suffix = place.suffix.lower()
-    tree = _checked_gltf(place, data) if suffix in (".glb", ".gltf") else {}
+    data = read_bytes(path, MAX_BYTES)
+    suffix = path.suffix.lower()
+    tree = _checked_gltf(path, data) if suffix in (".glb", ".gltf") else {}
     if suffix == ".stl":
-        _check_stl(place, data)
+        _check_stl(path, data)
     options: dict[str, Any] = {"split_objects": True} if suffix == ".obj" else {}
     try:
         scene = trimesh.load_scene(
             io.BytesIO(data),
             file_type=suffix[1:],
-            resolver=_FolderResolver(place),
+            resolver=_FolderResolver(path),
             process=False,
             **options,
         )
-        parts = _parts(place, scene, str(tree.get("asset", {}).get("generator", "")))
+        parts = _parts(path, scene, str(tree.get("asset", {}).get("generator", "")))
     except InputError:
         raise
     except Exception as error:  # What a hostile file makes trimesh raise has no common root.
         reason_text = reason_of(error)
         reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({reason_text}); export it again"
-        raise DamagedFileError(place, reason) from error
-    mesh, offset = join_parts(place, parts)
+        raise DamagedFileError(path, reason) from error
+    mesh, offset = join_parts(path, parts)
     notes = () if mesh.coloured else ("it has no colours: export it with its textures beside it",)
     gltf = bool(tree)
     return LoadedGeometry(
@@ -79,8 +79,8 @@ def load_scene(place: AnyPath) -> LoadedGeometry:
 class _FolderResolver:
     """Gives trimesh the files that a mesh names, from its own folder and below alone."""
 
-    def __init__(self, place: AnyPath):
-        self.place = place
+    def __init__(self, path: AnyPath):
+        self.path = path
 
     def get(self, key: str) -> bytes:
         """Return a file's bytes.
@@ -98,16 +98,16 @@ class _FolderResolver:
         inside = [p for p, one in zip(split, names, strict=True) if p and _stays_in_folder(one, p)]
         last = [parts[-1:] for parts in split if parts and _stays_in_folder(parts[-1], parts[-1:])]
         for parts in (*inside, *last):
-            found = self.place.parent
+            found = self.path.parent
             for part in parts:
                 found = found / part
             if found.is_file():
                 return read_bytes(found, 1 << 30)
         if not inside:
             raise DamagedFileError(
-                self.place, f"names a file outside its folder, {key[:80]!r}: put it beside"
+                self.path, f"names a file outside its folder, {key[:80]!r}: put it beside"
             )
-        raise InputError(self.place, f"names {key[:80]!r}, which is not there: put it beside")
+        raise InputError(self.path, f"names {key[:80]!r}, which is not there: put it beside")
 
     __getitem__ = get
 
@@ -117,7 +117,7 @@ class _FolderResolver:
 
     def keys(self) -> list[str]:
         """Return the names of the files next to the mesh."""
-        return [entry.name for entry in self.place.parent.iterdir() if entry.is_file()]
+        return [entry.name for entry in self.path.parent.iterdir() if entry.is_file()]
 
     def __contains__(self, key: str) -> bool:
         return key in self.keys()
@@ -128,21 +128,21 @@ def _stays_in_folder(name: str, parts: list[str]) -> bool:
     return not name.startswith("/") and ".." not in parts and ":" not in parts[0]
 
 
-def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
+def _checked_gltf(path: AnyPath, data: bytes) -> dict[str, Any]:
     """Return glTF's tree, its counts and extensions checked before anything is unpacked."""
     text = data
     if data[:4] == b"glTF":
         if len(data) < 20 or struct.unpack("<I", data[8:12])[0] > len(data):
-            raise DamagedFileError(place, "is cut short; copy it again")
+            raise DamagedFileError(path, "is cut short; copy it again")
         length = struct.unpack("<I", data[12:16])[0]
         text = data[20 : 20 + length]
-    elif place.suffix.lower() == ".glb":
+    elif path.suffix.lower() == ".glb":
         raise DamagedFileError(
-            place, "is no binary glTF (it does not begin with glTF): export it again"
+            path, "is no binary glTF (it does not begin with glTF): export it again"
         )
     if len(text) > MAX_JSON_BYTES:
         raise LimitError(
-            place, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}: join it"
+            path, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}: join it"
         )
     try:
         tree = json.loads(text)
@@ -151,40 +151,38 @@ def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
         nodes = len(tree.get("nodes", []))
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
         raise DamagedFileError(
-            place, "is no glTF: its tree cannot be read; export it again"
+            path, "is no glTF: its tree cannot be read; export it again"
         ) from error
     for name in UNSUPPORTED_EXTENSIONS:
         if name in extensions:
             raise DamagedFileError(
-                place, f"is packed with {name}, which is not read; export it uncompressed"
+                path, f"is packed with {name}, which is not read; export it uncompressed"
             )
     most = 3 * max(MAX_FACES, MAX_VERTICES)
     if any(not 0 <= count <= most for count in counts) or nodes > MAX_NODES:
         raise LimitError(
-            place, f"says that it has {max([nodes, *counts]):,} values; that is no room"
+            path, f"says that it has {max([nodes, *counts]):,} values; that is no room"
         )
     return tree
 
 
-def _check_stl(place: AnyPath, data: bytes) -> None:
+def _check_stl(path: AnyPath, data: bytes) -> None:
     if len(data) < 15:
-        raise DamagedFileError(place, "is cut short; copy it again")
+        raise DamagedFileError(path, "is cut short; copy it again")
     if data[:5].lower() == b"solid" and b"facet" in data[:2000]:
         return
     count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else -1
     if count < 0 or 84 + 50 * count > len(data):
-        raise DamagedFileError(
-            place, f"is no whole STL: {count:,} triangles are due; copy it again"
-        )
+        raise DamagedFileError(path, f"is no whole STL: {count:,} triangles are due; copy it again")
 
 
-def _parts(place: AnyPath, scene: Any, generator: str) -> list[MeshPart]:
+def _parts(path: AnyPath, scene: Any, generator: str) -> list[MeshPart]:
     """Return the parts of a trimesh scene, each placed as its nodes say."""
     nodes = list(scene.graph.nodes_geometry)
     shapes = [(node, *scene.graph[node]) for node in nodes]
     sizes = {name: _mesh_size(mesh) for name, mesh in scene.geometry.items()}
     check_sizes(
-        place,
+        path,
         sum(sizes[name][0] for _, _, name in shapes),
         sum(sizes[name][1] for _, _, name in shapes),
     )

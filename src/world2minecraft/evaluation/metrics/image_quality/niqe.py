@@ -104,9 +104,9 @@ def distance(features: np.ndarray, model: NiqeModel) -> float:
     usable = features[np.isfinite(features).all(axis=1)]
     if len(usable) < 2:
         return float("nan")
-    apart = usable.mean(axis=0) - model.mean
+    difference = usable.mean(axis=0) - model.mean
     spread = (np.cov(usable.T) + model.covariance) / 2
-    return float(np.sqrt(max(apart @ linalg.pinv(spread) @ apart, 0.0)))
+    return float(np.sqrt(max(difference @ linalg.pinv(spread) @ difference, 0.0)))
 
 
 def patch_features(picture: np.ndarray, manner: Manner = AUTHORS) -> tuple[np.ndarray, np.ndarray]:

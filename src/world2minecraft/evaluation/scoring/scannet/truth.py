@@ -167,7 +167,7 @@ def seen_free(truth: Truth, progress: Progress = no_progress) -> np.ndarray:
 
     Args:
         truth: a scanned surface, whose ``capture`` has depth images and poses.
-        progress: told of the stage ``seen``.
+        progress: called with the stage ``seen``.
 
     Raises:
         CaptureError: the capture has no frame with a pose and depth.
@@ -299,14 +299,14 @@ def _write(truth: Truth, instance: np.ndarray, name: str) -> None:
         "truth_room_to_scan": truth.truth_to_scan,
     }
     write_npz(truth.folder / "truth.npz", arrays)
-    apart = truth.capture.resolve() != truth.folder.resolve()
+    is_separate = truth.capture.resolve() != truth.folder.resolve()
     stated = {
         "kind": "scannet",
         "scene": name,
         "objects": [object_to_json(n, item) for n, item in enumerate(truth.objects, start=1)],
         "layouts": [],
     }
-    where = {"capture": str(truth.capture.resolve())} if apart else {}
+    where = {"capture": str(truth.capture.resolve())} if is_separate else {}
     write_json(truth.folder / "truth.json", stated | where)
 
 

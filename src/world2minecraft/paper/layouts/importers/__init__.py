@@ -1,7 +1,7 @@
 """Layouts of others as ``ComparedScene``: one file a format, found by what is in it.
 
-A format is a module with ``is_mine(path, told)`` (``told`` is the JSON of a file, None for a
-folder) and ``read(path, told, how)``. Packages outside add theirs through the entry point group
+A format is a module with ``is_mine(path, data)`` (``data`` is the JSON of a file, None for a
+folder) and ``read(path, data, how)``. Packages outside add theirs through the entry point group
 ``world2minecraft.layout_format``.
 """
 
@@ -59,18 +59,18 @@ def read_layouts_of(path: Path, how: How | None = None, name: str = "") -> list[
     """
     if not path.exists():
         raise InputError(path, "is not there")
-    told = None if path.is_dir() else read_json(path, MAX_BYTES)
+    data = None if path.is_dir() else read_json(path, MAX_BYTES)
     for one in [name] if name else FORMATS.names():
         found = FORMATS.load(one)
-        if name or found.is_mine(path, told):
-            return _read(found, path, told, how or How())
+        if name or found.is_mine(path, data):
+            return _read(found, path, data, how or How())
     known = ", ".join(FORMATS.names())
     raise InputError(path, f"holds no layout that is known ({known}); --format says which it is")
 
 
-def _read(found: Any, path: Path, told: Any, how: How) -> list[ComparedScene]:
+def _read(found: Any, path: Path, data: Any, how: How) -> list[ComparedScene]:
     try:
-        scenes = found.read(path, told, how)
+        scenes = found.read(path, data, how)
     except READ_ERRORS as error:
         raise DamagedFileError(path, f"is not what its format says ({why(error)})") from error
     if not scenes:

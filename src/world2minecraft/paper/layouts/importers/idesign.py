@@ -36,15 +36,15 @@ class Format:
     """The format of this module."""
 
     @staticmethod
-    def is_mine(path: Path, told: Any) -> bool:
+    def is_mine(path: Path, data: Any) -> bool:
         """Whether a JSON is a scene graph of I-Design."""
-        first = told[0] if isinstance(told, list) and told else None
+        first = data[0] if isinstance(data, list) and data else None
         return isinstance(first, dict) and "new_object_id" in first
 
     @staticmethod
-    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+    def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
         """Return its one scene. Raises ValueError, KeyError, TypeError."""
-        entries = checked_count(told, MAX_OBJECTS, "entries")
+        entries = checked_count(data, MAX_OBJECTS, "entries")
         shell = {one["new_object_id"]: one for one in entries if one["new_object_id"] in SHELL}
         objects, unplaced, skipped = [], [], []
         for one in entries:

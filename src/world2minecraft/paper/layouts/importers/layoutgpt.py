@@ -49,15 +49,15 @@ class Format:
     """The format of this module."""
 
     @staticmethod
-    def is_mine(path: Path, told: Any) -> bool:
+    def is_mine(path: Path, data: Any) -> bool:
         """Whether a JSON holds records of LayoutGPT."""
-        first = told[0] if isinstance(told, list) and told else told
+        first = data[0] if isinstance(data, list) and data else data
         return isinstance(first, dict) and "object_list" in first
 
     @staticmethod
-    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+    def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
         """Return the scene of each record. Raises ValueError, KeyError, TypeError."""
-        records = checked_count([told] if isinstance(told, dict) else told, MAX_SCENES, "records")
+        records = checked_count([data] if isinstance(data, dict) else data, MAX_SCENES, "records")
         return [_scene(record, number, how.px_m) for number, record in enumerate(records)]
 
 
@@ -107,13 +107,13 @@ def _name(item: Any) -> str:
 def _object(item: Any, unit_m: float, width_m: float) -> LayoutObject:
     if not (isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], dict)):
         raise ValueError("is no [category, {length, width, height, left, top, ...}]")
-    told = item[1]
+    data = item[1]
     length, width, height = (
-        number(told[key], key) * unit_m for key in ("length", "width", "height")
+        number(data[key], key) * unit_m for key in ("length", "width", "height")
     )
-    left, top = (number(told[key], key) * unit_m for key in ("left", "top"))
-    middle = number(told["depth"], "depth") * unit_m if "depth" in told else height / 2
-    turned = number(told.get("orientation", 0.0), "orientation")
+    left, top = (number(data[key], key) * unit_m for key in ("left", "top"))
+    middle = number(data["depth"], "depth") * unit_m if "depth" in data else height / 2
+    turned = number(data.get("orientation", 0.0), "orientation")
     return object_of(
         Box(_name(item), (left, width_m - top, middle), (width, length, height), turned - 90)
     )

@@ -48,33 +48,33 @@ class Format:
     """The format of this module."""
 
     @staticmethod
-    def is_mine(path: Path, told: Any) -> bool:
+    def is_mine(path: Path, data: Any) -> bool:
         """Whether a JSON is a layout of LayoutVLM, or a folder holds one."""
         if path.is_dir():
             place = path / LAYOUT_FILE
-            told = read_json(place) if place.is_file() else None
-        if not isinstance(told, dict) or not told:
+            data = read_json(place) if place.is_file() else None
+        if not isinstance(data, dict) or not data:
             return False
-        first = next(iter(told.values()))
+        first = next(iter(data.values()))
         return isinstance(first, dict) and "position" in first
 
     @staticmethod
-    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+    def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
         """Return its one scene. Raises InputError, ValueError, KeyError, TypeError."""
         place = path / LAYOUT_FILE if path.is_dir() else path
-        told = read_json(place) if told is None else told
-        if len(told) > MAX_OBJECTS:
-            raise ValueError(f"has {len(told):,} objects; at most {MAX_OBJECTS:,} are read")
+        data = read_json(place) if data is None else data
+        if len(data) > MAX_OBJECTS:
+            raise ValueError(f"has {len(data):,} objects; at most {MAX_OBJECTS:,} are read")
         task = _task(place, how.task)
         assets = dict(_assets(task, how.assets))
         objects, skipped = [], []
-        for key, one in told.items():
+        for key, one in data.items():
             try:
                 objects.append(_object(key, one, assets))
             except READ_ERRORS as error:
                 skipped.append(f"{clean_name(key)}: {why(error)}")
         names = _names(task, how.assets)
-        unplaced = [clean_name(name) for name, own in names if not {name, own} & set(told)]
+        unplaced = [clean_name(name) for name, own in names if not {name, own} & set(data)]
         room = _room(task["boundary"])
         name = place.parent.name if place.name == LAYOUT_FILE else place.stem
         return [ComparedScene(name, METHOD, (room,), tuple(objects), tuple(unplaced),
@@ -87,12 +87,12 @@ FORMAT = Format()
 def _task(place: Path, stated: Path | None) -> dict[str, Any]:
     """Return the scene file: the stated one, or the only one beside the layout."""
     if stated is not None:
-        told = read_json(stated, MAX_TASK_BYTES)
-        if not _is_task(told):
+        data = read_json(stated, MAX_TASK_BYTES)
+        if not _is_task(data):
             raise InputError(stated, "is no scene file of LayoutVLM: it has no boundary")
-        return told
+        return data
     beside = sorted(place.parent.glob("*.json"))[:MAX_ADJACENT_FILES]
-    found = [told for one in beside if one != place and _is_task(told := _try(one))]
+    found = [data for one in beside if one != place and _is_task(data := _try(one))]
     if len(found) != 1:
         raise InputError(
             place, f"has {len(found)} scene files with a boundary beside it; give one with --task"
@@ -107,8 +107,8 @@ def _try(path: Path) -> Any:
         return None
 
 
-def _is_task(told: Any) -> bool:
-    return isinstance(told, dict) and isinstance(told.get("boundary"), dict)
+def _is_task(data: Any) -> bool:
+    return isinstance(data, dict) and isinstance(data.get("boundary"), dict)
 
 
 def _room(boundary: dict[str, Any]) -> Layout:
@@ -176,8 +176,8 @@ def _data(key: str, stated: dict[str, Any], folder: Path | None) -> dict[str, An
 
 
 def _category(known: dict[str, Any], key: str) -> str:
-    told = known.get("category") or (known.get("annotations") or {}).get("category")
-    word = clean_name(told or _model(key))
+    category = known.get("category") or (known.get("annotations") or {}).get("category")
+    word = clean_name(category or _model(key))
     for letter in "- '/,":
         word = word.replace(letter, "_")
     return word.lower()

@@ -31,12 +31,12 @@ class Format:
     """The format of this module."""
 
     @staticmethod
-    def is_mine(path: Path, told: Any) -> bool:
+    def is_mine(path: Path, data: Any) -> bool:
         """Whether a folder is that of a finished run."""
         return path.is_dir() and (path / "placements.json").is_file()
 
     @staticmethod
-    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+    def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
         """Return its one scene. Raises InputError."""
         if not path.is_dir():
             raise InputError(path, "is no folder of a run")

@@ -13,12 +13,12 @@ class Format:
     """The format of this module."""
 
     @staticmethod
-    def is_mine(path: Path, told: Any) -> bool:
+    def is_mine(path: Path, data: Any) -> bool:
         """Whether a folder was built of a layout."""
         return path.is_dir() and (path / SCENE_FILE).is_file()
 
     @staticmethod
-    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+    def read(path: Path, data: Any, how: "How") -> list[ComparedScene]:
         """Return its one scene. Raises InputError."""
         return [read_scene(path / SCENE_FILE if path.is_dir() else path)]
 
