@@ -51,7 +51,7 @@ def edit(editor: Editor, number: int) -> None:
     elif turn == 8:
         editor.redo()
     else:
-        editor.do(planned(editor.draft, number))
+        editor.do(plan_operation(editor.draft, number))
 
 
 def plan_operation(draft: SceneDraft, number: int) -> Operation:

@@ -112,11 +112,11 @@ def test_other_styles_end_otherwise(folder):
         VlmAnswerer(model_at(server), folder, "rhyme")
 
 
-def test_the_think_style_is_that_of_the_hand_off():
+def test_the_think_style_is_that_of_the_export():
     recipes = pytest.importorskip("world2minecraft.navigation.exporters.recipes")
     from world2minecraft.navigation.agents.question_answering import THINK
 
-    assert recipes.verbatim("mc.jinja").strip().splitlines()[-1] == THINK
+    assert recipes.read_recipe("mc.jinja").strip().splitlines()[-1] == THINK
 
 
 def test_a_changed_picture_is_refused(folder):

@@ -222,7 +222,7 @@ def test_an_internal_error_is_reported_and_the_next_edit_works(monkeypatch):
         assert heard(page)["type"] == "change"
 
 
-def test_another_document_makes_every_tab_begin_anew():
+def test_another_document_makes_every_tab_start_again():
     with served() as server, client(server) as script, tab(server) as page:
         loop = server.session.broadcaster._loop
         for shown in (1, 2):

@@ -9,7 +9,7 @@ import pytest
 
 from world2minecraft.evaluation.report import jit_warmup as ahead
 
-ROOMS = Path(__file__).parents[2] / "build"
+ROOMS = Path(__file__).parents[2] / "construction"
 
 # Draws the box, then a furnished room in all styles, and tells which kernels the room alone needed.
 SCRIPT = """
@@ -55,7 +55,7 @@ def test_a_box_needs_all_kernels_that_a_furnished_room_needs():
     assert done.stdout.strip() == "[]"
 
 
-class Kept:
+class FakeProcess:
     """Stands for the process: what it was asked to do."""
 
     def __init__(self, words, **places):
@@ -75,7 +75,9 @@ def started(monkeypatch):
     monkeypatch.setattr(ahead, "is_compiled", lambda kernel: False)
     monkeypatch.setattr(ahead, "usable_cores", lambda: 2)
     monkeypatch.setattr(
-        subprocess, "Popen", lambda *words, **more: found.append(Kept(*words, **more)) or found[-1]
+        subprocess,
+        "Popen",
+        lambda *words, **more: found.append(FakeProcess(*words, **more)) or found[-1],
     )
     return found
 

@@ -1,4 +1,4 @@
-"""What draws the report's pictures, compiled by a second process beside the first stages.
+"""Compile what draws the report's pictures, by a second process beside the first stages.
 
 After an installation a third of a run would wait for these kernels, at its very end. The process is
 ``python -m world2minecraft.evaluation.report.jit_warmup``: it draws a box of a few blocks as the
@@ -18,9 +18,11 @@ from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.evaluation.report.comparison_pictures import make_pairs
+from world2minecraft.rendering.picture_kernel import draw_rows
 from world2minecraft.rendering.preview import plan_view, preview
 
-LAST = "picture_kernel.draw_rows"  # Kept last, when all that it calls is compiled.
+# Cached last, when all that it calls is compiled.
+LAST = f"{draw_rows.__module__.rpartition('.')[2]}.{draw_rows.__name__}"
 PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what it makes.
 
 

@@ -121,7 +121,7 @@ export interface MoveObject {
   to_m: [number, number, number];
 }
 
-/** Find the objects of a class, or all, anew by other figures of the paper's clustering. */
+/** Find the objects of a class, or all, again by other parameters of the paper's clustering. */
 export interface Recluster {
   op: "recluster";
   class_id?: number | null;
@@ -141,7 +141,7 @@ export interface RelabelObjects {
   class_id: number;
 }
 
-/** Match the furniture of objects anew, as the reconstruction does, from their cells. */
+/** Match the furniture of objects again, as the reconstruction does, from their cells. */
 export interface Rematch {
   op: "rematch";
   ids: number[];
