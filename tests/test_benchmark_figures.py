@@ -26,7 +26,7 @@ def row(difficulty="noise", labels="labels", iou=0.9, f1=0.9, outside=0):
     }  # fmt: skip
 
 
-def test_a_target_of_fidelity_has_the_figure_of_its_worst_difficulty():
+def test_a_fidelity_target_takes_the_worst_difficulty():
     rows = [row(f1=0.8), row(f1=1.0), row("all", f1=0.7), row("all", f1=0.9), row("clean", f1=0.1)]
     rows += [row(labels="none", f1=0.4, outside=2), row("all", "none", f1=0.6, iou=0.3)]
     found = figures_of(rows)

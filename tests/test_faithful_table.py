@@ -75,7 +75,7 @@ def test_stages_stand_under_the_run_itself():
     assert "0.970" in lines[1]
 
 
-def test_trials_are_the_first_of_each_and_clean_ones_are_those_of_noise():
+def test_trials_are_the_first_of_each_difficulty():
     chosen = bench.chosen_trials("tune", ("noise", "clean"), 2)
     assert [trial.name for trial in chosen] == [
         "noise-500", "noise-501", "noise-500-clean", "noise-501-clean",

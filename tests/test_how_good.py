@@ -340,7 +340,7 @@ def test_runs_are_chosen_by_name_or_by_a_part_of_one():
     assert names(most=7) == ["cells", "tests", "quick"]
 
 
-def test_newer_results_replace_kept_ones_and_runs_that_are_gone_go(few, tmp_path):
+def test_newer_results_replace_stored_ones(few, tmp_path):
     file = tmp_path / "kept.json"
     for name in ("large", "gone"):
         report.keep(tmp_path / "old", result(name))

@@ -200,7 +200,7 @@ def test_a_row_reads_back_as_it_was_written(tmp_path):
     assert read_entries(file) == entries
 
 
-def test_what_was_not_measured_is_a_dash_and_a_page_without_marks_is_refused(tmp_path):
+def test_missing_figures_are_dashes_and_marks_are_required(tmp_path):
     alone = [entry for entry in read_entries(leaderboard.FILE) if entry.input == "depth"]
     text = tables([*alone])
     assert "precision and recall" not in text, "a table that nobody has figures for"

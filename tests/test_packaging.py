@@ -65,7 +65,7 @@ def test_every_pinned_package_that_is_installed_has_that_version():
             continue  # Some are for building, or for other systems.
 
 
-def test_the_wheel_holds_the_built_page_and_not_what_it_is_built_of(tmp_path, monkeypatch):
+def test_the_wheel_holds_the_built_page_and_not_its_sources(tmp_path, monkeypatch):
     building = pytest.importorskip("hatchling.build", reason="hatchling is not installed")
     monkeypatch.chdir(ROOT)
     with ZipFile(tmp_path / building.build_wheel(str(tmp_path))) as wheel:

@@ -74,7 +74,7 @@ def test_the_truth_given_as_a_result_scores_about_one(folder, tmp_path, capsys):
     assert "noise (1)" in capsys.readouterr().out
 
 
-def test_another_frame_and_phase_of_the_grid_cost_nothing_and_a_wrong_one_does(folder, tmp_path):
+def test_the_phase_of_the_grid_is_free_a_wrong_frame_is_not(folder, tmp_path):
     """The same cells, said in a frame that is a quarter turn and some centimetres away."""
     truth = read_truth(folder / "truth" / NAME)
     write_result(tmp_path / "plain" / NAME, truth)

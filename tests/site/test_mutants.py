@@ -78,7 +78,7 @@ def test_whoever_holds_a_value_of_a_class_runs_its_fault(module):
     assert isinstance(made(), module.Pair)
 
 
-def test_a_changed_constant_is_known_to_defaults_and_to_those_who_imported_it(module):
+def test_a_changed_constant_reaches_defaults_and_importers(module):
     holder = sys.modules["module_that_imports"] = type(sys)("module_that_imports")
     holder.STEP = module.STEP
     graft(module, MODULE.replace("STEP = 2", "STEP = 7"), in_function=False)

@@ -108,7 +108,7 @@ def trl_losses(folder, room):
     return losses(out)
 
 
-def test_three_steps_with_llamafactory_and_with_trl_have_equal_losses(
+def test_llamafactory_and_trl_have_equal_losses_for_three_steps(
     llamafactory_losses, trl_losses
 ):
     print(f"llamafactory {llamafactory_losses} trl {trl_losses}")
