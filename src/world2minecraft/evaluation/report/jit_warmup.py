@@ -18,8 +18,8 @@ from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.evaluation.report.comparison_pictures import make_pairs
-from world2minecraft.rendering.picture_kernel import draw_rows
 from world2minecraft.rendering.preview import plan_view, preview
+from world2minecraft.rendering.ray_caster.picture_kernel import draw_rows
 
 # Cached last, when all that it calls is compiled.
 LAST = f"{draw_rows.__module__.rpartition('.')[2]}.{draw_rows.__name__}"
