@@ -20,8 +20,8 @@ from world2minecraft.minecraftocc.engine import process_pool as worker
 AT_WORK = """
 import sys
 from pathlib import Path
-from world2minecraft.minecraftocc.building.process_registry import at_work
-with at_work(Path(sys.argv[1])):
+from world2minecraft.minecraftocc.building.process_registry import register_process
+with register_process(Path(sys.argv[1])):
     print("at work", flush=True)
     sys.stdin.read()
 """
