@@ -9,7 +9,7 @@ from PIL import Image, ImageFilter
 
 from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.quality import diagnostics as doubts
+from world2minecraft.capture.quality import diagnostics
 from world2minecraft.capture.quality.picture_quality import (
     _high_pass,
     overlap_share,
@@ -295,7 +295,7 @@ def test_scale_lens_and_extras(tmp_path, box_room, monkeypatch):
     metric = posed(tmp_path / "a", box_room, poses, depth=False)
     assert level_of(metric, "scale") is None
     assert level_of(metric, "extra") is None
-    monkeypatch.setattr(doubts, "is_installed", lambda module: False)
+    monkeypatch.setattr(diagnostics, "is_installed", lambda module: False)
     lacking = posed(tmp_path / "a", box_room, poses, depth=False)
     assert level_of(lacking, "extra") == "stop"
     assert "pip install 'world2minecraft[capture]'" in " ".join(summary_lines(lacking))

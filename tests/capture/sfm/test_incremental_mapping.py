@@ -5,7 +5,6 @@ import pytest
 from tests.capture.sfm.box_room import CAMERA, photos, poses
 
 from world2minecraft.capture.sfm import SfmParameters, align_similarity, find_poses, matching
-from world2minecraft.capture.sfm import matching as links
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import SparseScene
 from world2minecraft.core.types.photos import Photo
@@ -67,7 +66,6 @@ def test_observations_are_where_points_are_seen(found):
 
 
 def test_the_same_bytes_again_whatever_the_threads(found, monkeypatch, capfd):
-    monkeypatch.setattr(links, "thread_count", lambda: 1)
     monkeypatch.setattr(matching, "thread_count", lambda: 1)
     told = []
     again = find_poses(photos(poses()), SMALL, lambda *step: told.append(step))

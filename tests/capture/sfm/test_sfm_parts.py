@@ -8,8 +8,8 @@ from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
 from world2minecraft.capture.sfm import SfmParameters, find_poses
-from world2minecraft.capture.sfm import pycolmap_session as colmap
-from world2minecraft.capture.sfm import results as reasons
+from world2minecraft.capture.sfm import pycolmap_session
+from world2minecraft.capture.sfm import results
 from world2minecraft.capture.sfm.bundle_adjustment import project_points
 from world2minecraft.capture.sfm.camera_groups import (
     default_camera,
@@ -178,7 +178,7 @@ def test_failures_of_colmap_are_one_line():
 
 
 def test_a_few_placed_photos_are_no_room():
-    assert str(reasons.too_few_error(6, 40)) == (
+    assert str(results.too_few_error(6, 40)) == (
         "photos: only 6 of 40 could be placed, too few to trust; walk sideways around the room, "
         "with most of each picture in the next, and stand back so that furniture and corners are "
         "seen"

@@ -5,7 +5,7 @@ import pytest
 from tests.capture.stereo.plane_photos import row_of_photos, scene_of
 
 from world2minecraft.capture.stereo import StereoParameters, compute_depth_maps
-from world2minecraft.capture.stereo import depth_maps as maps
+from world2minecraft.capture.stereo import depth_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo
@@ -56,7 +56,7 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
     photos, _ = row_of_photos(0.2, 4)
     scene = scene_of(photos, 0.2)
     one = found(photos, scene)
-    monkeypatch.setattr(maps, "PARALLEL_PHOTOS", 1)
+    monkeypatch.setattr(depth_maps, "PARALLEL_PHOTOS", 1)
     other = found(photos, scene)
     for name in one:
         assert one[name].depth_m.tobytes() == other[name].depth_m.tobytes()

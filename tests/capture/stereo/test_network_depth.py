@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 from tests.exact_room import CAMERA, BoxRoom
-from tests.reconstruction.opening.test_prepare import scene_of
+from tests.reconstruction.opening.test_preparation import scene_of
 
 from world2minecraft.capture.stereo import network_maps
 from world2minecraft.core.errors import CaptureError

@@ -72,7 +72,7 @@ def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, netwo
 
 
 def test_network_depth_places_the_photo_in_its_room(tmp_path, photo, monkeypatch):
-    monkeypatch.setattr(one_photo, "depth_model", lambda name: KnowsTheRoom())
+    monkeypatch.setattr(one_photo, "load_depth_model", lambda name: KnowsTheRoom())
     chosen = Parameters(depth_model="fake:room", capture={"fov_deg": str(FOV_DEG)})
     scan = open_prepared(photo, tmp_path / "OUT", chosen)
     (view,) = scan.views
@@ -87,7 +87,7 @@ def test_network_depth_places_the_photo_in_its_room(tmp_path, photo, monkeypatch
 def test_a_network_without_metres_is_refused(tmp_path, photo, monkeypatch):
     shallow = KnowsTheRoom()
     shallow.kind = "inverse"
-    monkeypatch.setattr(one_photo, "depth_model", lambda name: shallow)
+    monkeypatch.setattr(one_photo, "load_depth_model", lambda name: shallow)
     with pytest.raises(CaptureError, match="gives depth without metres; take a metric one"):
         open_prepared(photo, tmp_path / "OUT", Parameters(depth_model="fake:room"))
 
@@ -133,7 +133,7 @@ def test_wrong_options_are_refused(option, value):
 
 def test_another_predictor_makes_the_photo_anew(tmp_path, photo, network, monkeypatch):
     """What was kept of it has a place without depth; with depth it is another."""
-    monkeypatch.setattr(one_photo, "depth_model", lambda name: KnowsTheRoom())
+    monkeypatch.setattr(one_photo, "load_depth_model", lambda name: KnowsTheRoom())
     out = tmp_path / "OUT"
     bare = open_prepared(photo, out, Parameters(predictor=f"mono:{network}"))
     assert next(iter(bare.views)).depth_m is None

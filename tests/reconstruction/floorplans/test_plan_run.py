@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from roomplans import captured_room, session_of
-from test_plans_roomplan import layout
+from test_plan_grid import layout
 
 from world2minecraft import cli
 from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
