@@ -1,4 +1,4 @@
-"""A stroll through a scene: a person walks as agents walk and sees as they see, with no task."""
+"""A free walk through a scene: a person walks and sees as agents do, with no task."""
 
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.moves import apply_move

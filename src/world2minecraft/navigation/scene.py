@@ -368,7 +368,7 @@ def open_scene(
 
     Args:
         path: a run's folder, a generated house, a world of anyone, or a file such as
-            ``house.schem``; what ``dataset.source.open_scene_source`` reads.
+            ``house.schem``; what ``minecraftocc.source.open_scene_source`` reads.
         box: x0 y0 z0 x1 y1 z1 in blocks of a world of others, the last ones not included.
         blocks_per_metre: the scale, where the place does not say it.
         body: the walker's size next to a person's. None takes 1, or the largest of 0.6 and 0.4

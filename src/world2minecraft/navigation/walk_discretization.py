@@ -91,7 +91,7 @@ def discretize_walk(
     too, and a guide knows the world, it says another way to the same end.
 
     Args:
-        segment: a walk of ``segments_of``.
+        segment: a walk of ``split_into_walks``.
         move_set: how far a move goes; where ``forward_m`` is 0, a block.
         blocks_per_metre: of the world.
         walker: the world's physics.

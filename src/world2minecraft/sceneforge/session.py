@@ -4,8 +4,8 @@ Whatever asks something of the document takes its turn, first come, first served
 done at once; what takes long (objects detected or matched again, questions about the whole grid) is
 worked out by a thread, so that pages, pings and volumes are answered meanwhile, and then done as
 one operation, still in its turn. What takes seconds of a large scene runs as a job on a copy, so
-that nobody's turn waits for it. ``change_message`` and ``preview_message`` are ``Change`` and
-``Preview`` of ``wire.ts``.
+that nobody's turn waits for it. ``change_message`` makes ``Change`` of ``wire.ts``,
+``preview_message`` makes ``Preview`` of ``connection.ts``.
 """
 
 import asyncio

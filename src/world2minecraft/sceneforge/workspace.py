@@ -42,7 +42,7 @@ class Workspace:
     """The start page's state; one for each server.
 
     Args:
-        session: holds the document and the tabs (``session.hub.tell_soon``).
+        session: holds the document and the tabs (``session.broadcaster.broadcast_threadsafe``).
         home: the folder for captures and rooms made here.
         most_bytes: the most that one upload may hold.
         capture: where the capture of the open run lies, where its folder does not say so.
@@ -83,7 +83,7 @@ class Workspace:
         """Open a room in the place of what is open; every tab begins anew."""
         async with self._opening:  # A second click finds the room open, not at work.
             if self.session.editor is not None and self.session.editor.holds(source):
-                return  # Opened anew it would find itself at work, and be read only.
+                return  # Opened again it would find its own lock, and be read only.
             editor = await asyncio.to_thread(Editor.open, source)
             for one in self.captures.all():
                 if one.run == source:

@@ -7,9 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
-from world2minecraft.capture.sfm import SfmParameters, find_poses
-from world2minecraft.capture.sfm import pycolmap_session
-from world2minecraft.capture.sfm import results
+from world2minecraft.capture.sfm import SfmParameters, find_poses, pycolmap_session, results
 from world2minecraft.capture.sfm.bundle_adjustment import project_points
 from world2minecraft.capture.sfm.camera_groups import (
     default_camera,
@@ -89,7 +87,7 @@ def test_normalising_inverts_lens_distortion():
     ],
 )
 def test_cameras_come_back_from_colmap_and_see_alike(camera):
-    with colmap.pycolmap_session() as pycolmap:
+    with pycolmap_session.pycolmap_session() as pycolmap:
         made = to_colmap(pycolmap, camera, 1, simple=False)
         assert from_colmap(made) == camera
         points = np.random.default_rng(0).uniform([-1, -1, 2], [1, 1, 4], (20, 3))
@@ -169,7 +167,7 @@ def test_pycolmap_is_optional(monkeypatch):
 
 
 def test_failures_of_colmap_are_one_line():
-    with pytest.raises(CaptureError) as caught, colmap.pycolmap_session():
+    with pytest.raises(CaptureError) as caught, pycolmap_session.pycolmap_session():
         raise RuntimeError("[x.cc:1] Check failed\nand more")
     assert str(caught.value) == (
         "photos: their places could not be found ([x.cc:1] Check failed); "

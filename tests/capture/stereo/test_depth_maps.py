@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from tests.capture.stereo.plane_photos import row_of_photos, scene_of
 
-from world2minecraft.capture.stereo import StereoParameters, compute_depth_maps
-from world2minecraft.capture.stereo import depth_maps
+from world2minecraft.capture.stereo import StereoParameters, compute_depth_maps, depth_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo

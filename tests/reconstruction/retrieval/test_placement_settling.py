@@ -11,7 +11,10 @@ from label_grids import grid_of
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 from world2minecraft.furniture.solids import box_m, depth_m, solids_m
-from world2minecraft.reconstruction.retrieval.placement_settling import settle, within_rooms
+from world2minecraft.reconstruction.retrieval.placement_settling import (
+    settle_placements,
+    within_rooms,
+)
 
 VOXEL_M = 0.08
 ROOM = Layout(np.array([[0, 0], [4, 0], [4, 3], [0, 3]], float), 2.4)
@@ -53,7 +56,7 @@ def test_settled_placements_neither_collide_nor_lie_outside(rows, room):
     placed = [
         put(number, name, x, y, z, turns) for number, (name, x, y, z, turns) in enumerate(rows, 1)
     ]
-    settled = settle(placed, EMPTY, [room])
+    settled = settle_placements(placed, EMPTY, [room])
     assert collisions(settled, grid=EMPTY) == []
     assert out_of_rooms(settled, [room]) == []
     assert [one.object_id for one in settled] == sorted(one.object_id for one in settled)
@@ -62,7 +65,7 @@ def test_settled_placements_neither_collide_nor_lie_outside(rows, room):
 @pytest.mark.parametrize("room", [ROOM, ELL, CUT])
 def test_what_lies_within_and_apart_stays_as_it_is(room):
     placed = [put(1, "cabinet", 0.3, 0.6), put(2, "chair", 1.2, 1.2), put(3, "box", 1.2, 2.5)]
-    settled = settle(placed, EMPTY, [room])
+    settled = settle_placements(placed, EMPTY, [room])
     for before, after in zip(placed, settled, strict=True):
         np.testing.assert_allclose(box_m(after), box_m(before), atol=1e-4)
 
@@ -70,9 +73,9 @@ def test_what_lies_within_and_apart_stays_as_it_is(room):
 def test_tucked_chair_stays_one_through_the_top_moves():
     table = put(1, "dining_table", 2.0, 1.5)
     tucked = put(2, "chair", 2.4, 1.5, turns=2)  # Its back stands before the top.
-    assert box_m(settle([table, tucked], EMPTY)[1]) == pytest.approx(box_m(tucked))
+    assert box_m(settle_placements([table, tucked], EMPTY)[1]) == pytest.approx(box_m(tucked))
     through = put(2, "chair", 2.15, 1.5, turns=2)
-    moved = settle([table, through], EMPTY)
+    moved = settle_placements([table, through], EMPTY)
     assert collisions([table, through]) == [(0, 1)] and collisions(moved) == []
     assert moved[1].template == "chair"
     assert box_m(moved[0]) == pytest.approx(box_m(table)), "people move chairs, not tables"
@@ -111,7 +114,7 @@ def test_far_outside_is_left_out_upstairs_stays_upstairs():
 
 def test_the_same_placements_settle_the_same():
     placed = [put(n, "chair", 1.0 + 0.1 * n, 1.0, turns=n % 4) for n in range(1, 6)]
-    first, again = (settle(placed, EMPTY, [ROOM]) for _ in range(2))
+    first, again = (settle_placements(placed, EMPTY, [ROOM]) for _ in range(2))
     assert [box_m(a).tolist() for a in first] == [box_m(b).tolist() for b in again]
 
 
@@ -127,7 +130,7 @@ def test_cells_that_stand_out_of_their_thin_box_are_parted_too():
     thin = Placement(2, 11, "cells", np.array([x, y, low + 0.24]), size_m, 0, 1)
     beside = put(1, "box", x - 0.2 + 0.02, y, low)  # 3 cm into the thin box, 6 into its cells.
     assert depth_m(solids_m(beside, grid), solids_m(thin, grid)) > 0.05
-    settled = settle([beside, thin], grid)
+    settled = settle_placements([beside, thin], grid)
     first, second = (solids_m(one, grid) for one in settled)
     assert depth_m(first, second) <= 0.04
     assert [one.object_id for one in settled] == [1, 2]

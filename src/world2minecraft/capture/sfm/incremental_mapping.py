@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.sfm import results
 from world2minecraft.capture.sfm.bundle_adjustment import (
     MIN_POINTS,
     SparseModel,
@@ -32,7 +31,14 @@ from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
-from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
+from world2minecraft.capture.sfm.results import (
+    check_enough,
+    explain_left_out,
+    median_depth,
+    no_model_error,
+    to_sparse_scene,
+    too_few_error,
+)
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, SparseScene
@@ -197,17 +203,17 @@ def find_poses(
         progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1}
     )
     features = extract_features(photos, chosen, steps)
-    results.check_enough(features, MIN_PHOTOS)
+    check_enough(features, MIN_PHOTOS)
     groups = group_cameras(features)
     links = match_photos(features, groups, chosen, steps)
     found, notes, models = map_from_scratch(features, groups, links, chosen, steps)
     if len(found.poses) < MIN_PLACED_SHARE * len(features):
-        raise results.too_few_error(len(found.poses), len(features))
+        raise too_few_error(len(found.poses), len(features))
     steps.end()
     change = Similarity(
         MEDIAN_DEPTH / median_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)
     )
-    out = results.explain_left_out(features, found.poses, links)
+    out = explain_left_out(features, found.poses, links)
     if len(found.poses) < ENOUGH_SHARE * len(features):
         notes.append(f"only {len(found.poses)} of {len(features)} photos could be placed")
     return to_sparse_scene(
@@ -234,7 +240,7 @@ def map_from_scratch(
     """
     models, groups = _best_trial(photos, groups, links, parameters, steps)
     if not models or len(models[0]) < MIN_PHOTOS:
-        raise results.no_model_error(photos, links, camera_by_photo(groups))
+        raise no_model_error(photos, links, camera_by_photo(groups))
     whole, count = merge_models(models)
     notes = [f"{count + 1} groups of photos were joined by those they share"] if count else []
     poses = {i: pose for i, (pose, _) in sorted(whole.items())}
@@ -242,7 +248,7 @@ def map_from_scratch(
     gates = parameters.gates_px[-2:] if count else parameters.gates_px[-1:]
     found = refine_poses(photos, links, poses, replace_cameras(groups, cameras), gates, parameters)
     if len(found.poses) < MIN_PHOTOS or len(found.points) < MIN_POINTS:
-        raise results.no_model_error(photos, links, camera_by_photo(groups))
+        raise no_model_error(photos, links, camera_by_photo(groups))
     if any(group.is_fixed for group in groups):
         notes.append("the photos cannot tell their lens: a usual one was assumed")
     return found, notes, len(models)

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from world2minecraft.capture.sfm import results
 from world2minecraft.capture.sfm.bundle_adjustment import SparseModel, triangulate_and_adjust
 from world2minecraft.capture.sfm.camera_groups import (
     CameraGroup,
@@ -24,7 +23,12 @@ from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_session
-from world2minecraft.capture.sfm.results import median_depth, to_sparse_scene
+from world2minecraft.capture.sfm.results import (
+    check_enough,
+    explain_left_out,
+    median_depth,
+    to_sparse_scene,
+)
 from world2minecraft.capture.sfm.similarity_transform import Similarity, align_similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, no_progress
@@ -161,7 +165,7 @@ def check_poses(
         progress, {"features": count, "alike": 9, "matches": 9, "places": count + 1}
     )
     features = extract_features(photos, chosen, steps)
-    results.check_enough(features, 2)
+    check_enough(features, 2)
     groups = group_cameras(features)
     links = match_photos(features, groups, chosen, steps)
     poses = {i: p for i, one in enumerate(features) if (p := one.camera_to_scan) is not None}
@@ -364,7 +368,7 @@ def _to_scene(stated, found, change, retained, fresh, facts) -> SparseScene:
     for i in wrong:
         how = "found anew" if i in fresh else "left out"
         notes.append(f"the stated pose of {photos[i].name} contradicts the pictures: {how}")
-    out = dict(results.explain_left_out(photos, placed, stated.links))
+    out = dict(explain_left_out(photos, placed, stated.links))
     for i in wrong:
         if i not in placed:
             out[photos[i].name] = "its stated pose contradicts the pictures; take it again"

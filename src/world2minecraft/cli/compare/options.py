@@ -9,7 +9,7 @@ import typer
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts import ComparedScene
 
-DEFAULT_PX_M = 3.5 / 256  # As compare.importers has it, which a help page need not import.
+DEFAULT_PX_M = 3.5 / 256  # As paper.layouts.importers has it, which a help page need not import.
 MAX_LISTED = 5
 
 Format = Annotated[

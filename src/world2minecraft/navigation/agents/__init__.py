@@ -1,4 +1,4 @@
-"""Agents: baselines that see nothing, experts that know the scene, and vision-language models."""
+"""Agents: blind baselines, privileged experts that know the scene, and vision-language models."""
 
 from world2minecraft.navigation.agents.registry import AGENTS, REFERENCE_AGENTS, make_agent
 from world2minecraft.navigation.agents.values import Agent, Decision, Guide, Observation, Task

@@ -117,7 +117,7 @@ def build_items(works: Sequence[SceneItems], seed: int = 0) -> list[Item]:
     """Return the items of scenes, those of a trajectory beside each other.
 
     Args:
-        works: of ``work_scene``, one a scene.
+        works: of ``build_scene_items``, one a scene.
         seed: orders choices and letters.
     """
     pools = {split: _pool(works, split) for split in _splits(works)}

@@ -48,7 +48,7 @@ def find_keyframes(walk: DiscreteWalk, move_set: MoveSet, step_m: float) -> list
     """Return the keyframes of a walk: its start, the end of each run, its end.
 
     Args:
-        walk: of ``discretise``, STOP last.
+        walk: of ``discretize_walk``, STOP last.
         move_set: how far a turn goes.
         step_m: how far a step goes.
     """

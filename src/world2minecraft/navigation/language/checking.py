@@ -80,8 +80,8 @@ def find_mentions(text: str, names: Iterable[str]) -> list[Mention]:
 
     Example:
         >>> find_mentions("Pass the red chair, stop at the chair.", ["red chair", "blue chair"])
-        [Spoken(phrase='red chair', names=('red chair',)), \
-Spoken(phrase='chair', names=('blue chair', 'red chair'))]
+        [Mention(phrase='red chair', names=('red chair',)), \
+Mention(phrase='chair', names=('blue chair', 'red chair'))]
     """
     meant: dict[str, set[str]] = {}
     for name in names:

@@ -1,6 +1,6 @@
 """What an instruction says, found again in its words: turns and landmarks, in order.
 
-It reads what ``grammar`` writes and plain English of people and models: "take a left" is a turn,
+It reads what ``generation`` writes and plain English of people and models: "take a left" is a turn,
 "on your left" is none. What it cannot be sure of it counts, so that a doubt refuses a text rather
 than lets a wrong one pass.
 """
@@ -40,7 +40,7 @@ def parse_instruction(text: str, names: Iterable[str]) -> ParsedInstruction:
 
     Example:
         >>> parse_instruction("Take a left at the sofa, the bed is on your right.", ["bed", "sofa"])
-        Told(turns=('left',), landmarks=('sofa', 'bed'))
+        ParsedInstruction(turns=('left',), landmarks=('sofa', 'bed'))
     """
     landmarks, rest = _landmarks(text, names)
     return ParsedInstruction(_turns(rest), landmarks)

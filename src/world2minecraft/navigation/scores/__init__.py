@@ -1,7 +1,7 @@
 """How well an agent walked and answered: pure functions over paths and answers.
 
-``navigation`` scores episodes (NE, SR, OSR, SPL, SoftSPL, nDTW, SDTW, CLS), ``paths`` compares two
-paths, ``rates`` tells how sure a rate is and whether two agents differ.
+``navigation`` scores episodes (NE, SR, OSR, SPL, SoftSPL, nDTW, SDTW, CLS), ``path_similarity``
+compares two paths, ``confidence`` says how sure a rate is and whether two agents differ.
 """
 
 from world2minecraft.navigation.scores.confidence import Rate, paired_p, rate

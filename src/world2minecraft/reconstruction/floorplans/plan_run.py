@@ -26,7 +26,7 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
     straightened,
 )
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.retrieval.placement_settling import settle
+from world2minecraft.reconstruction.retrieval.placement_settling import settle_placements
 from world2minecraft.reconstruction.run_folder import check_writable
 from world2minecraft.reconstruction.stages import run_stage
 
@@ -94,7 +94,7 @@ def build_captured(
     held = cells_of_plan(plan, parameters.voxel_m)
     layouts = layouts_of(plan)
     if not as_told:
-        held = replace(held, placements=settle(held.placements, held.grid, layouts))
+        held = replace(held, placements=settle_placements(held.placements, held.grid, layouts))
     check_writable(out)
     scan = scan_of_plan(plan, name)
     _write_run(out, held, layouts, scan)

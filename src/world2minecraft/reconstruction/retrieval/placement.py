@@ -17,7 +17,10 @@ from world2minecraft.furniture.facing import Surroundings, estimate_facing, read
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
-from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, settle
+from world2minecraft.reconstruction.retrieval.placement_settling import (
+    floor_under_m,
+    settle_placements,
+)
 from world2minecraft.reconstruction.retrieval.template_matching import (
     NO_SHIFT,
     Bias,
@@ -134,7 +137,7 @@ def furnish(
             placed += _furnish_one(grid, instance, around, chosen, floor_m)
     if chosen.paper_compat:
         return tuple(one.placement for one in placed)
-    return settle(choose(placed), grid, rooms)
+    return settle_placements(choose(placed), grid, rooms)
 
 
 def _furnish_one(

@@ -284,7 +284,7 @@ class Change(NamedTuple):
     placement: Placement | None
 
 
-def settle(
+def settle_placements(
     placements: Sequence[Placement], grid: OccupancyGrid, rooms: Sequence[Layout] = ()
 ) -> tuple[Placement, ...]:
     """Return the placements, in their order, within their rooms and without collisions.

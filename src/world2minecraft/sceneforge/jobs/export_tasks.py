@@ -42,7 +42,7 @@ def export(
         folder: the scene.
         form: a name of ``formats.volume_formats``, ``world`` or ``png``.
         target: where the file goes.
-        choice: as ``tasks.parameters_of``.
+        choice: as ``reconstruct_tasks.parameters_of_choice``.
         progress: told of building and writing.
 
     Returns:
@@ -94,7 +94,7 @@ def install(
 
     Args:
         folder: the scene.
-        choice: as ``tasks.parameters_of``.
+        choice: as ``reconstruct_tasks.parameters_of_choice``.
         game: its name, its saves folder and its version or None.
         name: what the world is called; the scene's name where it is empty.
         progress: told of each step.

@@ -55,9 +55,7 @@ def test_a_zip_of_it_is_the_same(tmp_path, views, same_views):
     same_views(open_scan(zipped(tmp_path, tmp_path / "a.zip")), views)
 
 
-def test_json_trajectory_is_world_to_camera_column_major(
-    tmp_path, views, same_views
-):
+def test_json_trajectory_is_world_to_camera_column_major(tmp_path, views, same_views):
     write_images(tmp_path, views)
     parameters = [
         {
