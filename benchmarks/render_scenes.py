@@ -20,7 +20,7 @@ from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
 from world2minecraft.procgen import generate_room
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
+from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
 from world2minecraft.rendering.block_elements import (
     BlockModel,
     Element,
@@ -219,7 +219,7 @@ def room(scale: float, seed: int = 1, kind: str = "living", style: str = "blocks
         origin_m=made.origin_m,
     )
     found = find_objects(grid, FindParameters())
-    placements = furnish(found.grid, found.instances, FurnishParameters())
+    placements = place_templates(found.grid, found.instances, FurnishParameters())
     return build_volume(
         found.grid,
         placements,

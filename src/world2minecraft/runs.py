@@ -10,9 +10,9 @@ from typing import Any
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.report import write_brief_report, write_report
-from world2minecraft.evaluation.report.jit_warmup import pictures_compiled_meanwhile
+from world2minecraft.evaluation.report.jit_warmup import compile_pictures_meanwhile
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
-from world2minecraft.reconstruction.opening import open_prepared
+from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import STAGES, read_registered, reconstruct
 from world2minecraft.reconstruction.resume import resume_parameters
@@ -33,9 +33,9 @@ def run_capture(
     """
     if start == "report":
         as_before = resume_parameters(out, start, STAGES, chosen).parameters
-        scan = read_registered(open_prepared(capture, out, as_before, labels, progress), out)
+        scan = read_registered(prepare_and_open(capture, out, as_before, labels, progress), out)
     else:
-        with pictures_compiled_meanwhile():
+        with compile_pictures_meanwhile():
             scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None
     return write_report(out, scan, truth=truth, progress=progress)

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.paper import filled, read_results, read_table, table_names
+from world2minecraft.paper import fill_table, read_results, read_table, table_names
 from world2minecraft.paper.table_writer import as_latex, as_markdown, as_text, grid_of
 
 QUALITY = """\
@@ -108,12 +108,12 @@ layouts:
 
 
 def test_a_users_results_stand_in_place_of_ours(tmp_path):
-    table, ours = filled(read_table("layouts"), read_results(told(tmp_path, MINE)))
+    table, ours = fill_table(read_table("layouts"), read_results(told(tmp_path, MINE)))
     rows = grid_of(table, ours).rows
     assert rows[2] == ["  ours [A]", "[a]", "[a]", "0.7", "[b]", "[b]", "[b]"]
     assert rows[4][:4] == ["  ours [B]", "0.4", "0", "[c]"]
     assert rows[-1] == ["my method", "0.1", "", "", "[b]", "[b]", "[b]"]
-    assert filled(read_table("vln"), read_results(told(tmp_path, MINE))) == filled(
+    assert fill_table(read_table("vln"), read_results(told(tmp_path, MINE))) == fill_table(
         read_table("vln")
     )
 
@@ -134,7 +134,7 @@ def test_json_names_the_keys_that_results_take(tmp_path, capsys):
 
 
 def test_other_forms_have_all_cells(capsys):
-    one = filled(read_table("refinement"))
+    one = fill_table(read_table("refinement"))
     grid = grid_of(*one)
     markdown = as_markdown(*one).splitlines()
     body = [line for line in markdown if line.startswith("|")]
@@ -151,13 +151,13 @@ def test_other_forms_have_all_cells(capsys):
 
 @pytest.mark.parametrize("name", table_names())
 def test_no_line_is_wider_than_a_page(name):
-    text = as_text(*filled(read_table(name)))
+    text = as_text(*fill_table(read_table(name)))
     assert [line for line in text.splitlines() if len(line) > 100] == []
 
 
 def test_wide_table_wraps_and_loses_no_cell():
-    grid = grid_of(*filled(read_table("occupancy")))
-    lines = as_text(*filled(read_table("occupancy"))).splitlines()
+    grid = grid_of(*fill_table(read_table("occupancy")))
+    lines = as_text(*fill_table(read_table("occupancy"))).splitlines()
     heads = [line for line in lines if line.split()[:2] == ["Setting", "Method"]]
     assert len(heads) == 2
     assert heads[0].split() + heads[1].split()[2:] == grid.rows[0]

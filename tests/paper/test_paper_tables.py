@@ -13,7 +13,7 @@ from world2minecraft.minecraftocc.statistics.published_figures import (
     PUBLISHED_SETS,
 )
 from world2minecraft.navigation.data.statistics import PAPER_LENGTHS
-from world2minecraft.paper import filled, read_table, table_names
+from world2minecraft.paper import fill_table, read_table, table_names
 from world2minecraft.paper.table_definitions import measured
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -64,7 +64,7 @@ def test_a_table_is_whole(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_no_cell_is_both_measured_and_told_to_be_lacking_for_all(name):
     """Each row of ours says what it was measured on and how; and only known rows have one."""
-    table, ours = filled(read_table(name))
+    table, ours = fill_table(read_table(name))
     assert set(ours) <= {row.key for row in table.rows}
     for told in ours.values():
         assert told.data and told.command
@@ -84,7 +84,7 @@ def test_what_we_measured_stands_in_the_docs(table, row, ours):
 def commands():
     yield from (ours.command for _, _, ours in MEASURED)
     for name in NAMES:
-        table, ours = filled(read_table(name))
+        table, ours = fill_table(read_table(name))
         yield from (told.command for told in ours.values())
         yield from (lack.command for lack in table.lacks)
     text = (ROOT / "docs" / "reproduce.md").read_text()
@@ -150,7 +150,7 @@ def test_accuracies_are_shares_of_the_right_split_but_one():
     sizes = printed("dataset-sizes")
     assert sizes["base-next-view"]["test"] == str(TESTED["extend-next-view"])
     assert sizes["extend-next-action"]["test"] == str(TESTED["base-next-action"])
-    ours = filled(read_table("dataset-sizes"))[1]
+    ours = fill_table(read_table("dataset-sizes"))[1]
     assert {key: int(ours[key].cells["test"]) for key in TESTED} == TESTED
 
 
@@ -199,9 +199,9 @@ def _note(name, key, column):
 
 
 def test_classes_and_hyperparameters_are_the_programs_own():
-    table, ours = filled(read_table("classes"))
+    table, ours = fill_table(read_table("classes"))
     assert all(ours[row.key].cells["map"] == row.cells[0] for row in table.rows)
-    told = filled(read_table("hyperparameters"))[1]
+    told = fill_table(read_table("hyperparameters"))[1]
     same = (
         "learning-rate",
         "epochs",

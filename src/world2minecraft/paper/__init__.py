@@ -6,7 +6,7 @@ that tells it. ``from_program`` reads what the program itself knows: the mapping
 recipes of fine-tuning, the sizes. ``layout`` puts all of it into one table, ``writing`` prints it.
 """
 
-from world2minecraft.paper.measured_values import filled
+from world2minecraft.paper.measured_values import fill_table
 from world2minecraft.paper.table_definitions import (
     Ours,
     PaperTable,
@@ -15,4 +15,4 @@ from world2minecraft.paper.table_definitions import (
     table_names,
 )
 
-__all__ = ["Ours", "PaperTable", "filled", "read_results", "read_table", "table_names"]
+__all__ = ["Ours", "PaperTable", "fill_table", "read_results", "read_table", "table_names"]

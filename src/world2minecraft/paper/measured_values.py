@@ -168,7 +168,9 @@ def _counts(train: int, test: int) -> dict[str, str]:
     return {"train": f"{train:,}", "test": f"{test:,}", "all": f"{train + test:,}"}
 
 
-def filled(table: PaperTable, results: Results | None = None) -> tuple[PaperTable, dict[str, Ours]]:
+def fill_table(
+    table: PaperTable, results: Results | None = None
+) -> tuple[PaperTable, dict[str, Ours]]:
     """Return a table and our rows of it, by key; rows that a user adds are in the table, too.
 
     A row of the user's ``results`` stands in place of ours, whole: no row mixes two measurements.

@@ -33,7 +33,7 @@ from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
 from world2minecraft.reconstruction.registration import apply_corrections, register
 from world2minecraft.reconstruction.run_folder import check_writable
-from world2minecraft.reconstruction.stages import labelled
+from world2minecraft.reconstruction.stages import label_grid
 from world2minecraft.rendering.preview import preview
 
 FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.
@@ -74,7 +74,7 @@ class LiveMap:
         """
         self._next = 2 * max(self.frames, FIRST_PLACING // 2)
         try:
-            scan = placed_scan(capture, self.parameters, labels)
+            scan = open_registered(capture, self.parameters, labels)
         except InputError:
             return False
         map_ = EvidenceMap(scan.scan_to_room, self.parameters.fuse)
@@ -169,7 +169,7 @@ class LiveRoom:
         write_json(self.frames_folder / "capture.json", self._stated | {"frames": self._entries})
 
 
-def placed_scan(
+def open_registered(
     capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = no_progress
 ) -> Scan:
     """Return a capture's scan, registered and placed, by the stages that the batch runs.
@@ -192,7 +192,7 @@ def show(live: LiveMap, out: Path) -> None:
         CaptureError: no frame gave evidence yet. OutputError: the folder cannot be written.
     """
     chosen, evidence = live.parameters, live.fused()
-    grid = labelled(remove_floaters(extract_grid(evidence), chosen.clean), evidence, chosen)
+    grid = label_grid(remove_floaters(extract_grid(evidence), chosen.clean), evidence, chosen)
     write_room(out / "room.npz", grid, evidence.scan_to_room)
     volume = build_volume(
         grid, (), (), blocks_per_metre=chosen.blocks_per_metre, parameters=chosen.build

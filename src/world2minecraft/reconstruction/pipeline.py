@@ -33,7 +33,7 @@ from world2minecraft.furniture.user_library import user_design_files, user_desig
 from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
-from world2minecraft.reconstruction.opening import open_prepared
+from world2minecraft.reconstruction.opening import prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.registration import (
     apply_corrections,
@@ -78,7 +78,7 @@ def reconstruct(
     early = start is None or STAGES.index(start) <= STAGES.index("fuse")
     network = predictor(chosen.predictor, chosen.occupy) if early else None
     with run.timed("scan"):
-        scan = open_prepared(capture, out, chosen, labels, progress)
+        scan = prepare_and_open(capture, out, chosen, labels, progress)
     stated = manifest(capture, labels, chosen, out)
     run.begin(resume_manifest(out, start, stated, resumed))
     if run.needs("scan"):

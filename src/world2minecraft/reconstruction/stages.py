@@ -43,12 +43,12 @@ from world2minecraft.reconstruction.fusion import (
 )
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.retrieval import furnish
+from world2minecraft.reconstruction.retrieval import place_templates
 from world2minecraft.reconstruction.semantics import (
     find_structure,
     labeller,
+    remove_wall_guesses,
     with_whole_walls,
-    without_wall_guesses,
 )
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
@@ -61,14 +61,14 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
     write_layouts(folder / "layout.json", rooms)
     from_photos = read_depth_kind(folder / "scan.json") == "stereo"
     if from_photos:
-        grid = without_wall_guesses(grid, rooms)
-    grid = labelled(grid, evidence, chosen, from_photos=from_photos)
+        grid = remove_wall_guesses(grid, rooms)
+    grid = label_grid(grid, evidence, chosen, from_photos=from_photos)
     if from_photos:
         grid = with_whole_walls(grid, rooms)
     write_room(folder / "room.npz", grid, evidence.scan_to_room)
 
 
-def labelled(
+def label_grid(
     grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters, *, from_photos: bool = False
 ) -> OccupancyGrid:
     """Return the cleaned read-out with a class and a calibrated confidence for each cell.
@@ -98,7 +98,7 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``objects.json`` -> ``placements.json``."""
     grid, _ = read_room(folder / "room.npz")
     instances = read_objects(folder / "objects.json", grid)
-    placed = furnish(grid, instances, chosen.furnish, read_rooms(folder, grid))
+    placed = place_templates(grid, instances, chosen.furnish, read_rooms(folder, grid))
     write_placements(folder / "placements.json", placed)
 
 

@@ -32,7 +32,7 @@ from world2minecraft.formats.occupancy_files import (
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture.facing import Surroundings, estimate_facing, read_surroundings
 from world2minecraft.reconstruction.instances import find_objects
-from world2minecraft.reconstruction.retrieval import furnish
+from world2minecraft.reconstruction.retrieval import place_templates
 
 MAX_CENTERS = 65535
 RUN_FILES = ("room.npz", "objects.json", "placements.json")
@@ -218,4 +218,4 @@ def detect_objects(
         grid, instances = found.grid, found.instances
     else:
         grid, instances = instances_from_centers(grid, centers)
-    return grid, objects_of(instances, furnish(grid, instances, None, rooms))
+    return grid, objects_of(instances, place_templates(grid, instances, None, rooms))

@@ -9,14 +9,18 @@ from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.editing.scene import Tools
 from world2minecraft.reconstruction.instances import FindParameters, find_objects, measure_object
-from world2minecraft.reconstruction.retrieval import FurnishParameters, fit_template, furnish
+from world2minecraft.reconstruction.retrieval import (
+    FurnishParameters,
+    fit_template,
+    place_templates,
+)
 
 
 def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
     """Return the tools for a scene whose furniture stays within ``rooms``, where any are given."""
 
     def match(grid: OccupancyGrid, one: ObjectInstance) -> tuple[Placement, ...]:
-        return furnish(grid, (one,), FurnishParameters(), rooms)
+        return place_templates(grid, (one,), FurnishParameters(), rooms)
 
     def fit(grid: OccupancyGrid, one: ObjectInstance, name: str, turns: int | None) -> Placement:
         return fit_template(grid, one, name, turns, rooms)

@@ -83,7 +83,7 @@ def started(monkeypatch):
 
 
 def test_a_first_run_waits_for_what_is_compiled_meanwhile(started):
-    with ahead.pictures_compiled_meanwhile():
+    with ahead.compile_pictures_meanwhile():
         assert [one.words[1:] for one in started] == [
             ["-m", "world2minecraft.evaluation.report.jit_warmup"]
         ]
@@ -92,7 +92,7 @@ def test_a_first_run_waits_for_what_is_compiled_meanwhile(started):
 
 
 def test_a_run_that_fails_does_not_wait(started):
-    with pytest.raises(OSError, match="full"), ahead.pictures_compiled_meanwhile():
+    with pytest.raises(OSError, match="full"), ahead.compile_pictures_meanwhile():
         raise OSError("full")
     assert started[0].done == ["kill", "wait"]
 
@@ -102,6 +102,6 @@ def test_a_run_that_fails_does_not_wait(started):
 )
 def test_warmup_starts_only_where_needed_and_possible(started, monkeypatch, what):
     monkeypatch.setattr(ahead, *what)
-    with ahead.pictures_compiled_meanwhile():
+    with ahead.compile_pictures_meanwhile():
         assert not started
     assert not started

@@ -12,7 +12,7 @@ from world2minecraft.paper.layouts import ComparedScene
 from world2minecraft.paper.layouts.designs import design_of, designs
 from world2minecraft.paper.layouts.importers.reading import Box, object_of
 from world2minecraft.paper.layouts.world import plan_of
-from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)
 
@@ -52,7 +52,7 @@ def test_a_name_or_else_a_class_finds_what_stands_for_a_thing(name, size, expect
 
 
 def test_things_stand_in_their_boxes_and_face_as_stated():
-    held = cells_of_plan(plan_of(scene(BED, CHAIR)))
+    held = rasterize_plan(plan_of(scene(BED, CHAIR)))
     bed, chair = held.placements
     assert (bed.class_id, bed.template) == (int(SemanticClass.BED), "double_bed")
     assert (chair.template, chair.quarter_turns) == ("chair", 2)
@@ -67,17 +67,17 @@ def test_things_stand_in_their_boxes_and_face_as_stated():
 def test_a_front_that_looks_at_a_wall_is_left_so():
     """A plan of an app is judged there; a layout is shown with its faults."""
     wrong = thing("wardrobe", (0.3, 1.5, 1.0), (0.6, 1.2, 2.0), 180.0)
-    (placed,) = cells_of_plan(plan_of(scene(wrong))).placements
+    (placed,) = rasterize_plan(plan_of(scene(wrong))).placements
     assert placed.quarter_turns == 2
 
 
 def test_things_in_walls_are_cut_and_larger_ones_stay():
     out = thing("desk", (4.3, 1.5, 0.37), (1.2, 1.2, 0.74))
-    held = cells_of_plan(plan_of(scene(out)))
+    held = rasterize_plan(plan_of(scene(out)))
     cells = np.argwhere(held.grid.instance == 1) * 0.08 + held.grid.origin_m
     assert len(cells) and cells[:, 0].max() < 4.0
     small = thing("chair", (1.0, 1.5, 0.45), (0.5, 0.5, 0.9))
-    both = cells_of_plan(plan_of(scene(small, BED)))
+    both = rasterize_plan(plan_of(scene(small, BED)))
     assert both.placements[0].template == "double_bed"
 
 

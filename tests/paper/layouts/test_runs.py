@@ -18,7 +18,7 @@ from world2minecraft.paper.layouts.importers.reading import Box, object_of
 from world2minecraft.paper.layouts.reference import is_truth, true_scene
 from world2minecraft.paper.layouts.world import plan_of
 from world2minecraft.reconstruction.floorplans import layouts_of
-from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2, 3], 0.9, 2),))
 THINGS = (
@@ -33,7 +33,7 @@ SCAN_TO_ROOM[:3, 3] = [1.0, 2.0, 0.3]
 def run(tmp_path):
     """A folder as a run leaves it, but for its world."""
     plan = plan_of(ComparedScene("room", "m", (ROOM,), THINGS))
-    held, folder = cells_of_plan(plan), tmp_path / "OUT"
+    held, folder = rasterize_plan(plan), tmp_path / "OUT"
     write_room(folder / "room.npz", held.grid, SCAN_TO_ROOM)
     write_layouts(folder / "layout.json", layouts_of(plan))
     write_placements(folder / "placements.json", held.placements)

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
 from world2minecraft.reconstruction.floorplans import layouts_of, straightened
-from world2minecraft.reconstruction.floorplans.room_outlines import moved_plan
+from world2minecraft.reconstruction.floorplans.room_outlines import move_plan
 
 ELL = np.array([[0, 0], [4, 0], [4, 2], [2.5, 2], [2.5, 3.2], [0, 3.2]], float)
 
@@ -79,7 +79,7 @@ def test_nothing_is_mirrored_and_fronts_follow(tmp_path, document):
     session = session_of(21.0, (3.0, -1.4, 0.7))
     plan = read_roomplan(written(tmp_path, document))
     back = np.linalg.inv(session) @ plan.plan_to_session
-    (found,) = layouts_of(moved_plan(plan, np.round(back, 9)))
+    (found,) = layouts_of(move_plan(plan, np.round(back, 9)))
     for item, true in zip(found.objects, layout().objects, strict=True):
         assert item.center_m == pytest.approx(true.center_m, abs=1e-6)
         assert (item.yaw_deg - true.yaw_deg + 180) % 360 - 180 == pytest.approx(0, abs=1e-6)

@@ -24,14 +24,14 @@ from world2minecraft.reconstruction.floorplans import (
     build_plan,
     laid_plan,
     layouts_of,
+    merge_plan_openings,
     plan_votes,
     read_roomplan,
     straightened,
-    with_plan_openings,
 )
 from world2minecraft.reconstruction.floorplans.furniture_categories import template_of
-from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
-from world2minecraft.reconstruction.floorplans.room_outlines import moved_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
+from world2minecraft.reconstruction.floorplans.room_outlines import move_plan
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import run_plan
 
@@ -52,7 +52,7 @@ def plan(place):
 
 @pytest.fixture(scope="module")
 def held(plan):
-    return cells_of_plan(plan)
+    return rasterize_plan(plan)
 
 
 def area_m2(grid, kind):
@@ -130,7 +130,7 @@ def test_rooms_are_parted_by_walls_and_joined_by_doors(tmp_path):
     ]
     path = tmp_path / "home.json"
     path.write_text(json.dumps({"identifier": "x", "rooms": rooms, "walls": []}))
-    grid = cells_of_plan(straightened(read_roomplan(path))).grid
+    grid = rasterize_plan(straightened(read_roomplan(path))).grid
     shoulder = grid.labels[:, :, round((1.5 - grid.origin_m[2]) / grid.voxel_m)]
     assert label_components(shoulder == 0, corners=False)[1] == 1
     high = grid.labels[:, :, round((2.2 - grid.origin_m[2]) / grid.voxel_m)]
@@ -173,7 +173,7 @@ def test_a_plan_of_another_frame_is_laid_on_the_walls(plan, held, turns):
     evidence = evidence_of(held, np.eye(4))
     move = rotation_about_z(90.0 * turns + 8.0)
     move[:3, 3] = [12.0, -7.0, 1.3]
-    laid = laid_plan(moved_plan(plan, move), evidence)
+    laid = laid_plan(move_plan(plan, move), evidence)
     assert "laid on the scan's walls" in laid.told
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
@@ -193,7 +193,7 @@ def test_a_square_room_fits_in_several_ways(tmp_path):
     path = tmp_path / "square.json"
     path.write_text(json.dumps(captured_room(square, SESSION)))
     plan = read_roomplan(path)
-    evidence = evidence_of(cells_of_plan(straightened(plan)), np.eye(4))
+    evidence = evidence_of(rasterize_plan(straightened(plan)), np.eye(4))
     with pytest.raises(PlanMismatchError, match="in several ways"):
         laid_plan(plan, evidence)
 
@@ -204,8 +204,8 @@ def test_furniture_tells_which_way_a_plain_room_lies(tmp_path):
     path = tmp_path / "furnished.json"
     path.write_text(json.dumps(captured_room(replace(layout(polygon), openings=()), SESSION)))
     plan = straightened(read_roomplan(path))
-    evidence = evidence_of(cells_of_plan(plan), np.eye(4))
-    laid = laid_plan(moved_plan(plan, rotation_about_z(140.0)), evidence)
+    evidence = evidence_of(rasterize_plan(plan), np.eye(4))
+    laid = laid_plan(move_plan(plan, rotation_about_z(140.0)), evidence)
     assert "walls and furniture" in laid.told
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
@@ -229,12 +229,12 @@ def test_openings_of_the_plan_join_those_that_were_found(plan):
         replace(one, start_m=one.start_m + 0.05, end_m=one.end_m + 0.05)
         for one in planned.openings
     ))  # fmt: skip
-    (joined,) = with_plan_openings([found], [shifted])
+    (joined,) = merge_plan_openings([found], [shifted])
     assert len(joined.openings) == 3
-    (same,) = with_plan_openings([planned], [planned])
+    (same,) = merge_plan_openings([planned], [planned])
     assert len(same.openings) == 3
     far = replace(planned, floor_polygon_m=planned.floor_polygon_m + 20, openings=())
-    assert with_plan_openings([far], [planned])[0].openings == ()
+    assert merge_plan_openings([far], [planned])[0].openings == ()
 
 
 def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.reconstruction.floorplans import layouts_of
-from world2minecraft.reconstruction.floorplans.plan_grid import cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 from world2minecraft.reconstruction.homes import Run
 
 KITCHEN = (0.0, 0.0, 3.6, 2.8)
@@ -32,7 +32,7 @@ def table(x, y, yaw_deg=0.0):
 def run_of(name, *rooms):
     """A finished run of rooms, as their plan alone gives it."""
     plan = CapturedPlan(tuple(rooms))
-    held = cells_of_plan(plan)
+    held = rasterize_plan(plan)
     return Run(name, held.grid, held.instances, held.placements, layouts_of(plan))
 
 

@@ -16,7 +16,7 @@ from world2minecraft.capture.summary import summary_lines
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.reconstruction.opening import one_photo, open_prepared
+from world2minecraft.reconstruction.opening import one_photo, prepare_and_open
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.runs import run_capture
 
@@ -74,7 +74,7 @@ def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, netwo
 def test_network_depth_places_the_photo_in_its_room(tmp_path, photo, monkeypatch):
     monkeypatch.setattr(one_photo, "load_depth_model", lambda name: KnowsTheRoom())
     chosen = Parameters(depth_model="fake:room", capture={"fov_deg": str(FOV_DEG)})
-    scan = open_prepared(photo, tmp_path / "OUT", chosen)
+    scan = prepare_and_open(photo, tmp_path / "OUT", chosen)
     (view,) = scan.views
     eye = scan.scan_to_room @ view.camera_to_scan
     assert eye[2, 3] == pytest.approx(1.4 * 1.03, abs=0.05)
@@ -89,12 +89,12 @@ def test_a_network_without_metres_is_refused(tmp_path, photo, monkeypatch):
     shallow.kind = "inverse"
     monkeypatch.setattr(one_photo, "load_depth_model", lambda name: shallow)
     with pytest.raises(CaptureError, match="gives depth without metres; take a metric one"):
-        open_prepared(photo, tmp_path / "OUT", Parameters(depth_model="fake:room"))
+        prepare_and_open(photo, tmp_path / "OUT", Parameters(depth_model="fake:room"))
 
 
 def test_a_photo_alone_is_refused_with_what_would_help(tmp_path, photo):
     with pytest.raises(CaptureError, match="--depth hf:ORG/NAME or --predictor mono"):
-        open_prepared(photo, tmp_path / "OUT", Parameters())
+        prepare_and_open(photo, tmp_path / "OUT", Parameters())
     assert not (tmp_path / "OUT").exists()
 
 
@@ -116,7 +116,7 @@ def test_the_lens_is_as_told_else_by_exif_else_a_usual_one(tmp_path, photo):
     ("height_m", "pitch_deg"), [(1.5, 0.0), (1.2, -20.0), (1.7, 15.0)]
 )  # fmt: skip
 def test_where_a_photo_without_depth_is_taken_to_stand(height_m, pitch_deg):
-    pose, size_m = one_photo.placed(height_m, pitch_deg)
+    pose, size_m = one_photo.place_photo(height_m, pitch_deg)
     assert pose[2, 3] == height_m
     assert np.degrees(np.arcsin(pose[2, 2])) == pytest.approx(pitch_deg)
     assert abs(pose[2, 0]) < 1e-9, "it is not rolled"
@@ -135,12 +135,12 @@ def test_another_predictor_makes_the_photo_anew(tmp_path, photo, network, monkey
     """What was kept of it has a place without depth; with depth it is another."""
     monkeypatch.setattr(one_photo, "load_depth_model", lambda name: KnowsTheRoom())
     out = tmp_path / "OUT"
-    bare = open_prepared(photo, out, Parameters(predictor=f"mono:{network}"))
+    bare = prepare_and_open(photo, out, Parameters(predictor=f"mono:{network}"))
     assert next(iter(bare.views)).depth_m is None
     chosen = Parameters(predictor=f"mono:{network}", depth_model="fake:room")
-    assert next(iter(open_prepared(photo, out, chosen).views)).depth_m is not None
+    assert next(iter(prepare_and_open(photo, out, chosen).views)).depth_m is not None
     assert (
-        next(iter(open_prepared(photo, out, replace(chosen, depth_model="")).views)).colour
+        next(iter(prepare_and_open(photo, out, replace(chosen, depth_model="")).views)).colour
         is not None
     )
 

@@ -15,13 +15,13 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.reconstruction.opening import open_prepared, prepared
 from world2minecraft.reconstruction.opening import preparation as preparing
+from world2minecraft.reconstruction.opening import prepare_and_open, prepare_capture
 from world2minecraft.reconstruction.opening.scale import (
     clicked,
     depth_ratios,
-    normalised,
-    scaled_capture,
+    normalise_scale,
+    scale_capture,
 )
 from world2minecraft.reconstruction.parameters import Parameters
 
@@ -108,13 +108,13 @@ def write_posed(folder, views):
 
 def test_a_complete_capture_is_left_alone(tmp_path, views, stood_in):
     write_plain(tmp_path / "in", views)
-    assert prepared(tmp_path / "in", tmp_path / "OUT", Parameters()) == tmp_path / "in"
+    assert prepare_capture(tmp_path / "in", tmp_path / "OUT", Parameters()) == tmp_path / "in"
     assert not stood_in
     assert not (tmp_path / "OUT").exists()
 
 
 def test_posed_photos_get_depth_and_keep_their_frame(tmp_path, views, stood_in):
-    scan = open_prepared(write_posed(tmp_path / "in", views), tmp_path / "OUT", Parameters())
+    scan = prepare_and_open(write_posed(tmp_path / "in", views), tmp_path / "OUT", Parameters())
     assert stood_in == ["check", "stereo"]
     assert (scan.depth_kind, scan.scale) == ("stereo", "metric")
     assert np.allclose(scan.room_size_m, (3.1, 4.2, 2.6), atol=0.03)
@@ -128,7 +128,7 @@ def test_posed_photos_get_depth_and_keep_their_frame(tmp_path, views, stood_in):
 
 def test_photos_alone_get_poses_depth_and_a_scale(tmp_path, views, stood_in):
     folder = write_photos(tmp_path / "in", views)
-    scan = open_prepared(folder, tmp_path / "OUT", Parameters())
+    scan = prepare_and_open(folder, tmp_path / "OUT", Parameters())
     assert stood_in == ["find", "stereo"]
     assert scan.scale == "estimated"
     assert 0 < scan.scale_sigma < 0.5
@@ -141,7 +141,7 @@ def test_photos_alone_get_poses_depth_and_a_scale(tmp_path, views, stood_in):
 def test_a_known_length_gives_the_scale(tmp_path, views, stood_in, height_m):
     folder = write_photos(tmp_path / "in", views)
     chosen = Parameters(known=("room height", height_m))
-    scan = open_prepared(folder, tmp_path / "OUT", chosen)
+    scan = prepare_and_open(folder, tmp_path / "OUT", chosen)
     assert scan.scale == "metric"
     assert np.allclose(scan.room_size_m, np.array((3.1, 4.2, 2.6)) * height_m / 2.6, rtol=0.015)
 
@@ -156,7 +156,7 @@ def test_two_clicked_points_give_the_scale(tmp_path, views, stood_in):
     length = float(np.linalg.norm(at[a] - at[b]))
     named = [f"{view.name}.png:{p % wide + 0.5},{p // wide + 0.5}" for p in (a, b)]
     chosen = Parameters(known_points=(*named, length))
-    scan = open_prepared(folder, tmp_path / "OUT", chosen)
+    scan = prepare_and_open(folder, tmp_path / "OUT", chosen)
     assert np.allclose(scan.room_size_m, (3.1, 4.2, 2.6), rtol=0.02)
 
 
@@ -170,7 +170,7 @@ def test_two_clicked_points_give_the_scale(tmp_path, views, stood_in):
 def test_clicked_points_that_are_none(tmp_path, views, stood_in, points, error, words):
     folder = write_photos(tmp_path / "in", views)
     with pytest.raises(error, match=words):
-        prepared(folder, tmp_path / "OUT", Parameters(known_points=points))
+        prepare_capture(folder, tmp_path / "OUT", Parameters(known_points=points))
 
 
 def test_depth_without_poses_keeps_its_metres(tmp_path, views, stood_in):
@@ -180,7 +180,7 @@ def test_depth_without_poses_keeps_its_metres(tmp_path, views, stood_in):
         Image.fromarray(view.colour).save(tmp_path / "in" / "rgb" / f"{view.name}.png")
         millimetres = np.round(view.depth_m * 1000).astype(np.uint16)
         Image.fromarray(millimetres).save(tmp_path / "in" / "depth" / f"{view.name}.png")
-    scan = open_prepared(tmp_path / "in", tmp_path / "OUT", Parameters())
+    scan = prepare_and_open(tmp_path / "in", tmp_path / "OUT", Parameters())
     assert stood_in == ["find"]
     assert (scan.depth_kind, scan.scale) == ("sensor", "metric")
     assert np.allclose(scan.room_size_m, (3.1, 4.2, 2.6), atol=0.03)
@@ -190,31 +190,31 @@ def test_depth_without_poses_keeps_its_metres(tmp_path, views, stood_in):
 
 def test_what_was_made_is_taken_again_until_something_changes(tmp_path, views, stood_in):
     folder, out = write_posed(tmp_path / "in", views), tmp_path / "OUT"
-    first = prepared(folder, out, Parameters())
+    first = prepare_capture(folder, out, Parameters())
     held = {path: path.read_bytes() for path in first.rglob("*") if path.is_file()}
-    assert prepared(folder, out, Parameters()) == first
+    assert prepare_capture(folder, out, Parameters()) == first
     assert stood_in == ["check", "stereo"]
-    prepared(folder, out, Parameters(blocks_per_metre=2))
+    prepare_capture(folder, out, Parameters(blocks_per_metre=2))
     assert stood_in == ["check", "stereo"]
     (first / "prepared.json").unlink()
-    prepared(folder, out, Parameters())
+    prepare_capture(folder, out, Parameters())
     assert stood_in == ["check", "stereo"] * 2
     assert held == {path: path.read_bytes() for path in first.rglob("*") if path.is_file()}
     Image.fromarray(views[3].colour[::-1]).save(folder / "colour" / "000003.png")
-    prepared(folder, out, Parameters())
+    prepare_capture(folder, out, Parameters())
     assert stood_in == ["check", "stereo"] * 3
 
 
 def test_too_few_photos_and_a_known_length_of_what_has_depth(tmp_path, views, stood_in):
     with pytest.raises(CaptureError, match="holds 2 photos that can be used; take 30 or more"):
-        prepared(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
+        prepare_capture(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
     write_plain(tmp_path / "in", views)
     with pytest.raises(UsageError, match="has poses and depth, which are taken as they are; leave"):
-        prepared(tmp_path / "in", tmp_path / "OUT", Parameters(known=("table height", 0.72)))
+        prepare_capture(tmp_path / "in", tmp_path / "OUT", Parameters(known=("table height", 0.72)))
 
 
 def test_a_scene_is_brought_to_a_handy_size(views):
-    big, small = normalised(scene_of(views, 0.001)), normalised(scene_of(views, 90.0))
+    big, small = normalise_scale(scene_of(views, 0.001)), normalise_scale(scene_of(views, 90.0))
     assert np.allclose(big.camera_to_scan, small.camera_to_scan, atol=1e-4)
     assert np.allclose(big.points_m, small.points_m, atol=1e-3)
     depth = np.linalg.norm(
@@ -282,7 +282,7 @@ def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
     written = [replace(views[0], depth_to_colour=aside), *views[1:]]
     write_plain(tmp_path, written, depth_unit="0.0002", stated={"scale": "unknown", "notes": []})
     before = json.loads((tmp_path / "capture.json").read_text())
-    scaled_capture(tmp_path, Parameters(known=("room height", 5.2)), lambda name: (320, 240))
+    scale_capture(tmp_path, Parameters(known=("room height", 5.2)), lambda name: (320, 240))
     after = json.loads((tmp_path / "capture.json").read_text())
     for one, two in zip((before, *before["frames"]), (after, *after["frames"]), strict=True):
         for key in {"camera_to_world", "depth_to_colour"} & set(one):
@@ -293,5 +293,5 @@ def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
 def test_nothing_is_written_into_the_photos_themselves(tmp_path, views, stood_in):
     folder = write_photos(tmp_path / "capture", views)
     with pytest.raises(UsageError, match="keeps what is computed; name another --out"):
-        prepared(folder, tmp_path, Parameters())
+        prepare_capture(folder, tmp_path, Parameters())
     assert len(list(folder.iterdir())) == len(views) and not stood_in

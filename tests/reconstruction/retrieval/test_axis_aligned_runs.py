@@ -12,7 +12,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import ObjectInstance
 from world2minecraft.furniture import surface_cells
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
+from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import (
     cut_into_runs,
     largest_rectangle,
@@ -59,7 +59,7 @@ def _l_and_cupboard(labels):
 @pytest.mark.parametrize("kettle", [False, True])
 def test_an_l_of_counters_becomes_its_runs(hidden, kettle):
     grid, furn = _l_and_cupboard(_kitchen(hidden, kettle))
-    placements = furnish(grid, furn)
+    placements = place_templates(grid, furn)
     assert {placement.object_id for placement in placements} == {one.id for one in furn}
     large = [one for one in placements if one.template != "cells"]
     assert len(large) == 3
@@ -75,12 +75,14 @@ def test_a_box_is_not_cut():
     labels = np.zeros((40, 40, 20), np.uint8)
     labels[10:30, 10:18, 1:12] = FURN
     found = find_objects(grid_of(labels))
-    assert len(furnish(found.grid, found.instances)) == 1
+    assert len(place_templates(found.grid, found.instances)) == 1
 
 
 def test_the_paper_cuts_nothing():
     found = find_objects(grid_of(_kitchen()), FindParameters(paper_compat=True))
-    assert len(furnish(found.grid, found.instances, FurnishParameters(paper_compat=True))) == 1
+    assert (
+        len(place_templates(found.grid, found.instances, FurnishParameters(paper_compat=True))) == 1
+    )
 
 
 def test_every_own_cell_is_in_exactly_one_run():

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance
 from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances import find_objects, measure_object
-from world2minecraft.reconstruction.retrieval import fit_template, furnish, ranked_matches
+from world2minecraft.reconstruction.retrieval import fit_template, place_templates, ranked_matches
 
 NAMES = ["chair", "sofa", "double_bed", "desk", "bookcase"]
 
@@ -30,7 +30,7 @@ def found_object(name: str, quarter_turns: int = 0):
 @pytest.mark.parametrize("turns", [0, 1])
 def test_the_right_template_is_put_as_a_match_puts_it(name, turns):
     grid, one = found_object(name, turns)
-    (matched,) = furnish(grid, (one,))
+    (matched,) = place_templates(grid, (one,))
     placed = fit_template(grid, one, name)
     assert placed.quarter_turns == matched.quarter_turns == turns
     assert np.allclose(placed.center_m, matched.center_m)

@@ -8,7 +8,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import collisions
-from world2minecraft.reconstruction.retrieval.placement import tidied
+from world2minecraft.reconstruction.retrieval.placement import merge_crumbs
 from world2minecraft.reconstruction.retrieval.placement_settling import clear_overlaps
 
 CLOSE = 1e-6
@@ -95,17 +95,17 @@ def test_crumbs_in_a_template_and_specks_are_left_out():
     hidden = _block((6, 3, 2), (7, 6, 6))
     speck = _block((12, 3, 2), (13, 4, 5))
     standing = _block((1, 3, 10), (3, 6, 14))
-    (kept,) = tidied([hidden, speck, standing], [RUN], [RUN_BOX])
+    (kept,) = merge_crumbs([hidden, speck, standing], [RUN], [RUN_BOX])
     np.testing.assert_array_equal(kept, standing)
 
 
 def test_crumbs_that_touch_become_one_and_no_cell_is_lost():
     crumbs = [_block((1, y, 10), (3, y + 3, 14)) for y in (0, 3, 6)]
-    (kept,) = tidied(crumbs, [RUN], [RUN_BOX])
+    (kept,) = merge_crumbs(crumbs, [RUN], [RUN_BOX])
     assert {tuple(c) for c in kept} == {tuple(c) for one in crumbs for c in one}
 
 
 def test_crumbs_whose_common_box_holds_a_run_stay_apart():
     over = _block((0, 0, 12), (6, 2, 16))
     beside = _block((6, 2, 3), (9, 4, 12))
-    assert len(tidied([over, beside], [RUN], [RUN_BOX])) == 2
+    assert len(merge_crumbs([over, beside], [RUN], [RUN_BOX])) == 2

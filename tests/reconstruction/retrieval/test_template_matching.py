@@ -16,7 +16,7 @@ from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import (
     FurnishParameters,
     fit_template,
-    furnish,
+    place_templates,
     ranked_matches,
 )
 from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m
@@ -47,7 +47,7 @@ def _room(name, quarter_turns, size_m=None, *, hidden=False, wall=True, lift=Non
 
 def _furnished(grid, **changed):
     found = find_objects(grid)
-    return found, furnish(found.grid, found.instances, FurnishParameters(**changed))
+    return found, place_templates(found.grid, found.instances, FurnishParameters(**changed))
 
 
 @pytest.mark.parametrize("hidden", [False, True])
@@ -68,7 +68,7 @@ def test_what_stands_upstairs_is_matched_as_it_is_below():
     outline = np.array([[0.0, 0.0], [4.96, 0.0], [4.96, 4.64], [0.0, 4.64]])
     rooms = [Layout(outline, 2.5), Layout(outline, 2.5, floor_z_m=34 * 0.08)]
     (one,) = (found := find_objects(grid_of(labels))).instances
-    (placed,) = furnish(found.grid, [one], None, rooms)
+    (placed,) = place_templates(found.grid, [one], None, rooms)
     _, (wanted,) = _furnished(grid_of(below))
     assert (placed.template, placed.quarter_turns) == (wanted.template, wanted.quarter_turns)
     assert placed.iou == wanted.iou
@@ -186,7 +186,7 @@ def test_an_object_without_cells_has_no_placement():
     empty = type(instance)(
         instance.id, 5, instance.center_m, instance.size_m, 0.0, np.zeros((0, 3), np.int32), 0.5
     )
-    assert furnish(found.grid, [empty]) == ()
+    assert place_templates(found.grid, [empty]) == ()
 
 
 @given(st.integers(0, 2**32 - 1))

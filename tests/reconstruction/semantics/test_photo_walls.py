@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, Layout, OccupancyGrid, Opening
 from world2minecraft.reconstruction.layout.photo_walls import BEFORE_M, wall_edges
-from world2minecraft.reconstruction.semantics import with_whole_walls, without_wall_guesses
+from world2minecraft.reconstruction.semantics import remove_wall_guesses, with_whole_walls
 
 VOXEL_M = 0.08
 MARGIN = 10  # Cells around the room.
@@ -57,7 +57,7 @@ def box(x, y, z):
 
 def test_what_hangs_before_a_wall_in_its_colour_goes():
     hung = box((2, 3), (8, 14), (10, 20))
-    found = without_wall_guesses(with_cells(room_grid(), hung), [ROOM])
+    found = remove_wall_guesses(with_cells(room_grid(), hung), [ROOM])
     assert (found.labels[hung] == 0).all()
     assert np.array_equal(found.labels, room_grid().labels)
 
@@ -66,7 +66,7 @@ def test_what_has_another_colour_or_stands_farther_off_stays():
     red = with_cells(room_grid(), box((2, 3), (8, 14), (10, 20)), RED)
     far_cells = int(BEFORE_M / VOXEL_M) + 1
     both = with_cells(red, box((far_cells, far_cells + 2), (8, 14), (10, 20)))
-    found = without_wall_guesses(both, [ROOM])
+    found = remove_wall_guesses(both, [ROOM])
     assert np.array_equal(found.labels, both.labels)
 
 
@@ -74,7 +74,7 @@ def test_what_lies_behind_a_seen_wall_goes():
     behind = box((-8, -4), (5, 20), (3, 20))
     corner = box((-8, -4), (-8, -4), (3, 20))
     scraps = with_cells(with_cells(room_grid(), behind), corner)
-    found = without_wall_guesses(scraps, [ROOM])
+    found = remove_wall_guesses(scraps, [ROOM])
     assert (found.labels[behind] == 255).all()
     assert (found.source[corner] == UNSEEN).all()
 
@@ -83,12 +83,12 @@ def test_what_lies_behind_a_door_or_a_wall_that_nobody_saw_stays():
     behind = box((-8, -4), (5, 15), (3, 20))
     scene = with_cells(room_grid(), behind)
     door = Opening("door", np.array([0, 0.4]), np.array([0, 1.2]), 0.0, 2.0)
-    found = without_wall_guesses(scene, [replace(ROOM, openings=(door,))])
+    found = remove_wall_guesses(scene, [replace(ROOM, openings=(door,))])
     assert np.array_equal(found.labels[behind], scene.labels[behind])
     gone = scene.labels.copy()
     gone[box((-1, 0), (-1, 31), (-1, 31))] = 255
     unseen = replace(scene, labels=gone, source=(gone != 255).astype(np.uint8))
-    found = without_wall_guesses(unseen, [ROOM])
+    found = remove_wall_guesses(unseen, [ROOM])
     assert np.array_equal(found.labels[behind], scene.labels[behind])
 
 
@@ -142,7 +142,7 @@ def test_what_is_flat_on_a_wall_becomes_the_wall():
     assert (found.labels[box((1, 3), (14, 20), (10, 12))] == SemanticClass.OBJS).all()
 
 
-@pytest.mark.parametrize("change", [without_wall_guesses, with_whole_walls])
+@pytest.mark.parametrize("change", [remove_wall_guesses, with_whole_walls])
 def test_without_rooms_nothing_changes(change):
     grid = with_cells(labelled_room(), box((-8, -4), (5, 20), (3, 20)))
     found = change(grid, [])

@@ -53,7 +53,7 @@ def run(
     import json
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.paper import filled, read_results, read_table, table_names
+    from world2minecraft.paper import fill_table, read_results, read_table, table_names
     from world2minecraft.paper.table_writer import as_latex, as_markdown, as_text, as_values
 
     if markdown + latex + json_out > 1:
@@ -63,7 +63,7 @@ def run(
         _list()
         return
     names = table_names() if which in (None, "all") else [which]
-    tables = [filled(read_table(name), own) for name in names]
+    tables = [fill_table(read_table(name), own) for name in names]
     if json_out:
         told = [as_values(*one) for one in tables]
         print(json.dumps(told if len(told) > 1 else told[0], indent=2, ensure_ascii=False))
@@ -76,11 +76,11 @@ def run(
 
 def _list() -> None:
     """Print a line a table: its number, name, title, and how much of it is filled."""
-    from world2minecraft.paper import filled, read_table, table_names
+    from world2minecraft.paper import fill_table, read_table, table_names
     from world2minecraft.paper.table_writer import lacking
 
     for name in table_names():
-        table, ours = filled(read_table(name))
+        table, ours = fill_table(read_table(name))
         cells = sum(len(one.cells) for one in ours.values())
         lacks = lacking(table, ours)
         state = f"{cells:>3} cells of ours" + (f", {lacks} need what we lack" if lacks else "")

@@ -27,7 +27,7 @@ PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what 
 
 
 @contextmanager
-def pictures_compiled_meanwhile() -> Iterator[None]:
+def compile_pictures_meanwhile() -> Iterator[None]:
     """Compile what the report needs while the body runs, once after an installation.
 
     A machine with one core has nobody to do it. If the body fails, the process is ended.
@@ -48,7 +48,7 @@ def pictures_compiled_meanwhile() -> Iterator[None]:
         process.wait()
 
 
-def draw_a_box() -> None:
+def draw_box() -> None:
     """Draw a box of blocks in all the ways in which the report draws a room."""
     volume = _box()
     make_pairs(_look_at_it(), volume)
@@ -78,4 +78,4 @@ def _look_at_it() -> Scan:
 
 
 if __name__ == "__main__":
-    draw_a_box()
+    draw_box()

@@ -199,7 +199,7 @@ def put_true_objects(out: Path, room: TrueRoom) -> None:
     The labels of ``room.npz`` are true already.
     """
     grid, scan_to_room = read_room(out / "room.npz")
-    instance = carried_instances(room, grid)
+    instance = carry_instances(room, grid)
     rows = []
     for number, item in enumerate(room.objects.objects, start=1):
         cells = np.argwhere(instance == number).astype(np.int32)
@@ -219,7 +219,7 @@ def put_true_objects(out: Path, room: TrueRoom) -> None:
     write_objects(out / "objects.json", tuple(rows))
 
 
-def carried_instances(room: TrueRoom, grid: OccupancyGrid) -> np.ndarray:
+def carry_instances(room: TrueRoom, grid: OccupancyGrid) -> np.ndarray:
     """Return uint16 [X, Y, Z]: of each object cell, the true object that most of it belongs to.
 
     Only objects of the cell's own class stand for election; 0 where there is none.

@@ -28,7 +28,7 @@ from world2minecraft.reconstruction.floorplans.furniture_categories import (
     front_of,
     template_of,
 )
-from world2minecraft.reconstruction.floorplans.room_outlines import PlacedRoom, placed_rooms
+from world2minecraft.reconstruction.floorplans.room_outlines import PlacedRoom, place_plan_rooms
 
 # They tell furniture from floor and walls, which one colour of wood for all would not.
 Colour = tuple[int, int, int]
@@ -176,7 +176,7 @@ class Canvas:
         )
 
 
-def stand(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray) -> None:
+def place_thing(canvas: Canvas, item: PlanObject, room: PlacedRoom, inside: np.ndarray) -> None:
     """Put a thing into its box: those cells of its template that are free air of its room.
 
     Args:
@@ -230,7 +230,7 @@ class PlanCells:
     placements: tuple[Placement, ...]
 
 
-def cells_of_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
+def rasterize_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
     """Return a straightened plan as cells.
 
     Args:
@@ -240,7 +240,7 @@ def cells_of_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
     Raises:
         UsageError: the plan is too large for such cells.
     """
-    rooms = sorted(placed_rooms(plan), key=lambda room: room.floor_z_m)
+    rooms = sorted(place_plan_rooms(plan), key=lambda room: room.floor_z_m)
     canvas = Canvas(rooms, voxel_m)
     columns = _columns_of_rooms(canvas, rooms)
     for room, inside in zip(rooms, columns, strict=True):
@@ -253,7 +253,7 @@ def cells_of_plan(plan: CapturedPlan, voxel_m: float = 0.08) -> PlanCells:
             _paint_opening(canvas, room, opening, _leads_on(canvas, opening, anywhere))
     for room, inside in zip(rooms, columns, strict=True):
         for item in sorted(room.room.objects, key=lambda item: -float(np.prod(item.size_m))):
-            stand(canvas, item, room, inside)
+            place_thing(canvas, item, room, inside)
     return PlanCells(canvas.grid(), tuple(canvas.instances), tuple(canvas.placements))
 
 

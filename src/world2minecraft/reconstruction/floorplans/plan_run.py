@@ -19,11 +19,11 @@ from world2minecraft.formats.paper_json import write_centers_json, write_occ_jso
 from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.formats.scan import write_scan
-from world2minecraft.reconstruction.floorplans.plan_grid import PlanCells, cells_of_plan
+from world2minecraft.reconstruction.floorplans.plan_grid import PlanCells, rasterize_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     layouts_of,
-    placed_rooms,
-    straightened,
+    place_plan_rooms,
+    straighten_plan,
 )
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval.placement_settling import settle_placements
@@ -61,7 +61,7 @@ def build_plan(
     """
     chosen = parameters or Parameters()
     progress("plan", 0, 1)
-    plan = straightened(read_roomplan(place))
+    plan = straighten_plan(read_roomplan(place))
     source = {"plan": hashlib.sha256(place.read_bytes()).hexdigest()}
     return build_captured(plan, out, chosen, source, progress=progress, name=name)
 
@@ -91,7 +91,7 @@ def build_captured(
         UsageError: the plan is too large for such cells. OutputError: ``out`` cannot be written.
     """
     progress("plan", 0, 1)
-    held = cells_of_plan(plan, parameters.voxel_m)
+    held = rasterize_plan(plan, parameters.voxel_m)
     layouts = layouts_of(plan)
     if not as_told:
         held = replace(held, placements=settle_placements(held.placements, held.grid, layouts))
@@ -107,7 +107,7 @@ def build_captured(
 
 def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
     """Return what a scan would say of a plan: its frame, its size, and no views."""
-    rooms = placed_rooms(plan)
+    rooms = place_plan_rooms(plan)
     high = np.max([room.outline_m.max(axis=0) for room in rooms], axis=0)
     top = max(room.floor_z_m + room.height_m for room in rooms)
     notes = list(plan.notes)

@@ -14,9 +14,9 @@ from world2minecraft.formats.roomplan import CapturedPlan
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.reconstruction.floorplans.room_outlines import (
-    moved_plan,
-    placed_rooms,
-    straightened,
+    move_plan,
+    place_plan_rooms,
+    straighten_plan,
 )
 
 BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.
@@ -35,7 +35,7 @@ class PlanMismatchError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class LaidPlan:
+class AlignedPlan:
     """A plan in the room frame of a scan, how well its walls fit, and a sentence on that."""
 
     plan: CapturedPlan
@@ -43,7 +43,7 @@ class LaidPlan:
     note: str
 
 
-def laid_plan(plan: CapturedPlan, evidence: FusedEvidence) -> LaidPlan:
+def align_plan(plan: CapturedPlan, evidence: FusedEvidence) -> AlignedPlan:
     """Return a plan in the room frame of fused evidence.
 
     Raises:
@@ -55,8 +55,8 @@ def laid_plan(plan: CapturedPlan, evidence: FusedEvidence) -> LaidPlan:
         fit = fit_of(same, evidence, upright)
         if fit >= SAME_FIT:
             note = f"the plan shares the scan's frame; {fit:.0%} of its walls meet the scan"
-            return LaidPlan(same, fit, note)
-    return _laid_on_walls(straightened(plan), evidence, upright)
+            return AlignedPlan(same, fit, note)
+    return _laid_on_walls(straighten_plan(plan), evidence, upright)
 
 
 def upright_columns(evidence: FusedEvidence) -> np.ndarray:
@@ -110,13 +110,13 @@ def _same_session(plan: CapturedPlan, evidence: FusedEvidence) -> CapturedPlan |
     yaw = float(np.degrees(np.arctan2(move[1, 0], move[0, 0])))
     flat = rotation_about_z(yaw)
     flat[:3, 3] = move[:3, 3]
-    return moved_plan(plan, flat)
+    return move_plan(plan, flat)
 
 
-def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> LaidPlan:
+def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> AlignedPlan:
     places: list[tuple[float, int, np.ndarray]] = []
     for turns in range(4):
-        turned = moved_plan(plan, rotation_about_z(90.0 * turns))
+        turned = move_plan(plan, rotation_about_z(90.0 * turns))
         points = _wall_points(turned)
         if len(points):
             places += [(fit, turns, shift) for fit, shift in _shifts(points, evidence, upright)]
@@ -131,10 +131,10 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
     for place in places[1:]:
         if places[0][0] - place[0] < MIN_LEAD and not any(_is_one(place, one) for one in rivals):
             rivals.append(place)
-    laid = [moved_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
+    laid = [move_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
     if len(laid) == 1:
         note = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
-        return LaidPlan(laid[0], rivals[0][0], note)
+        return AlignedPlan(laid[0], rivals[0][0], note)
     inner = [furniture_fit(one, evidence) for one in laid]
     order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
     first, second = order[:2]
@@ -146,7 +146,7 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
         )
     fit = rivals[first][0]
     note = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
-    return LaidPlan(laid[first], fit, note)
+    return AlignedPlan(laid[first], fit, note)
 
 
 def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:
@@ -167,7 +167,7 @@ def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     within = np.zeros(len(points), bool)
     boxes = np.zeros(len(points), bool)
-    for room in placed_rooms(plan):
+    for room in place_plan_rooms(plan):
         within |= inside_polygon(points, room.outline_m, 0.0)
         for item in room.room.objects:
             turn = np.radians(item.yaw_deg)

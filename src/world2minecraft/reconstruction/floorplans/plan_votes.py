@@ -19,14 +19,14 @@ from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, read_room
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.reconstruction.floorplans.furniture_categories import class_of
 from world2minecraft.reconstruction.floorplans.plan_to_scan import (
-    LaidPlan,
+    AlignedPlan,
     PlanMismatchError,
-    laid_plan,
+    align_plan,
 )
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     PlacedRoom,
     layouts_of,
-    placed_rooms,
+    place_plan_rooms,
 )
 
 EDGE_M = 0.02
@@ -42,14 +42,14 @@ def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
 
     Args:
         evidence: what was fused.
-        plan: in the room frame; see ``laid_plan``.
+        plan: in the room frame; see ``align_plan``.
     """
     cells = np.argwhere(evidence.log_odds > 0)
     hits = np.maximum(evidence.hits[tuple(cells.T)], 1)[:, None]
     points = cell_centers_m(cells, evidence.origin_m, evidence.voxel_m)
     points = points + evidence.offset_sum[tuple(cells.T)] / hits
     label, weight = np.zeros(len(points), np.int64), np.zeros(len(points))
-    for room in placed_rooms(plan):
+    for room in place_plan_rooms(plan):
         _vote_for_objects(points, room, label, weight)
         _vote_for_openings(points, room, label, weight)
     votes = evidence.votes.astype(np.float32)
@@ -62,7 +62,7 @@ def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
     return replace(evidence, votes=np.minimum(votes, np.finfo(np.float16).max).astype(np.float16))
 
 
-def with_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> tuple[Layout, ...]:
+def merge_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> tuple[Layout, ...]:
     """Return rooms with those openings of a plan that lie on their walls and were not found.
 
     Args:
@@ -156,7 +156,7 @@ def _meet(one: Opening, other: Opening) -> bool:
     return bool(distance < reach / 2)
 
 
-def voted_by_plan(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, tuple[str, ...]]:
+def add_plan_votes(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, tuple[str, ...]]:
     """Return evidence with a plan's votes, and sentences on where the plan was laid.
 
     Raises:
@@ -169,12 +169,12 @@ def voted_by_plan(evidence: FusedEvidence, plan: Path) -> tuple[FusedEvidence, t
 def add_plan_openings(folder: Path, plan: Path) -> None:
     """Add doors and windows that only the plan knows to ``layout.json`` of a run."""
     laid = _laid(plan, read_evidence(folder / "evidence.npz"))
-    layouts = with_plan_openings(read_layouts(folder / "layout.json"), layouts_of(laid.plan))
+    layouts = merge_plan_openings(read_layouts(folder / "layout.json"), layouts_of(laid.plan))
     write_layouts(folder / "layout.json", layouts)
 
 
-def _laid(plan: Path, evidence: FusedEvidence) -> LaidPlan:
+def _laid(plan: Path, evidence: FusedEvidence) -> AlignedPlan:
     try:
-        return laid_plan(read_roomplan(plan), evidence)
+        return align_plan(read_roomplan(plan), evidence)
     except PlanMismatchError as error:
         raise CaptureError(plan, str(error)) from error

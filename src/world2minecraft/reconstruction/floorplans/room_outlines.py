@@ -26,7 +26,7 @@ class PlacedRoom:
     closed: bool  # Whether its walls or its floor gave the outline; else it is the box around it.
 
 
-def moved_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
+def move_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
     """Return a plan in another frame with z up; ``move`` 4x4 turns about z and shifts."""
     rooms = tuple(
         replace(
@@ -42,7 +42,7 @@ def moved_plan(plan: CapturedPlan, move: np.ndarray) -> CapturedPlan:
     return replace(plan, rooms=rooms, plan_to_session=back)
 
 
-def straightened(plan: CapturedPlan) -> CapturedPlan:
+def straighten_plan(plan: CapturedPlan) -> CapturedPlan:
     """Return the plan with walls along x and y, its lowest floor at z = 0 and its corner at 0, 0.
 
     The turn is that of all walls, by their length; the first wall runs along x.
@@ -54,15 +54,15 @@ def straightened(plan: CapturedPlan) -> CapturedPlan:
         angle = np.arctan2(along[:, 1], along[:, 0])
         quarter = np.angle(np.sum(length * np.exp(4j * angle))) / 4
         first = np.round((angle[0] - quarter) / (np.pi / 2)) * np.pi / 2
-        plan = moved_plan(plan, rotation_about_z(-float(np.degrees(quarter + first))))
-    placed = placed_rooms(plan)
+        plan = move_plan(plan, rotation_about_z(-float(np.degrees(quarter + first))))
+    placed = place_plan_rooms(plan)
     low = np.min([room.outline_m.min(axis=0) for room in placed], axis=0)
     shift = np.eye(4)
     shift[:3, 3] = [-low[0], -low[1], -min(room.floor_z_m for room in placed)]
-    return moved_plan(plan, shift)
+    return move_plan(plan, shift)
 
 
-def placed_rooms(plan: CapturedPlan) -> tuple[PlacedRoom, ...]:
+def place_plan_rooms(plan: CapturedPlan) -> tuple[PlacedRoom, ...]:
     """Return the rooms of a plan with their outlines, in the plan's frame.
 
     The floor's own outline counts first, then the loop of the walls, then the box around them.
@@ -72,7 +72,7 @@ def placed_rooms(plan: CapturedPlan) -> tuple[PlacedRoom, ...]:
 
 def layouts_of(plan: CapturedPlan) -> tuple[Layout, ...]:
     """Return the rooms as layouts, with openings and objects, in the plan's frame."""
-    return tuple(_layout(placed) for placed in placed_rooms(plan))
+    return tuple(_layout(placed) for placed in place_plan_rooms(plan))
 
 
 def _layout(placed: PlacedRoom) -> Layout:

@@ -1,11 +1,11 @@
 """Several finished runs become one home: rooms set beside each other by their doors.
 
-``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merged`` are its pure parts.
+``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merge_runs`` are its pure parts.
 """
 
 from world2minecraft.reconstruction.homes.join_runs import join, read_runs
-from world2minecraft.reconstruction.homes.merged_run import Home, merged
-from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
+from world2minecraft.reconstruction.homes.merged_run import Home, merge_runs
+from world2minecraft.reconstruction.homes.moved_run import Move, Run, move_run
 from world2minecraft.reconstruction.homes.room_placement import Placed, parse_place, place_runs
 
 __all__ = [

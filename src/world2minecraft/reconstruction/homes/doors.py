@@ -157,7 +157,7 @@ def head_of(one: Doorway, other: Doorway) -> float:
     return float(np.clip(min(known), *HEADS_M)) if known else USUAL_HEAD_M
 
 
-def shifted_door(door: Doorway, shift_m: np.ndarray, turns: int) -> Doorway:
+def shift_door(door: Doorway, shift_m: np.ndarray, turns: int) -> Doorway:
     """Return a door in another frame: turned by quarter turns, then shifted, float64 [3]."""
     x, y = door.middle_m
     for _ in range(turns):

@@ -20,7 +20,7 @@ from world2minecraft.formats.objects import (
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.formats.scan import write_scan
-from world2minecraft.reconstruction.homes.merged_run import Home, merged
+from world2minecraft.reconstruction.homes.merged_run import Home, merge_runs
 from world2minecraft.reconstruction.homes.moved_run import Run
 from world2minecraft.reconstruction.homes.room_placement import (
     Placed,
@@ -107,7 +107,7 @@ def join(
     names = [run.name for run in runs]
     by_hand = dict(parse_place(text, names, voxel_m) for text in places)
     placed = place_runs(runs, by_hand)
-    home = merged(placed, out.resolve().name)
+    home = merge_runs(placed, out.resolve().name)
     check_writable(out)
     scan = _scan_of(home, placed)
     _write(out, home, scan)

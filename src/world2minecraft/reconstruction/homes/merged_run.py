@@ -13,8 +13,8 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture.layout_checks import inside_polygon
-from world2minecraft.reconstruction.homes.doors import Doorway, head_of, shifted_door
-from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
+from world2minecraft.reconstruction.homes.doors import Doorway, head_of, shift_door
+from world2minecraft.reconstruction.homes.moved_run import Move, Run, move_run
 from world2minecraft.reconstruction.homes.room_placement import Placed
 
 MAX_CELLS = 600_000_000
@@ -35,7 +35,7 @@ class Home:
     lines: tuple[str, ...]
 
 
-def merged(placed: Placed, name: str = "") -> Home:
+def merge_runs(placed: Placed, name: str = "") -> Home:
     """Return runs that stand in one frame as one, its corner at the origin.
 
     Args:
@@ -51,11 +51,11 @@ def merged(placed: Placed, name: str = "") -> Home:
     base = min(layout.floor_z_m for run in runs for layout in run.layouts)
     corner = [-int(np.floor(value / voxel_m + 1e-6)) for value in low]
     shift = Move(0, (corner[0], corner[1], -round(base / voxel_m)))
-    runs = [moved(run, shift) for run in runs]
+    runs = [move_run(run, shift) for run in runs]
     cells, offsets = _one_grid(runs)
     away = np.array(shift.cells) * voxel_m
     for pair in placed.doors:
-        _open(cells, *(shifted_door(door, away, 0) for door in pair))
+        _open(cells, *(shift_door(door, away, 0) for door in pair))
     instances, placements, dropped = _objects(runs, cells.arrays["instance"], offsets)
     layouts = tuple(
         replace(layout, name=_room_name(run, layout.name)) for run in runs for layout in run.layouts

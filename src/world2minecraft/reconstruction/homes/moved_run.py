@@ -45,13 +45,13 @@ class Run:
     layouts: tuple[Layout, ...]
 
 
-def moved(run: Run, move: Move) -> Run:
+def move_run(run: Run, move: Move) -> Run:
     """Return a run in the frame that a move leads to."""
     voxel_m = run.grid.voxel_m
     to_new = move.transform(voxel_m)
     return replace(
         run,
-        grid=moved_grid(run.grid, move),
+        grid=move_grid(run.grid, move),
         instances=tuple(
             replace(
                 one,
@@ -73,11 +73,11 @@ def moved(run: Run, move: Move) -> Run:
             )
             for one in run.placements
         ),
-        layouts=tuple(moved_layout(one, to_new) for one in run.layouts),
+        layouts=tuple(move_layout(one, to_new) for one in run.layouts),
     )
 
 
-def moved_grid(grid: OccupancyGrid, move: Move) -> OccupancyGrid:
+def move_grid(grid: OccupancyGrid, move: Move) -> OccupancyGrid:
     """Return a grid whose cells are those of another one, turned and shifted."""
     first = np.rint(grid.origin_m / grid.voxel_m).astype(int)
     for _ in range(move.quarter_turns):
@@ -89,7 +89,7 @@ def moved_grid(grid: OccupancyGrid, move: Move) -> OccupancyGrid:
     return replace(grid, origin_m=origin)
 
 
-def moved_layout(layout: Layout, to_new: np.ndarray) -> Layout:
+def move_layout(layout: Layout, to_new: np.ndarray) -> Layout:
     """Return a room in another frame; ``to_new`` is a quarter turn and a shift, 4x4."""
     openings = tuple(
         replace(one, start_m=_flat(to_new, one.start_m), end_m=_flat(to_new, one.end_m))

@@ -16,8 +16,8 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.geometry.morphology import dilate
-from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shifted_door
-from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved, moved_layout
+from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shift_door
+from world2minecraft.reconstruction.homes.moved_run import Move, Run, move_layout, move_run
 
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Between two rooms: the wall's face in each.
@@ -82,7 +82,7 @@ def fits(run: Run, placed: Sequence[Run]) -> list[Fit]:
     voxel_m = run.grid.voxel_m
     own_doors = doorways_of(run)
     others = [(other, known_of(other), doorways_of(other)) for other in placed]
-    turned = {turns: known_of(moved(run, Move(turns))) for turns in range(4)}
+    turned = {turns: known_of(move_run(run, Move(turns))) for turns in range(4)}
     found: list[Fit] = []
     for other, there, doors in others:
         for theirs, own in product(doors, own_doors):
@@ -95,7 +95,7 @@ def fits(run: Run, placed: Sequence[Run]) -> list[Fit]:
             score = _score(run, move, here, (own, theirs, other.name), others)
             if score is not None:
                 shift = np.array(move.cells) * voxel_m
-                pair = (theirs, shifted_door(own, shift, move.quarter_turns))
+                pair = (theirs, shift_door(own, shift, move.quarter_turns))
                 found.append(Fit(move, round(score, 6), other.name, pair))
     found.sort(key=lambda fit: (-fit.score, fit.move.quarter_turns, fit.move.cells))
     best: list[Fit] = []
@@ -166,7 +166,7 @@ def _score(
     own, theirs, beside = by
     voxel_m = run.grid.voxel_m
     to_new = move.transform(voxel_m)
-    layouts = tuple(moved_layout(layout, to_new) for layout in run.layouts)
+    layouts = tuple(move_layout(layout, to_new) for layout in run.layouts)
     score = 1 - abs(own.width_m - theirs.width_m) - UNSURE_COST * (not own.sure or not theirs.sure)
     if own.sure and theirs.sure:
         score -= abs(own.head_m - theirs.head_m)
@@ -179,7 +179,7 @@ def _score(
         if counts:
             score += AGREE_WEIGHT * min(agreed - AGREE_NEUTRAL, 1.0 if is_next else 0.0)
     shift = np.array(move.cells) * voxel_m
-    doors = [shifted_door(one, shift, move.quarter_turns) for one in doorways_of(run) if one.sure]
+    doors = [shift_door(one, shift, move.quarter_turns) for one in doorways_of(run) if one.sure]
     met = sum(any(_meet(door, far) for _, _, doors_ in others for far in doors_) for door in doors)
     return score + MORE_DOORS * max(met - 1, 0)
 
@@ -275,7 +275,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     left = [run for run in runs if run.name not in moves]
     met: list[tuple[Doorway, Doorway]] = []
     while left:
-        standing = [moved(run, moves[run.name]) for run in runs if run.name in moves]
+        standing = [move_run(run, moves[run.name]) for run in runs if run.name in moves]
         options = {run.name: fits(run, standing) for run in left}
         sure = [name for name, found in options.items() if found and _is_sure(found)]
         if not sure:
@@ -288,7 +288,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
         )
         met.append(fit.doors)
         left = [run for run in left if run.name != best]
-    placed = tuple(moved(run, moves[run.name]) for run in runs)
+    placed = tuple(move_run(run, moves[run.name]) for run in runs)
     _check_apart(placed, set(hand))
     met += [pair for pair in doors_between(placed) if not any(_is_one(pair, old) for old in met)]
     return Placed(

@@ -16,7 +16,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import binary_opening, dilate
 from world2minecraft.reconstruction.layout.parameters import StructureParameters, within
-from world2minecraft.reconstruction.layout.plane_residuals import Relief
+from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 
 Kind = Literal["window", "door", "doorway"]
@@ -47,7 +47,9 @@ class WallFace:
     gaps: tuple[Gap, ...]
 
 
-def read_wall(surface: Surface, relief: Relief, parameters: StructureParameters) -> WallFace:
+def read_wall(
+    surface: Surface, relief: PlaneResiduals, parameters: StructureParameters
+) -> WallFace:
     """Return what the places of a wall are, and the openings in it."""
     face = _Face(surface, relief, parameters)
     low, high = parameters.opening_depth_m
@@ -61,7 +63,7 @@ def read_wall(surface: Surface, relief: Relief, parameters: StructureParameters)
     return WallFace(face.classes, face.depth_m, relief.cells & near, tuple(face.gaps))
 
 
-def _bend(surface: Surface, relief: Relief) -> np.ndarray:
+def _bend(surface: Surface, relief: PlaneResiduals) -> np.ndarray:
     """Return how far the wall around each place stands off its plane, float [A, B].
 
     Lens and sensor bend a long wall by some centimetres; a median follows them, and neither the
@@ -75,7 +77,7 @@ def _bend(surface: Surface, relief: Relief) -> np.ndarray:
 class _Face:
     """A wall that is being read: each step looks at the places that none before has claimed."""
 
-    def __init__(self, surface: Surface, relief: Relief, parameters: StructureParameters):
+    def __init__(self, surface: Surface, relief: PlaneResiduals, parameters: StructureParameters):
         self.surface, self.relief, self.parameters = surface, relief, parameters
         self.classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
         self.bend_m = _bend(surface, relief)
@@ -185,7 +187,7 @@ def _between(values: np.ndarray, low: float, high: float) -> np.ndarray:
     return (values >= low) & (values <= high)
 
 
-def _passed(surface: Surface, relief: Relief) -> np.ndarray:
+def _passed(surface: Surface, relief: PlaneResiduals) -> np.ndarray:
     """Return bool [A, B]: rays went through the wall here, and it was not seen."""
     free = relief.of(surface.free)
     edge_m = relief.edge_m(surface)

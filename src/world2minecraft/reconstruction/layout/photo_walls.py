@@ -51,7 +51,7 @@ class WallEdge(NamedTuple):
         return ~beside & (height > self.bottom_m) & (height < self.top_m)
 
 
-def without_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
+def remove_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
     """Return a grid without what stereo guessed before and behind the walls of its rooms.
 
     Args:
@@ -76,7 +76,7 @@ def without_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> Occupa
     return _emptied(grid, cells[hidden], cells[guessed & ~hidden])
 
 
-def with_whole_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
+def complete_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
     """Return a labelled grid whose unseen parts of seen walls, floors and ceilings are completed.
 
     Free cells of a wall are completed too where the wall goes on all around them: a guess behind

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.geometry.histogram_peaks import highest_peak
-from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 SOLID_M = 0.008  # SSCNet's 4 of 64: about this much matter makes a cell of 8 cm solid.
 FIT_GATES_M = (0.012, 0.012, 0.01, 0.01)  # Doors, pictures and boards do not tell where it lies.
@@ -19,7 +19,7 @@ FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
 
 
 @dataclass(frozen=True, eq=False)
-class Relief:
+class PlaneResiduals:
     """A part of one plane, turned so that axis 0 leads into its matter, [N, A, B]."""
 
     axis: int
@@ -48,12 +48,12 @@ class Relief:
 
     def of(self, values: np.ndarray) -> np.ndarray:
         """Return the view [N, A, B] of an array [X, Y, Z] that this relief is about."""
-        return turned(values, self.axis, self.sign)[self.box]
+        return turn_surface(values, self.axis, self.sign)[self.box]
 
 
-def relief_of(
+def measure_plane_residuals(
     surface: Surface, cells: np.ndarray, axis: int, sign: int, box: tuple[slice, slice, slice]
-) -> Relief:
+) -> PlaneResiduals:
     """Return the relief of a plane.
 
     Args:
@@ -63,13 +63,13 @@ def relief_of(
         sign: 1 where matter lies towards larger coordinates, else -1.
         box: the part of the turned grid.
     """
-    weight = np.where(cells, turned(surface.hits, axis, sign)[box], 0).astype(np.float64)
-    outward = sign * turned(surface.points_m[..., axis], axis, sign)[box]
+    weight = np.where(cells, turn_surface(surface.hits, axis, sign)[box], 0).astype(np.float64)
+    outward = sign * turn_surface(surface.points_m[..., axis], axis, sign)[box]
     total = weight.sum(axis=0)
     mean = (weight * outward).sum(axis=0) / np.maximum(total, 1)
     plane = _fitted(mean, total, surface.voxel_m)
     depth = np.where(total > 0, mean, plane)
-    return Relief(axis, sign, box, cells, total, depth, plane)
+    return PlaneResiduals(axis, sign, box, cells, total, depth, plane)
 
 
 def _fitted(depth_m: np.ndarray, weight: np.ndarray, voxel_m: float) -> np.ndarray:

@@ -17,7 +17,7 @@ from world2minecraft.reconstruction.layout.openings import Gap
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
 from world2minecraft.reconstruction.layout.storeys import find_storeys
 from world2minecraft.reconstruction.layout.structure import Structure, Wall, structure_of
-from world2minecraft.reconstruction.layout.surface_cells import Surface, surface_of, turned
+from world2minecraft.reconstruction.layout.surface_cells import Surface, surface_of, turn_surface
 
 MERGE_M = 0.09  # Lines nearer than a cell and a bit are one wall.
 NEAR_WALL_M = 0.35  # A region ends at a wall this near; else it ends where it was seen to.
@@ -178,8 +178,10 @@ def _line(wall: Wall, structure: Structure) -> np.ndarray:
     columns = np.zeros(surface.occupied.shape[:2], bool)
     layer = _plane_layer(wall, surface)
     high = slice(max(surface.floor_layer + 2, 0), surface.layers_below(run.top_m))
-    free = turned(surface.free, run.axis, run.sign)[layer, run.span[0] : run.span[1] + 1, high]
-    view = turned(columns, run.axis, run.sign)
+    free = turn_surface(surface.free, run.axis, run.sign)[
+        layer, run.span[0] : run.span[1] + 1, high
+    ]
+    view = turn_surface(columns, run.axis, run.sign)
     view[layer, run.span[0] : run.span[1] + 1] = free.sum(axis=1) < PASSED_CELLS
     return columns
 
@@ -219,7 +221,7 @@ def _position_m(wall: Wall) -> float:
 
 def _bounds(wall: Wall, region: np.ndarray, surface: Surface) -> bool:
     """Return whether a region lies just before a wall."""
-    view = turned(region, wall.run.axis, wall.run.sign)
+    view = turn_surface(region, wall.run.axis, wall.run.sign)
     layer = _plane_layer(wall, surface)
     before = view[max(layer - 4, 0) : max(layer, 0), wall.run.span[0] : wall.run.span[1] + 1]
     return before.any(axis=0).sum() * surface.voxel_m >= ALONG_M

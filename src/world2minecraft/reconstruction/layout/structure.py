@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.openings import WallFace, read_wall
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
-from world2minecraft.reconstruction.layout.plane_residuals import Relief
+from world2minecraft.reconstruction.layout.plane_residuals import PlaneResiduals
 from world2minecraft.reconstruction.layout.sloped_ceilings import find_slopes
 from world2minecraft.reconstruction.layout.surface_cells import Surface
 from world2minecraft.reconstruction.layout.walls import WallRun, find_walls
@@ -80,7 +80,7 @@ class Wall:
     """A straight piece of wall, its relief and what its places are."""
 
     run: WallRun
-    relief: Relief
+    relief: PlaneResiduals
     face: WallFace
 
 

@@ -71,7 +71,7 @@ def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
     return Surface(occupied, grid.labels == 0, points, weight, oklab, grid.voxel_m, grid.origin_m)
 
 
-def turned(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
+def turn_surface(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
     """Return a view of [X, Y, Z] turned so that its axis 0 leads along an axis, or against it.
 
     The two others keep their order: along a wall, then up; x, then y, of floors and ceilings.

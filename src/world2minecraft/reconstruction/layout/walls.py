@@ -14,8 +14,11 @@ from scipy import ndimage
 
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.parameters import StructureParameters
-from world2minecraft.reconstruction.layout.plane_residuals import Relief, relief_of
-from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+from world2minecraft.reconstruction.layout.plane_residuals import (
+    PlaneResiduals,
+    measure_plane_residuals,
+)
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
 HIGH_M = 100.0  # Over everything.
@@ -41,7 +44,7 @@ def find_walls(
     slopes: np.ndarray,
     ceiling_m: float | None,
     parameters: StructureParameters,
-) -> list[tuple[WallRun, Relief]]:
+) -> list[tuple[WallRun, PlaneResiduals]]:
     """Return the runs of wall, each with its relief.
 
     Args:
@@ -51,7 +54,7 @@ def find_walls(
         ceiling_m: the ceiling's height, None where it was not seen.
         parameters: the thresholds.
     """
-    found: list[tuple[WallRun, Relief]] = []
+    found: list[tuple[WallRun, PlaneResiduals]] = []
     for axis, sign in DIRECTIONS:
         view = _Turned(surface, level, slopes, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
@@ -60,7 +63,7 @@ def find_walls(
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
             box, on = _marked(view, run, parameters)
-            found.append((run, relief_of(surface, on, axis, sign, box)))
+            found.append((run, measure_plane_residuals(surface, on, axis, sign, box)))
     return found
 
 
@@ -82,7 +85,7 @@ class _Turned:
         self.edge_m = float(min(sign * ends))  # Where layer 0 begins.
 
     def turn(self, values: np.ndarray) -> np.ndarray:
-        return turned(values, self.axis, self.sign)
+        return turn_surface(values, self.axis, self.sign)
 
 
 def _runs(

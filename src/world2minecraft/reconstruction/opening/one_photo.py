@@ -67,7 +67,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         stated |= {"scale_sigma": SIGMA_DEPTH, "notes": [*judged.notes, _told_depth(model)]}
     else:
         options = parse_options(chosen.capture)
-        pose, size_m = placed(options.eye_height_m, options.pitch_deg)
+        pose, size_m = place_photo(options.eye_height_m, options.pitch_deg)
         views = _bare(judged, pose)
         note = (
             f"the photo has no depth: its camera is taken to stand {options.eye_height_m:g} m over "
@@ -82,7 +82,7 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
     write_plain(folder, views, depth_unit=unit, stated=stated, jpeg=True)
 
 
-def placed(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
+def place_photo(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
     """Return ``camera_to_room`` of a photo without depth, and the size of the room before it."""
     size_m = np.array(DEFAULT_SHAPE) * DEFAULT_VOXEL_M
     eye = np.array([size_m[0] / 2, 0.0, eye_height_m])

@@ -31,7 +31,11 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan, SparseScene, View
 from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepare_photo
 from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
-from world2minecraft.reconstruction.opening.scale import normalised, scaled_by_depth, scaled_capture
+from world2minecraft.reconstruction.opening.scale import (
+    normalise_scale,
+    scale_by_depth,
+    scale_capture,
+)
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
 
@@ -46,7 +50,7 @@ Told = dict[str, Any]
 GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
 
 
-def prepared(
+def prepare_capture(
     capture: Path, out: Path, chosen: Parameters, progress: Progress = no_progress
 ) -> Path:
     """Return the place of a capture with poses and depth.
@@ -65,7 +69,7 @@ def prepared(
     """
     options = parse_options(chosen.capture)
     found = find_capture(capture, options)
-    if has_all(found):
+    if has_poses_and_depth(found):
         if chosen.known is not None or chosen.known_points is not None:
             raise UsageError(
                 f"{capture} has poses and depth, which are taken as they are; leave out --known "
@@ -97,7 +101,7 @@ def prepared(
     return folder
 
 
-def has_all(found: Capture) -> bool:
+def has_poses_and_depth(found: Capture) -> bool:
     """Return whether a capture has frames with poses, and frames with depth."""
     return any(frame.depth_path is not None for frame in found.frames) and any(
         frame.camera_to_world is not None for frame in found.frames
@@ -149,7 +153,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     scene = finder(photos, chosen.posing, progress)
     scale = found.scale if judged.posed else "unknown"
     if scale == "unknown":
-        scene = normalised(scene)
+        scene = normalise_scale(scene)
     if judged.has_depth:
         views, told = _with_own_depth(judged, photos, scene)
         kind = found.depth_kind
@@ -167,7 +171,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     } | told
     extra = {"posing": dict(scene.facts)}
     write_plain(folder, views, depth_unit=UNIT, extra=extra, stated=stated, jpeg=True)
-    scaled_capture(folder, chosen, lambda name: _size_of(judged, name))
+    scale_capture(folder, chosen, lambda name: _size_of(judged, name))
 
 
 def _size_of(judged: ValidatedCapture, name: str) -> tuple[int, int]:
@@ -183,7 +187,7 @@ def _with_own_depth(
     judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
 ) -> tuple[Iterator[View], Told]:
     """The views of a capture whose depth is a sensor's; only its poses were found."""
-    scaled, sigma = scaled_by_depth(judged, scene)
+    scaled, sigma = scale_by_depth(judged, scene)
     told = {"scale": "metric", "scale_sigma": sigma}
     return depth_views(judged, photos, scaled), told
 
@@ -201,7 +205,7 @@ def _with_stereo(
     return stereo_views(photos, scene, maps)
 
 
-def open_prepared(
+def prepare_and_open(
     capture: Path,
     out: Path,
     chosen: Parameters,
@@ -210,9 +214,9 @@ def open_prepared(
 ) -> Scan:
     """Open a capture; poses and depth that it lacks are computed and kept in ``out`` first.
 
-    Raises what ``prepared`` and ``open_scan`` raise.
+    Raises what ``prepare_capture`` and ``open_scan`` raise.
     """
-    complete = prepared(capture, out, chosen, progress)
+    complete = prepare_capture(capture, out, chosen, progress)
     options = chosen.capture if complete == capture else {}  # Else they were heeded already.
     scan = open_scan(
         complete, voxel_m=chosen.voxel_m, labels=labels, progress=progress, options=options

@@ -30,7 +30,7 @@ HANDY_DEPTH = 2.5
 FRAME_SIGMA = 0.02  # What a sensor's depth is off as a whole.
 
 
-def scaled_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[SparseScene, float]:
+def scale_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[SparseScene, float]:
     """Return the scene in the metres of a sensor's depth, and how sure that is, as a share.
 
     Raises:
@@ -82,7 +82,7 @@ def scaled(scene: SparseScene, scale: float) -> SparseScene:
     return replace(scene, camera_to_scan=poses, points_m=points)
 
 
-def scaled_capture(
+def scale_capture(
     folder: Path, chosen: Parameters, size_of: Callable[[str], tuple[int, int]]
 ) -> None:
     """Give a capture whose scale is not known, or is known better, its scale.
@@ -167,7 +167,7 @@ def _clicked(text: str) -> tuple[str, tuple[float, float]]:
         ) from None
 
 
-def normalised(scene: SparseScene) -> SparseScene:
+def normalise_scale(scene: SparseScene) -> SparseScene:
     """Return a scene without a unit of its own at a handy size: its median depth is 2.5."""
     poses = scene.camera_to_scan[scene.track_frame]
     points = scene.points_m[scene.track_point].astype(np.float64)

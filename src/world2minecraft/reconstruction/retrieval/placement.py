@@ -46,7 +46,7 @@ HALF = 0.5
 SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
 
 
-def tidied(
+def merge_crumbs(
     crumbs: list[np.ndarray], matched: list[np.ndarray], boxes: list[Box]
 ) -> list[np.ndarray]:
     """Return the crumbs, int [N, 3] each, that are worth a placement of their own.
@@ -115,7 +115,7 @@ class Matched(NamedTuple):
         return self._replace(matches=())
 
 
-def furnish(
+def place_templates(
     grid: OccupancyGrid,
     instances: Sequence[ObjectInstance],
     parameters: FurnishParameters | None = None,
@@ -182,7 +182,7 @@ def _with_tidy_crumbs(
     crumbs = [_cells_of(part) for part in parts if not part.matches]
     reach = reach_of(templates_of_class(instance.class_id), grid.voxel_m)
     front = parts[0].quarter_turns
-    retained = tidied(crumbs, [_cells_of(part) for part in placed], boxes)
+    retained = merge_crumbs(crumbs, [_cells_of(part) for part in placed], boxes)
     return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in retained]
 
 

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.layout.photo_walls import with_whole_walls, without_wall_guesses
+from world2minecraft.reconstruction.layout.photo_walls import complete_walls, remove_wall_guesses
 from world2minecraft.reconstruction.layout.room_layouts import find_structure
 
 __all__ = [
@@ -20,7 +20,7 @@ __all__ = [
     "find_structure",
     "labeller",
     "with_whole_walls",
-    "without_wall_guesses",
+    "remove_wall_guesses",
 ]
 
 LABELLERS = Registry(

@@ -12,7 +12,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.structure import Wall
-from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 REACH_M = 0.4  # A shelf is 0.2 to 0.35 m deep.
 INSIDE_SHARE = 0.8  # Of a back, that its case stands around: noise widens both.
@@ -54,8 +54,8 @@ def _cases_before(
     first = max(deep.start - surface.cells_of(REACH_M), 0)
     box = (slice(first, deep.stop), *across)
     axis, sign = wall.relief.axis, wall.relief.sign
-    parts, count = label_components(turned(labels, axis, sign)[box] == SemanticClass.FURN)
-    oklab = turned(surface.oklab, axis, sign)[box]
+    parts, count = label_components(turn_surface(labels, axis, sign)[box] == SemanticClass.FURN)
+    oklab = turn_surface(surface.oklab, axis, sign)[box]
     for number, place in enumerate(ndimage.find_objects(parts, count), 1):
         own = parts[place] == number
         grown = tuple(slice(max(side.start - 1, 0), side.stop + 1) for side in place[1:])

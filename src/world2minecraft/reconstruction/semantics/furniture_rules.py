@@ -19,7 +19,10 @@ from world2minecraft.reconstruction.layout.parameters import (
     within,
 )
 from world2minecraft.reconstruction.layout.surface_cells import Surface
-from world2minecraft.reconstruction.semantics.horizontal_surfaces import Plate, find_plates
+from world2minecraft.reconstruction.semantics.horizontal_surfaces import (
+    HorizontalSurface,
+    find_horizontal_surfaces,
+)
 from world2minecraft.reconstruction.semantics.screens import screen_share
 from world2minecraft.reconstruction.semantics.surface_pieces import Piece, find_pieces
 
@@ -55,7 +58,11 @@ JOINING_CLASSES = (
 
 
 def class_of_seat(
-    surface: Surface, plate: Plate, left: np.ndarray, closed: bool, parameters: PlateParameters
+    surface: Surface,
+    plate: HorizontalSurface,
+    left: np.ndarray,
+    closed: bool,
+    parameters: PlateParameters,
 ) -> SemanticClass | None:
     """Return whose seat a plate is, a chair's or a sofa's; None where it is no seat.
 
@@ -82,7 +89,7 @@ def class_of_seat(
 
 
 def back_of(
-    surface: Surface, plate: Plate, left: np.ndarray, parameters: PlateParameters
+    surface: Surface, plate: HorizontalSurface, left: np.ndarray, parameters: PlateParameters
 ) -> tuple[float, float]:
     """Return how much of one side of a plate a back takes, and how its colour differs.
 
@@ -107,7 +114,7 @@ def back_of(
     return share, float(np.linalg.norm(back - seat))
 
 
-def _is_board(surface: Surface, plate: Plate, parameters: PlateParameters) -> bool:
+def _is_board(surface: Surface, plate: HorizontalSurface, parameters: PlateParameters) -> bool:
     """Return whether much stands over a plate higher than any chair: then it is a shelf's board."""
     first, last = (surface.layers_below(height) for height in parameters.shelf_m)
     over = project_to_plan(surface.occupied[:, :, first:last])
@@ -124,7 +131,7 @@ class Table:
     around: np.ndarray
 
     @classmethod
-    def of(cls, plate: Plate, surface: Surface, parameters: PieceParameters) -> "Table":
+    def of(cls, plate: HorizontalSurface, surface: Surface, parameters: PieceParameters) -> "Table":
         """Return the table of a plate."""
         reach = surface.cells_of(parameters.back_gap_m)
         outline = plate.footprint
@@ -140,7 +147,7 @@ class Seat:
     under: np.ndarray
 
     @classmethod
-    def of(cls, plate: Plate, surface: Surface, parameters: PieceParameters) -> "Seat":
+    def of(cls, plate: HorizontalSurface, surface: Surface, parameters: PieceParameters) -> "Seat":
         """Return the seat of a plate."""
         points = surface.points_m[plate.mask][:, :2].astype(np.float64)
         reach = surface.cells_of(parameters.foot_reach_m)
@@ -148,8 +155,8 @@ class Seat:
         return cls(plate.height_m, middle, dilate(plate.footprint, reach))
 
 
-def class_of_plate(
-    surface: Surface, plate: Plate, left: np.ndarray, parameters: PlateParameters
+def classify_surface(
+    surface: Surface, plate: HorizontalSurface, left: np.ndarray, parameters: PlateParameters
 ) -> SemanticClass | None:
     """Return what a plate is the top, the seat or the mattress of; None where it does not say.
 
@@ -179,7 +186,7 @@ def class_of_plate(
     return SemanticClass.FURN if solid and wide and height >= parameters.box_height_m else None
 
 
-def _is_table_top(plate: Plate, parameters: PlateParameters) -> bool:
+def _is_table_top(plate: HorizontalSurface, parameters: PlateParameters) -> bool:
     """Return whether a plate has the height and the size of a table's top, high or low."""
     if within(plate.height_m, parameters.table_height_m):
         wide = plate.width_m >= parameters.table_width_m
@@ -188,7 +195,7 @@ def _is_table_top(plate: Plate, parameters: PlateParameters) -> bool:
     return low and plate.area_m2 >= parameters.low_table_area_m2
 
 
-def class_of_piece(
+def classify_piece(
     piece: Piece, tables: list[Table], seats: list[Seat], parameters: PieceParameters
 ) -> SemanticClass:
     """Return what a piece is that no plate has claimed."""
@@ -296,7 +303,7 @@ def _label_group(
     contact = {kind: dilate((labels == kind) & rest & ~left) for kind in JOINING_CLASSES}
     for piece in find_pieces(surface, left, wall, parameters.pieces):
         joined = _joined_class(piece, contact, parameters)
-        labels[piece.at] = joined or class_of_piece(piece, tables, seats, parameters.pieces)
+        labels[piece.at] = joined or classify_piece(piece, tables, seats, parameters.pieces)
 
 
 def _label_plates(
@@ -307,7 +314,7 @@ def _label_plates(
     Returns:
         The tables and the seats of chairs.
     """
-    plates = find_plates(surface, left, parameters.plates)
+    plates = find_horizontal_surfaces(surface, left, parameters.plates)
     plates.sort(key=lambda plate: -plate.area_m2)
     tables: list[Table] = []
     seats: list[Seat] = []
@@ -315,7 +322,7 @@ def _label_plates(
         for plate in plates:
             if (plate.mask & left).sum() < 0.5 * plate.mask.sum():
                 continue
-            kind = class_of_plate(surface, plate, left, parameters.plates)
+            kind = classify_surface(surface, plate, left, parameters.plates)
             if kind is None or kind not in wanted:
                 continue
             claimed = _claimed(surface, plate, left, kind)
@@ -332,7 +339,9 @@ def _label_plates(
     return tables, seats
 
 
-def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticClass) -> np.ndarray:
+def _claimed(
+    surface: Surface, plate: HorizontalSurface, left: np.ndarray, kind: SemanticClass
+) -> np.ndarray:
     """Return the cells that go with a plate: a table's top alone, a closed box's whole body."""
     height = surface.points_m[..., 2]
     reach_m, top_m = REACH_M[kind]
@@ -350,7 +359,7 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     return reach & np.isin(parts, own[own > 0])
 
 
-def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
+def _with_head(surface: Surface, plate: HorizontalSurface, left: np.ndarray) -> np.ndarray:
     """Return a bed's outline with its head: pillows and a headboard rise along a whole side."""
     first = surface.layers_below(plate.height_m + TOP_M)
     risen = project_to_plan(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
@@ -371,7 +380,7 @@ def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
 
 def _stands_free(
     surface: Surface,
-    plate: Plate,
+    plate: HorizontalSurface,
     claimed: np.ndarray,
     left: np.ndarray,
     parameters: PlateParameters,

@@ -17,7 +17,7 @@ MAX_HEIGHTS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Plate:
+class HorizontalSurface:
     """One level surface. ``footprint`` is its outline seen from above, holes filled."""
 
     mask: np.ndarray  # bool [X, Y, Z]: its cells
@@ -30,7 +30,9 @@ class Plate:
     rim_share: float  # Of the seen cells under its rim, the share that is surface.
 
 
-def find_plates(surface: Surface, rest: np.ndarray, parameters: PlateParameters) -> list[Plate]:
+def find_horizontal_surfaces(
+    surface: Surface, rest: np.ndarray, parameters: PlateParameters
+) -> list[HorizontalSurface]:
     """Return the plates among the cells ``rest``, bool [X, Y, Z], largest at each height first."""
     facing_up = rest.copy()
     facing_up[:, :, :-1] &= ~surface.occupied[:, :, 1:] | _next_is_level(surface)
@@ -38,7 +40,7 @@ def find_plates(surface: Surface, rest: np.ndarray, parameters: PlateParameters)
     height = surface.points_m[..., 2]
     facing_up &= (height >= low) & (height <= high)
     facing_up &= _neighbours(facing_up, height, parameters.gate_m) >= 2
-    plates: list[Plate] = []
+    plates: list[HorizontalSurface] = []
     for _ in range(MAX_HEIGHTS):
         if facing_up.sum() * surface.voxel_m**2 < parameters.area_m2:
             break
@@ -73,7 +75,9 @@ def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarr
     return count
 
 
-def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) -> list[Plate]:
+def _plates_at(
+    surface: Surface, near: np.ndarray, parameters: PlateParameters
+) -> list[HorizontalSurface]:
     """Return the plates among cells of one height, by decreasing number of columns."""
     parts, count = label_components(project_to_plan(near))
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)[1:]
@@ -85,13 +89,13 @@ def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) 
     return found
 
 
-def _plate(surface: Surface, mask: np.ndarray) -> Plate:
+def _plate(surface: Surface, mask: np.ndarray) -> HorizontalSurface:
     footprint = fill_gaps_and_holes(project_to_plan(mask))
     heights = surface.points_m[..., 2][mask]
     layer = int(np.bincount(np.nonzero(mask)[2]).argmax())
     rows, columns = np.nonzero(footprint)
     sides = sorted([np.ptp(rows) + 1, np.ptp(columns) + 1])
-    return Plate(
+    return HorizontalSurface(
         mask=mask,
         footprint=footprint,
         height_m=float(np.median(heights)),

@@ -11,9 +11,13 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import COMPLETED, UNSEEN, OccupancyGrid
-from world2minecraft.reconstruction.layout.plane_residuals import SOLID_M, Relief, relief_of
+from world2minecraft.reconstruction.layout.plane_residuals import (
+    SOLID_M,
+    PlaneResiduals,
+    measure_plane_residuals,
+)
 from world2minecraft.reconstruction.layout.storeys import Storey
-from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 
 MOVE_M = 0.02  # A place this far off its plane does not move into a layer where nothing was seen.
 
@@ -37,7 +41,7 @@ class Straightening:
         return part
 
     def add(
-        self, relief: Relief, cells: np.ndarray, classes: np.ndarray, depth_m: np.ndarray
+        self, relief: PlaneResiduals, cells: np.ndarray, classes: np.ndarray, depth_m: np.ndarray
     ) -> None:
         """Pull a plane straight.
 
@@ -77,9 +81,9 @@ class Straightening:
 
         Where ``height_m`` is given the plane lies there, else where it was seen.
         """
-        view = turned(cells, 2, sign)
+        view = turn_surface(cells, 2, sign)
         box = (slice(0, view.shape[0]), slice(0, view.shape[1]), slice(0, view.shape[2]))
-        relief = relief_of(self.surface, view, 2, sign, box)
+        relief = measure_plane_residuals(self.surface, view, 2, sign, box)
         classes = np.full(relief.weight.shape, kind, np.uint8)
         flat = relief.plane_m if height_m is None else np.full(classes.shape, sign * height_m)
         self.add(relief, view, classes, flat)
@@ -99,7 +103,7 @@ class Straightening:
         source[at] = np.where(grid.source[at] == UNSEEN, COMPLETED, grid.source[at])
         return replace(grid, labels=labels, source=source, confidence=confidence, colour=colour)
 
-    def _layer(self, relief: Relief, depth_m: np.ndarray) -> np.ndarray:
+    def _layer(self, relief: PlaneResiduals, depth_m: np.ndarray) -> np.ndarray:
         """Return the layer of the relief's box in which a surface at a depth has its matter."""
         inside_m = depth_m + SOLID_M - relief.edge_m(self.surface)
         return np.floor(inside_m / self.surface.voxel_m + 1e-9).astype(int)

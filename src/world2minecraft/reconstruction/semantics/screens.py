@@ -12,7 +12,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.reconstruction.layout.parameters import PieceParameters, within
-from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turn_surface
 from world2minecraft.reconstruction.layout.walls import WallRun
 
 PLATE_GATE_M = 0.05  # A screen's cells lie within this of its plane.
@@ -39,12 +39,12 @@ def label_screens(
     found = np.zeros(rest.shape, bool)
     for run in runs:
         box = _box_before(surface, run, parameters)
-        outward = run.sign * turned(surface.points_m[..., run.axis], run.axis, run.sign)[box]
+        outward = run.sign * turn_surface(surface.points_m[..., run.axis], run.axis, run.sign)[box]
         before = run.outward_m - outward
         low, high = parameters.screen_before_m
-        cells = turned(rest, run.axis, run.sign)[box] & (before >= low) & (before <= high)
-        target = turned(found, run.axis, run.sign)[box]
-        colour = turned(surface.oklab, run.axis, run.sign)[box]
+        cells = turn_surface(rest, run.axis, run.sign)[box] & (before >= low) & (before <= high)
+        target = turn_surface(found, run.axis, run.sign)[box]
+        colour = turn_surface(surface.oklab, run.axis, run.sign)[box]
         below = _just_below(surface, rest, run, box)
         for _ in range(MAX_DEPTHS):
             if cells.sum() * surface.voxel_m**2 < 0.05:
@@ -91,8 +91,8 @@ def _just_below(
     if under < 0:
         return None
     layer = (box[0], box[1], under)
-    oklab = turned(surface.oklab, run.axis, run.sign)[layer]
-    return turned(rest, run.axis, run.sign)[layer], oklab
+    oklab = turn_surface(surface.oklab, run.axis, run.sign)[layer]
+    return turn_surface(rest, run.axis, run.sign)[layer], oklab
 
 
 def _goes_on(plate: np.ndarray, oklab: np.ndarray, rest: np.ndarray, below: np.ndarray) -> bool:
