@@ -25,7 +25,7 @@ from world2minecraft.sceneforge.workspace import Workspace
 
 @pytest.fixture
 def server(tmp_path):
-    with served(home=tmp_path / "home", most_upload_bytes=64 << 20) as server:
+    with served(home=tmp_path / "home", max_upload_bytes=64 << 20) as server:
         yield server
 
 

@@ -109,7 +109,7 @@ def test_answers_by_a_live_model(server, tmp_path):
     folder = small_set(tmp_path / "set", width=224, height=224)
     chat = chat_at(server, tmp_path)
     items = [item for item in read_items(folder) if item.task == "next_view"][:2]
-    found = evaluate(items, VlmAnswerer(chat, folder, most_px=16 * 784))
+    found = evaluate(items, VlmAnswerer(chat, folder, max_px=16 * 784))
     assert all(one.answer.outcome in ("answered", "invalid") for one in found)
     assert chat.ledger.to_json()["calls"] <= 3 * len(items) + 3
     print([one.answer.outcome for one in found], chat.ledger.to_json())

@@ -154,7 +154,7 @@ def parse_size(text: str) -> tuple[int, int] | None:
         UsageError: it says none.
 
     Example:
-        >>> size_of("640x480"), parse_size("none")
+        >>> parse_size("640x480"), parse_size("none")
         ((640, 480), None)
     """
     if text == "none":

@@ -67,8 +67,8 @@ def random_episodes(
     seed: int = 0,
     *,
     move_set: str = "vlnce",
-    least_m: float = MIN_PATH_M,
-    most_m: float = MAX_PATH_M,
+    min_m: float = MIN_PATH_M,
+    max_m: float = MAX_PATH_M,
     split: str = "train",
 ) -> list[Episode]:
     """Return episodes that the oracle solves; the same for the same seed, a longer list begins so.
@@ -78,17 +78,17 @@ def random_episodes(
         count: how many.
         seed: 0 or more.
         move_set: the moves' name.
-        least_m: the shortest way on foot.
-        most_m: the longest.
+        min_m: the shortest way on foot.
+        max_m: the longest.
         split: train, val_seen or val_unseen.
 
     Raises:
         UsageError: the scene gives none, or a number cannot be. UnknownNameError: no such moves.
     """
-    if count < 1 or not 0 <= least_m < most_m:
+    if count < 1 or not 0 <= min_m < max_m:
         raise UsageError(
             f"episodes are 1 or more with ways of 0 <= least < most metres, not {count} of "
-            f"{least_m:g} to {most_m:g}"
+            f"{min_m:g} to {max_m:g}"
         )
     get_move_set(move_set)
     targets = targets_of(scene)
@@ -96,7 +96,7 @@ def random_episodes(
     for number in range(count):
         rng = np.random.default_rng([seed, number])
         name = f"{scene.scene_id}-{seed}-{number:04d}"
-        how = {"move_set": move_set, "span_m": (least_m, most_m), "split": split}
+        how = {"move_set": move_set, "span_m": (min_m, max_m), "split": split}
         made.append(random_episode(scene, rng, targets, name, **how))
     return made
 

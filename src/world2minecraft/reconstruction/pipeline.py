@@ -30,7 +30,7 @@ from world2minecraft.formats.scan import (
     write_scan,
 )
 from world2minecraft.furniture.user_library import user_design_files, user_design_folder
-from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
+from world2minecraft.reconstruction.floorplans import add_plan_openings, add_plan_votes
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
 from world2minecraft.reconstruction.opening import prepare_and_open
@@ -122,7 +122,7 @@ def _fuse(
     scan = skip_damaged_frames(scan)
     notes = notes_of(network)
     if chosen.plan:
-        evidence, notes_of_plan = voted_by_plan(evidence, Path(chosen.plan))
+        evidence, notes_of_plan = add_plan_votes(evidence, Path(chosen.plan))
         notes = (*notes, *notes_of_plan)
     scan = replace(scan, notes=(*scan.notes, *notes))
     write_evidence(run.path("evidence.npz"), evidence)

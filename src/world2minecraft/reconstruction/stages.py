@@ -45,10 +45,10 @@ from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval import place_templates
 from world2minecraft.reconstruction.semantics import (
+    complete_walls,
     find_structure,
     labeller,
     remove_wall_guesses,
-    with_whole_walls,
 )
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
@@ -64,7 +64,7 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
         grid = remove_wall_guesses(grid, rooms)
     grid = label_grid(grid, evidence, chosen, from_photos=from_photos)
     if from_photos:
-        grid = with_whole_walls(grid, rooms)
+        grid = complete_walls(grid, rooms)
     write_room(folder / "room.npz", grid, evidence.scan_to_room)
 
 

@@ -59,12 +59,12 @@ class UploadFile:
     size: int
 
 
-def check_files(data: Any, most_bytes: int) -> tuple[UploadFile, ...]:
+def check_files(data: Any, max_bytes: int) -> tuple[UploadFile, ...]:
     """Return the files that a page says it will send.
 
     Args:
         data: JSON, a list of ``{"path", "size"}``.
-        most_bytes: of all files together.
+        max_bytes: of all files together.
 
     Raises:
         UsageError: a path leaves the folder, is no name, or stands there twice.
@@ -78,10 +78,10 @@ def check_files(data: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     if not files:
         raise UsageError("there is nothing in it; drop a folder with pictures, a zip or a video")
     total = sum(one.size for one in files)
-    if total > most_bytes:
+    if total > max_bytes:
         raise LimitError(
             "the capture",
-            f"has {total >> 20:,} MB; at most {most_bytes >> 20:,} MB are taken by the page. "
+            f"has {total >> 20:,} MB; at most {max_bytes >> 20:,} MB are taken by the page. "
             "Start w2m forge with the path of the capture instead, or with --max-upload",
         )
     _check_distinct(one.path for one in files)
@@ -268,11 +268,11 @@ class CaptureStore:
 
     Args:
         home: the folder of SceneForge's own; made when first needed.
-        most_bytes: the most that one upload may hold.
+        max_bytes: the most that one upload may hold.
     """
 
-    def __init__(self, home: Path, most_bytes: int = MAX_UPLOAD_BYTES):
-        self.home, self.most_bytes = home, most_bytes
+    def __init__(self, home: Path, max_bytes: int = MAX_UPLOAD_BYTES):
+        self.home, self.max_bytes = home, max_bytes
         self.folder = home / "captures"
 
     def all(self) -> list[CaptureFolder]:
@@ -317,7 +317,7 @@ class CaptureStore:
             UsageError: a name cannot be used. LimitError: it is too large.
             OutputError: the disk is full.
         """
-        checked = check_files(files, self.most_bytes)
+        checked = check_files(files, self.max_bytes)
         self._check_space(sum(one.size for one in checked))
         top = common_folder(checked)
         inner = tuple(UploadFile(one.path[len(top) + 1 :], one.size) for one in checked)

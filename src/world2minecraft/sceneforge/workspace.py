@@ -44,7 +44,7 @@ class Workspace:
     Args:
         session: holds the document and the tabs (``session.broadcaster.broadcast_threadsafe``).
         home: the folder for captures and rooms made here.
-        most_bytes: the most that one upload may hold.
+        max_bytes: the most that one upload may hold.
         capture: where the capture of the open run lies, where its folder does not say so.
     """
 
@@ -53,7 +53,7 @@ class Workspace:
         session: Session,
         home: Path,
         *,
-        most_bytes: int = MAX_UPLOAD_BYTES,
+        max_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
     ):
         self.session, self.home = session, home
@@ -63,7 +63,7 @@ class Workspace:
         self._lock = threading.Lock()
         self._opening = asyncio.Lock()
         self._exports: tempfile.TemporaryDirectory[str] | None = None
-        self.captures = CaptureStore(home, most_bytes)
+        self.captures = CaptureStore(home, max_bytes)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
         self.running_jobs: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.

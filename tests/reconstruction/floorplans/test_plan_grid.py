@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
-from world2minecraft.reconstruction.floorplans import layouts_of, straightened
+from world2minecraft.reconstruction.floorplans import layouts_of, straighten_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import move_plan
 
 ELL = np.array([[0, 0], [4, 0], [4, 2], [2.5, 2], [2.5, 3.2], [0, 3.2]], float)
@@ -53,7 +53,7 @@ def test_a_layout_comes_back_wherever_the_session_began(tmp_path, turn_deg, floo
     """Up to a quarter turn: a plan does not say which of its walls is the first."""
     session = session_of(turn_deg, (3.0, -1.4, 0.7))
     plan = read_roomplan(written(tmp_path, captured_room(layout(), session, floors)))
-    (found,) = layouts_of(straightened(plan))
+    (found,) = layouts_of(straighten_plan(plan))
     assert found.wall_height_m == pytest.approx(2.4, abs=1e-6)
     assert found.floor_z_m == pytest.approx(0, abs=1e-6)
     assert found.floor_polygon_m.min(axis=0) == pytest.approx([0, 0], abs=1e-6)
@@ -88,7 +88,7 @@ def test_nothing_is_mirrored_and_fronts_follow(tmp_path, document):
 
 def test_the_session_stays_known_through_every_move(tmp_path, document):
     """The plan's own corner, carried to the session, is where the JSON says."""
-    plan = straightened(read_roomplan(written(tmp_path, document)))
+    plan = straighten_plan(read_roomplan(written(tmp_path, document)))
     wall = plan.rooms[0].walls[0]
     foot = np.array([*(wall.start_m + wall.end_m) / 2, (wall.bottom_m + wall.top_m) / 2])
     true = document["walls"][0]["transform"][12:15]
@@ -202,7 +202,7 @@ def test_a_cut_off_file_and_another_json_are_refused(tmp_path, document):
 
 def test_open_walls_are_boxed_and_that_is_told(tmp_path, document):
     document["floors"], document["walls"] = [], document["walls"][:2]
-    (found,) = layouts_of(straightened(read_roomplan(written(tmp_path, document))))
+    (found,) = layouts_of(straighten_plan(read_roomplan(written(tmp_path, document))))
     assert len(found.floor_polygon_m) == 4
 
 

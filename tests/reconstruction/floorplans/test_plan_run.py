@@ -21,13 +21,13 @@ from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.floorplans import (
     PlanMismatchError,
+    align_plan,
     build_plan,
-    laid_plan,
     layouts_of,
     merge_plan_openings,
     plan_votes,
     read_roomplan,
-    straightened,
+    straighten_plan,
 )
 from world2minecraft.reconstruction.floorplans.furniture_categories import template_of
 from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
@@ -47,7 +47,7 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def plan(place):
-    return straightened(read_roomplan(place))
+    return straighten_plan(read_roomplan(place))
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +130,7 @@ def test_rooms_are_parted_by_walls_and_joined_by_doors(tmp_path):
     ]
     path = tmp_path / "home.json"
     path.write_text(json.dumps({"identifier": "x", "rooms": rooms, "walls": []}))
-    grid = rasterize_plan(straightened(read_roomplan(path))).grid
+    grid = rasterize_plan(straighten_plan(read_roomplan(path))).grid
     shoulder = grid.labels[:, :, round((1.5 - grid.origin_m[2]) / grid.voxel_m)]
     assert label_components(shoulder == 0, corners=False)[1] == 1
     high = grid.labels[:, :, round((2.2 - grid.origin_m[2]) / grid.voxel_m)]
@@ -155,7 +155,7 @@ def evidence_of(held, scan_to_room):
 
 def test_a_plan_of_the_same_session_votes_for_what_is_there(place, plan, held):
     evidence = evidence_of(held, np.linalg.inv(plan.plan_to_session))
-    laid = laid_plan(read_roomplan(place), evidence)
+    laid = align_plan(read_roomplan(place), evidence)
     assert "shares the scan's frame" in laid.told
     assert laid.fit > 0.9
     voted = plan_votes(evidence, laid.plan)
@@ -173,7 +173,7 @@ def test_a_plan_of_another_frame_is_laid_on_the_walls(plan, held, turns):
     evidence = evidence_of(held, np.eye(4))
     move = rotation_about_z(90.0 * turns + 8.0)
     move[:3, 3] = [12.0, -7.0, 1.3]
-    laid = laid_plan(move_plan(plan, move), evidence)
+    laid = align_plan(move_plan(plan, move), evidence)
     assert "laid on the scan's walls" in laid.told
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
@@ -184,7 +184,7 @@ def test_a_plan_of_another_room_is_refused(tmp_path, held):
     path = tmp_path / "other.json"
     path.write_text(json.dumps(captured_room(other, SESSION)))
     with pytest.raises(PlanMismatchError, match="is no plan of this room"):
-        laid_plan(read_roomplan(path), evidence_of(held, np.eye(4)))
+        align_plan(read_roomplan(path), evidence_of(held, np.eye(4)))
 
 
 def test_a_square_room_fits_in_several_ways(tmp_path):
@@ -193,9 +193,9 @@ def test_a_square_room_fits_in_several_ways(tmp_path):
     path = tmp_path / "square.json"
     path.write_text(json.dumps(captured_room(square, SESSION)))
     plan = read_roomplan(path)
-    evidence = evidence_of(rasterize_plan(straightened(plan)), np.eye(4))
+    evidence = evidence_of(rasterize_plan(straighten_plan(plan)), np.eye(4))
     with pytest.raises(PlanMismatchError, match="in several ways"):
-        laid_plan(plan, evidence)
+        align_plan(plan, evidence)
 
 
 def test_furniture_tells_which_way_a_plain_room_lies(tmp_path):
@@ -203,9 +203,9 @@ def test_furniture_tells_which_way_a_plain_room_lies(tmp_path):
     polygon = np.array([[0, 0], [3.2, 0], [3.2, 3.2], [0, 3.2]], float)
     path = tmp_path / "furnished.json"
     path.write_text(json.dumps(captured_room(replace(layout(polygon), openings=()), SESSION)))
-    plan = straightened(read_roomplan(path))
+    plan = straighten_plan(read_roomplan(path))
     evidence = evidence_of(rasterize_plan(plan), np.eye(4))
-    laid = laid_plan(move_plan(plan, rotation_about_z(140.0)), evidence)
+    laid = align_plan(move_plan(plan, rotation_about_z(140.0)), evidence)
     assert "walls and furniture" in laid.told
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)

@@ -15,8 +15,8 @@ from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.homes import (
     Move,
-    merged,
-    moved,
+    merge_runs,
+    move_run,
     parse_place,
     place_runs,
     read_runs,
@@ -45,7 +45,7 @@ def test_four_quarter_turns_are_the_identity():
     run = kitchen()
     turned = run
     for _ in range(4):
-        turned = moved(turned, Move(1))
+        turned = move_run(turned, Move(1))
     same(turned, run)
 
 
@@ -53,18 +53,18 @@ def test_there_and_back_is_the_identity():
     run = kitchen()
     back = Move(1, (-40, -17, -2))
     assert back.after(ANYWHERE) == Move(0, (0, 0, 0))
-    same(moved(moved(run, ANYWHERE), back), run)
+    same(move_run(move_run(run, ANYWHERE), back), run)
 
 
 @pytest.mark.parametrize("first", [Move(1, (3, 4, 0)), Move(2, (-5, 0, 1)), Move(3)])
 def test_two_moves_are_one(first):
     run = kitchen()
-    same(moved(moved(run, first), ANYWHERE), moved(run, ANYWHERE.after(first)))
+    same(move_run(move_run(run, first), ANYWHERE), move_run(run, ANYWHERE.after(first)))
 
 
 def test_cells_move_with_the_frame():
     """What lies at a place is found at the moved place."""
-    run, new = kitchen(), moved(kitchen(), ANYWHERE)
+    run, new = kitchen(), move_run(kitchen(), ANYWHERE)
     to_new = ANYWHERE.transform(run.grid.voxel_m)
     cells = np.argwhere(run.grid.labels == 8)
     middles = run.grid.origin_m + (cells + 0.5) * run.grid.voxel_m
@@ -75,7 +75,11 @@ def test_cells_move_with_the_frame():
 
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])
 def test_rooms_find_their_doors_from_any_frame(turns):
-    own = [kitchen(), moved(hall(), Move(turns, (5, 9, 0))), moved(bedroom(), Move(3 - turns))]
+    own = [
+        kitchen(),
+        move_run(hall(), Move(turns, (5, 9, 0))),
+        move_run(bedroom(), Move(3 - turns)),
+    ]
     placed = place_runs(own)
     for run, true in zip(placed.runs, (kitchen(), hall(), bedroom()), strict=True):
         assert run.layouts[0].floor_polygon_m.min(axis=0) == pytest.approx(
@@ -87,7 +91,7 @@ def test_rooms_find_their_doors_from_any_frame(turns):
 
 def test_each_room_stays_as_it_was_and_doors_are_open():
     placed = place_runs([kitchen(), hall(), bedroom()])
-    home = merged(placed, "home")
+    home = merge_runs(placed, "home")
     grid = home.run.grid
     for number, run in enumerate(placed.runs):
         mine, theirs = (
@@ -113,7 +117,7 @@ def inside(grid, polygon):
 
 
 def test_objects_keep_their_cells_and_get_numbers_of_their_own():
-    home = merged(place_runs([kitchen(), bedroom()]))
+    home = merge_runs(place_runs([kitchen(), bedroom()]))
     numbers = [one.id for one in home.run.instances]
     assert len(set(numbers)) == len(numbers)
     tables = [one for one in home.run.instances if one.class_id == 8]
@@ -130,7 +134,7 @@ def test_what_was_seen_through_a_door_is_the_next_rooms():
     both = room(KITCHEN, [((1.2, 2.8), (2.2, 2.8), 2.2)], [table(1.2, 1.2)])
     seen = run_of("kitchen", both, room(BED, (), [table(2.6, 4.8)]))
     seen = replace(seen, layouts=seen.layouts[:1])
-    home = merged(place_runs([seen, bedroom()], {"bed": Move()}))
+    home = merge_runs(place_runs([seen, bedroom()], {"bed": Move()}))
     assert len([one for one in home.run.instances if one.class_id == 8]) == 2
     assert any("seen through doors" in text for text in home.told)
 
@@ -212,7 +216,7 @@ def write_run(folder, run):
 
 def test_the_verb_leaves_a_run_with_a_world_and_a_report(tmp_path, capsys):
     first = write_run(tmp_path / "kitchen", kitchen())
-    second = write_run(tmp_path / "bed", moved(bedroom(), Move(1, (4, 4, 0))))
+    second = write_run(tmp_path / "bed", move_run(bedroom(), Move(1, (4, 4, 0))))
     (second / "report.html").write_text("<p>its own</p>")
     out = tmp_path / "HOME"
     words = ["join", str(first), str(second), "--out", str(out), "--blocks-per-metre", "2"]

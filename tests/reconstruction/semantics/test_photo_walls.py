@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, Layout, OccupancyGrid, Opening
 from world2minecraft.reconstruction.layout.photo_walls import BEFORE_M, wall_edges
-from world2minecraft.reconstruction.semantics import remove_wall_guesses, with_whole_walls
+from world2minecraft.reconstruction.semantics import complete_walls, remove_wall_guesses
 
 VOXEL_M = 0.08
 MARGIN = 10  # Cells around the room.
@@ -112,11 +112,11 @@ def test_unseen_parts_of_a_seen_shell_are_completed_and_marked():
     for hole in holes:
         labels[hole] = 255
     seen = replace(whole, labels=labels, source=(labels != 255).astype(np.uint8))
-    found = with_whole_walls(seen, [ROOM])
+    found = complete_walls(seen, [ROOM])
     assert np.array_equal(found.labels, whole.labels)
     for hole in holes:
         assert (found.source[hole] == COMPLETED).all()
-    again = with_whole_walls(found, [ROOM])
+    again = complete_walls(found, [ROOM])
     assert np.array_equal(again.labels, found.labels)
 
 
@@ -127,7 +127,7 @@ def test_carved_wall_is_closed_windows_stay_open():
     labels[small] = labels[window] = 0
     opening = Opening("window", np.array([0, 1.12]), np.array([0, 2.24]), 0.8, 2.0)
     room = replace(ROOM, openings=(opening,))
-    found = with_whole_walls(replace(whole, labels=labels), [room])
+    found = complete_walls(replace(whole, labels=labels), [room])
     assert (found.labels[small] == SemanticClass.WALL).all()
     assert (found.labels[window] == 0).all()
 
@@ -137,12 +137,12 @@ def test_what_is_flat_on_a_wall_becomes_the_wall():
     poster = box((0, 1), (5, 12), (10, 20))
     shelf = box((0, 3), (14, 20), (10, 12))
     scene = with_cells(with_cells(whole, poster, RED), shelf, RED)
-    found = with_whole_walls(scene, [ROOM])
+    found = complete_walls(scene, [ROOM])
     assert (found.labels[poster] == SemanticClass.WALL).all()
     assert (found.labels[box((1, 3), (14, 20), (10, 12))] == SemanticClass.OBJS).all()
 
 
-@pytest.mark.parametrize("change", [remove_wall_guesses, with_whole_walls])
+@pytest.mark.parametrize("change", [remove_wall_guesses, complete_walls])
 def test_without_rooms_nothing_changes(change):
     grid = with_cells(labelled_room(), box((-8, -4), (5, 20), (3, 20)))
     found = change(grid, [])

@@ -99,7 +99,7 @@ def run(
     dropped = source is not None and is_capture(source)
     place = (home or user_home()) / DEMO_OUT if demo else None
     editor = Editor.open(source, out=place) if demo or (source and not dropped) else None
-    places = {"home": home, "capture": capture, "most_upload_bytes": max_upload << 20}
+    places = {"home": home, "capture": capture, "max_upload_bytes": max_upload << 20}
     server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
     first = source or (editor and document_folder(None, place))
     if first:

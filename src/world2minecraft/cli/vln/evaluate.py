@@ -97,7 +97,7 @@ def run(
     chat = None
     if is_endpoint(agent):
         chat = model_options.open(agent, target)
-        answerer: Any = VlmAnswerer(chat, place, style, most_px=max_pixels)
+        answerer: Any = VlmAnswerer(chat, place, style, max_px=max_pixels)
     else:
         answerer, items = _baseline(agent, every, items, place)
         training = "baseline"

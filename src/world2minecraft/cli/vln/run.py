@@ -124,7 +124,7 @@ def run(
         chats.append(model_options.open(agent, folder))
         return chats[0]
 
-    how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
+    how: dict[str, Any] = {"map_kind": map_kind, "max_px": max_pixels}
     walker = make_agent(agent, chat, chunk=chunk, history=history, **how)
     wish = GoalRequest(instruction, goal, _stance(start), moves, max_steps)
     with closing(_Simulators(server)) as grounds, _human_page(walker, no_browser):

@@ -44,7 +44,7 @@ def write_brief_report(
 
     Args:
         folder: the run's folder, built.
-        scan: what is told of it: source, name, size and notes.
+        scan: what is known of it: source, name, size and notes.
         links: names and addresses of further reports, such as each room's own.
 
     Returns:

@@ -122,7 +122,7 @@ def format_count(number: float) -> str:
     """Return a number of cells as the paper writes it.
 
     Example:
-        >>> short(23247), short(4_700_514), format_count(812)
+        >>> format_count(23247), format_count(4_700_514), format_count(812)
         ('23.2K', '4.7M', '812')
     """
     for size, letter in ((1e9, "B"), (1e6, "M"), (1e3, "K")):

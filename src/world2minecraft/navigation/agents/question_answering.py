@@ -158,7 +158,7 @@ class VlmAnswerer:
         model: whom to ask.
         folder: of the set; images are read from it and held against their sums.
         style: one of ``STYLES``.
-        most_px: pixels of a picture that it is shown; larger ones are made smaller.
+        max_px: pixels of a picture that it is shown; larger ones are made smaller.
     """
 
     def __init__(
@@ -167,13 +167,13 @@ class VlmAnswerer:
         folder: str | Path,
         style: str = "letter",
         *,
-        most_px: int = MAX_PX,
+        max_px: int = MAX_PX,
     ):
         if style not in STYLES:
             raise UnknownNameError("style of question", style, STYLES)
-        check_max_px(most_px)
+        check_max_px(max_px)
         self.name, self.model, self.folder, self.style = model.name, model, Path(folder), style
-        self.most_px = most_px
+        self.max_px = max_px
 
     def answer(self, item: Item) -> Answer:
         """Ask an item.
@@ -209,6 +209,6 @@ class VlmAnswerer:
         if picture.sha256 != item.sha256.get(name):
             raise DamagedFileError(path, f"is not the image that item {item.item_id} was made of")
         try:
-            return downscale_picture(picture, self.most_px)
+            return downscale_picture(picture, self.max_px)
         except ValueError as error:
             raise DamagedFileError(path, str(error)) from error

@@ -34,7 +34,7 @@ def make_agent(
     chunk: int = MAX_MOVES,
     history: int = HISTORY,
     map_kind: MapKind = "none",
-    most_px: int = MAX_PX,
+    max_px: int = MAX_PX,
 ) -> Agent:
     """Return an agent by its name, or the model that ``chat`` opens for a server's.
 
@@ -44,7 +44,7 @@ def make_agent(
     if map_kind not in MAPS:
         raise UnknownNameError("map", map_kind, MAPS)
     if is_endpoint(text):
-        return VlmAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, most_px=most_px)
+        return VlmAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, max_px=max_px)
     if text not in AGENTS.names():
         raise UnknownNameError("agent", text, [*AGENTS.names(), *ENDPOINTS])
     return AGENTS.load(text)()

@@ -112,7 +112,7 @@ class VlmAgent:
         history: how many views of before it is shown, 0 to 8.
         map_kind: ``text`` tells it in words where it was; ``plan`` shows it a plan of the building
             with its way, which is more than its eyes know.
-        most_px: pixels of a picture that it is shown; larger ones are made smaller.
+        max_px: pixels of a picture that it is shown; larger ones are made smaller.
     """
 
     is_privileged = is_blind = False
@@ -124,7 +124,7 @@ class VlmAgent:
         chunk: int = MAX_MOVES,
         history: int = HISTORY,
         map_kind: MapKind = "none",
-        most_px: int = MAX_PX,
+        max_px: int = MAX_PX,
     ):
         if not 1 <= chunk <= MAX_MOVES:
             raise UsageError(f"a model gives 1 to {MAX_MOVES} moves at once, not {chunk}")
@@ -132,10 +132,10 @@ class VlmAgent:
             raise UsageError(f"a model is shown 0 to {MAX_HISTORY} views of before, not {history}")
         if map_kind not in MAPS:
             raise UnknownNameError("map", map_kind, MAPS)
-        check_max_px(most_px)
+        check_max_px(max_px)
         self.name, self.model = model.name, model
         self.chunk, self.history, self.map_kind = chunk, history, map_kind
-        self.most_px = most_px
+        self.max_px = max_px
         self._form = step_form(chunk)
         self._task: Task | None = None
         self._forget()
@@ -187,7 +187,7 @@ class VlmAgent:
         )  # fmt: skip
 
     def _picture(self, colour: np.ndarray) -> Picture:
-        return Picture(encode_jpeg(downscale(colour, self.most_px)))
+        return Picture(encode_jpeg(downscale(colour, self.max_px)))
 
     def _forget(self) -> None:
         self._views: list[Picture] = []

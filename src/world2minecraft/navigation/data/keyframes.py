@@ -102,13 +102,13 @@ def is_turn_around(marks: Sequence[KeyframeMark], step: int, turn_deg: float) ->
 class ValidityRule:
     """What a trajectory must be. Choices of ours; the paper says only "meaningful"."""
 
-    least_keyframes: int = 4
-    most_keyframes: int = 40
-    least_m: float = 1.5
-    most_m: float = 25.0
-    least_apart_m: float = 1.0  # from start to end, on foot
-    least_mean: float = 8.0  # of a picture's grey, 0 to 255: darker is a black frame
-    least_hash: int = 4  # bits of 64 by which a picture differs from the one before
+    min_keyframes: int = 4
+    max_keyframes: int = 40
+    min_path_m: float = 1.5
+    max_path_m: float = 25.0
+    min_distance_m: float = 1.0  # from start to end, on foot
+    min_mean: float = 8.0  # of a picture's grey, 0 to 255: darker is a black frame
+    min_hash_bits: int = 4  # bits of 64 by which a picture differs from the one before
 
 
 def path_fault(
@@ -125,13 +125,13 @@ def path_fault(
     how = rule or ValidityRule()
     if not any(mark.move == Move.FORWARD for mark in marks):
         return NO_MOVEMENT
-    if not how.least_m <= path_m <= how.most_m:
-        return "too short" if path_m < how.least_m else "too long"
-    if apart_m < how.least_apart_m:
+    if not how.min_path_m <= path_m <= how.max_path_m:
+        return "too short" if path_m < how.min_path_m else "too long"
+    if apart_m < how.min_distance_m:
         return "ends where it began"
-    if len(marks) < how.least_keyframes:
+    if len(marks) < how.min_keyframes:
         return "too few keyframes"
-    return "too many keyframes" if len(marks) > how.most_keyframes else ""
+    return "too many keyframes" if len(marks) > how.max_keyframes else ""
 
 
 def picture_fault(
@@ -145,10 +145,10 @@ def picture_fault(
         rule: what a trajectory must be.
     """
     how = rule or ValidityRule()
-    if min(means, default=0.0) < how.least_mean:
+    if min(means, default=0.0) < how.min_mean:
         return "black picture"
     distances = [hash_distance(a, b) for a, b in pairwise(hashes)]
-    return "twice the same picture" if min(distances, default=64) < how.least_hash else ""
+    return "twice the same picture" if min(distances, default=64) < how.min_hash_bits else ""
 
 
 def path_length_m(marks: Sequence[KeyframeMark], blocks_per_metre: float) -> float:

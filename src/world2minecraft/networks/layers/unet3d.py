@@ -57,7 +57,7 @@ class UNet3D(nn.Module):
 def coarsest_shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
     """Return the sides of a grid that was halved twice, rounded up each time.
 
-    >>> coarsest((60, 60, 36)), coarsest_shape((30, 30, 18))
+    >>> coarsest_shape((60, 60, 36)), coarsest_shape((30, 30, 18))
     ((15, 15, 9), (8, 8, 5))
     """
     return (-(-shape[0] // 4), -(-shape[1] // 4), -(-shape[2] // 4))

@@ -305,7 +305,7 @@ class SceneStream:
 def _window_starts(whole: int, side: int) -> list[int]:
     """Return where boxes begin along an axis, so that each overlaps the next by half or more.
 
-    >>> _starts(30, 30), _window_starts(50, 20)
+    >>> _window_starts(30, 30), _window_starts(50, 20)
     ([0], [0, 10, 20, 30])
     """
     return sorted({min(start, whole - side) for start in range(0, whole, max(side // 2, 1))})

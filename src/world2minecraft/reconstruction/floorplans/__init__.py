@@ -21,18 +21,18 @@ from world2minecraft.reconstruction.floorplans.plan_votes import (
 from world2minecraft.reconstruction.floorplans.room_outlines import layouts_of, straighten_plan
 
 __all__ = [
-    "LaidPlan",
+    "AlignedPlan",
     "PlanMismatchError",
     "PlanWorld",
     "add_plan_openings",
+    "add_plan_votes",
+    "align_plan",
     "build_captured",
     "build_plan",
     "find_roomplan",
-    "laid_plan",
     "layouts_of",
+    "merge_plan_openings",
     "plan_votes",
     "read_roomplan",
-    "straightened",
-    "voted_by_plan",
-    "merge_plan_openings",
+    "straighten_plan",
 ]

@@ -1,6 +1,7 @@
 """Several finished runs become one home: rooms set beside each other by their doors.
 
-``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merge_runs`` are its pure parts.
+``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merge_runs`` are its pure
+parts.
 """
 
 from world2minecraft.reconstruction.homes.join_runs import join, read_runs
@@ -14,8 +15,8 @@ __all__ = [
     "Placed",
     "Run",
     "join",
-    "merged",
-    "moved",
+    "merge_runs",
+    "move_run",
     "parse_place",
     "place_runs",
     "read_runs",

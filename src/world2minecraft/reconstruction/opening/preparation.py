@@ -60,7 +60,7 @@ def prepare_capture(
         out: the folder of the run; what must be computed is written to ``out / FOLDER``, and
             taken from there when it was made from the same pictures with the same parameters.
         chosen: how.
-        progress: told of the stages ``photos``, ``poses`` and ``stereo``.
+        progress: called with the stages ``photos``, ``poses`` and ``stereo``.
 
     Raises:
         CaptureError: nothing can be made of the pictures; the message says what would help.

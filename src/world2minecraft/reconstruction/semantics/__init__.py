@@ -17,9 +17,9 @@ from world2minecraft.reconstruction.layout.room_layouts import find_structure
 __all__ = [
     "LABELLERS",
     "Labeller",
+    "complete_walls",
     "find_structure",
     "labeller",
-    "with_whole_walls",
     "remove_wall_guesses",
 ]
 

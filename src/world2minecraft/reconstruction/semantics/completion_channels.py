@@ -1,4 +1,4 @@
-"""What the completion network is told of a grid: one truth for its training and its use.
+"""The input channels of the completion network: one truth for its training and its use.
 
 A ``Sight`` is the compact form: log-odds of every cell, and what is known of the occupied ones.
 ``network_input`` spreads it to the channels of the network. What is missing is left out of a
@@ -49,7 +49,7 @@ def sight_of(
     hint: np.ndarray | None = None,
     floor_m: float | None = 0.0,
 ) -> Sight:
-    """Return what the network is told of a cleaned read-out.
+    """Return the network's input for a cleaned read-out.
 
     Args:
         grid: the read-out; its occupied, free and unseen cells count.

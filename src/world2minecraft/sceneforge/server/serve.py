@@ -128,7 +128,7 @@ class ForgeServer(PageServer):
         host, port, token: as ``PageServer`` takes them.
         hosts: further names under which the server may be called.
         home: the folder for captures and rooms made here; the user's own where None.
-        most_upload_bytes: the most that one dropped capture may hold.
+        max_upload_bytes: the most that one dropped capture may hold.
         capture: where the photos of the room lie, where its folder does not say so.
 
     Raises:
@@ -144,12 +144,12 @@ class ForgeServer(PageServer):
         token: str | None = None,
         hosts: Iterable[str] = (),
         home: Path | None = None,
-        most_upload_bytes: int = MAX_UPLOAD_BYTES,
+        max_upload_bytes: int = MAX_UPLOAD_BYTES,
         capture: Path | None = None,
     ):
         self.session = Session(editor)
         self.workspace = Workspace(
-            self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
+            self.session, home or user_home(), max_bytes=max_upload_bytes, capture=capture
         )
         is_open = not _is_loopback(host)
         named = [*hosts, *([host, socket.gethostname()] if is_open else [])]

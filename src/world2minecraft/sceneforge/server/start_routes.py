@@ -82,7 +82,7 @@ async def _overview(request: Request) -> Response:
                 for n, place in enumerate(workspace.recent())
             ],
             "demos": list(BASE_KINDS),
-            "most_bytes": workspace.captures.most_bytes,
+            "most_bytes": workspace.captures.max_bytes,
             "chunk_bytes": CHUNK_BYTES,
             "scales": list(SCALES),
             "scale": DEFAULT_SCALE,

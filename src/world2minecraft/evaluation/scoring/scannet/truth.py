@@ -258,7 +258,7 @@ def write_scannet_truth(
     Args:
         scene: the folder with the ``.sens`` or exported frames and the labelled mesh.
         out: where to write; None for the scene's own folder.
-        progress: told of the stages ``mesh`` and ``seen``.
+        progress: called with the stages ``mesh`` and ``seen``.
 
     Raises:
         InputError: a file of the scene is missing or damaged. OutputError: ``out`` cannot be
