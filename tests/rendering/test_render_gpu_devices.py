@@ -124,7 +124,7 @@ def test_a_card_that_gives_no_device_is_named(machine, scene):
 def test_a_world_that_is_too_large_is_named_with_its_sizes(scene, monkeypatch):
     limits = {"max-storage-buffer-binding-size": 1 << 27, "max-buffer-size": 1 << 28}
     monkeypatch.setattr(
-        engines, "bytes_of", lambda scene: {"cells": 1 << 27, "light": 1_500_000_000}
+        engines, "buffer_bytes", lambda scene: {"cells": 1 << 27, "light": 1_500_000_000}
     )
     small = engines.Engine("Small Card", SimpleNamespace(limits=limits), None)
     with pytest.raises(GpuError) as caught:

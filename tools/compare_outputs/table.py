@@ -511,7 +511,7 @@ BUILDS = (
         "builds-of-others",
         (
             "convert a.schem a-world",
-            "convert a-world a.nbt --box 0,64,0,9,72,9",
+            "convert a-world a.nbt --box 0,-64,0,9,120,9",
             "convert a.schem a3.schem --schem-version 3",
             "convert a.schem a.mcstructure --mc-version 1.21.4",
             "convert b.nbt b.litematic",
@@ -721,7 +721,8 @@ NAVIGATION = (
             "vln build house OUT --out SET --trajectories 3 --size 96x64 --workers 2 --moves rxr"
             " --paper-split --views 1",
             "vln export SET --to llamafactory --out SFT --task next_view --composition base",
-            "vln build OUT --stream walk --out STREAMED --size 96x64 --workers 1",
+            "vln run SET --agent oracle --no-video --out ORACLE",
+            "vln build house OUT --stream ORACLE --out STREAMED --size 96x64 --workers 1",
             "vln run SET --agent random --count 2 --no-video --out RANDOM",
             "vln run SET --agent shortest --count 1 --no-video --out SHORTEST --moves rxr",
             "vln table RANDOM SHORTEST",
@@ -729,7 +730,6 @@ NAVIGATION = (
         {
             "OUT": "demo/OUT",
             "house": "dataset/DATA/worlds/house_0001",
-            "walk": "walk/WALK",
         },
     ),
     Step("environment", (Script(_ENVIRONMENT),), {"OUT": "demo/OUT"}),
@@ -756,7 +756,7 @@ NAVIGATION = (
         {
             "SET": "navigation/SET",
             "OUT": "demo/OUT",
-            "words.csv": Text("trajectory_id,instruction\ndemo_t00_001,Walk to the table.\n"),
+            "words.csv": Text("trajectory_id,instruction\nOUT_t00_001,Walk to the table.\n"),
         },
     ),
 )
