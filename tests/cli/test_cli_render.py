@@ -307,7 +307,7 @@ def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
     import sys
 
     monkeypatch.setattr(
-        sys.modules["world2minecraft.rendering.presentation.shot_frames"], "LEAST_A_JOB", 4
+        sys.modules["world2minecraft.rendering.presentation.shot_frames"], "MIN_PICTURES_PER_JOB", 4
     )
     words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
     assert render(build, *words, "--out", "one") == 0

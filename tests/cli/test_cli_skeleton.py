@@ -61,14 +61,14 @@ def test_each_verb_has_a_help_that_ends_with_examples(name, capsys):
 @pytest.fixture
 def verb_of_two_words(monkeypatch):
     """Put a verb ``pro be`` in the table that counts to a number."""
-    module = type(sys)("world2minecraft.cli.pro_be")
+    module = type(sys)("world2minecraft.cli.pro.be")
 
     def run(number: int) -> int:
         """Be a probe."""
         return number
 
     module.run, module.EXAMPLES = run, "w2m pro be 5      an example\n"
-    monkeypatch.setitem(sys.modules, "world2minecraft.cli.pro_be", module)
+    monkeypatch.setitem(sys.modules, "world2minecraft.cli.pro.be", module)
     monkeypatch.setitem(verbs.VERBS, "pro be", "Probe two words.")
 
 

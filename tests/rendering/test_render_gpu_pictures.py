@@ -159,7 +159,7 @@ def test_bands_and_batches_of_any_size_change_nothing(slot_bytes, monkeypatch):
     whole = list(gpu.render_many(CAMERA, poses, outputs=EVERYTHING))
     cut = slots.plan_submissions
     monkeypatch.setattr(
-        "world2minecraft.rendering.gpu.renderer.plan_of",
+        "world2minecraft.rendering.gpu.renderer.plan_submissions",
         lambda ask, pictures: cut(ask, pictures, slot_bytes),
     )
     for one, other in zip(gpu.render_many(CAMERA, poses, outputs=EVERYTHING), whole, strict=True):

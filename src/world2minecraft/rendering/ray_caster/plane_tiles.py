@@ -39,22 +39,12 @@ class Tile(NamedTuple):
 def draw_plane_tile(
     tables, side_px, camera, shading, scale, sun, tile, cells, face, out
 ):  # fmt: skip
-    """Draw a tile of a pinhole camera.
+    """Draw a ``Tile`` of a pinhole camera; arguments that are not named here as in ``draw_rows``.
 
     Where the sun, or a light at the camera, differs from pixel to pixel, ``picture_kernel`` draws
-    the pixels one by one.
-
-    Args:
-        tables: ``SceneTables``, with textures of ``side_px``.
-        side_px: the side of a texture.
-        camera: ``GridCamera``.
-        shading: ``ShadingParameters``.
-        scale: blocks per metre.
-        sun: the cosine of the sun on the whole tile, 0 in shadow.
-        tile: ``Tile``.
-        cells: int64 [2, 3] or more: the first and the last cell that the tile covers.
-        face: float64 [FACE_NUMBERS], scratch.
-        out: ``PixelArrays``.
+    the pixels one by one. ``scale`` is blocks per metre, ``sun`` the cosine of the sun on the whole
+    tile (0 in shadow), ``cells`` int64 [2, 3] the first and the last cell that the tile covers, and
+    ``face`` float64 [FACE_NUMBERS] is scratch.
     """
     pose, rays = camera.pose, camera.rays
     side, layer = tile.side, tile.layer
