@@ -304,11 +304,9 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
 
 
 def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
-    import sys
+    from world2minecraft.rendering.presentation import shot_frames
 
-    monkeypatch.setattr(
-        sys.modules["world2minecraft.rendering.presentation.shot_frames"], "MIN_PICTURES_PER_JOB", 4
-    )
+    monkeypatch.setattr(shot_frames, "MIN_PICTURES_PER_JOB", 4)
     words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
     assert render(build, *words, "--out", "one") == 0
     assert render(build, *words, "--out", "two", "--jobs", "2") == 0
@@ -337,7 +335,7 @@ def test_photos_are_traced_by_passes(build, tmp_path, capsys):
 
 def test_a_device_draws_and_is_let_go(build, monkeypatch):
     from world2minecraft.rendering import render_volume
-    from world2minecraft.rendering.presentation import shot_frames as module
+    from world2minecraft.rendering.presentation import shot_frames
 
     told = []
 
@@ -358,23 +356,15 @@ def test_a_device_draws_and_is_let_go(build, monkeypatch):
             told.append(device)
             return Renderer(scene)
 
-    import sys
-
-    frames_module = sys.modules["world2minecraft.rendering.presentation.shot_frames"]
-    assert module is not frames_module  # The package's name is the function.
-    monkeypatch.setattr(frames_module, "_gpu_module", lambda device: Gpu)
+    monkeypatch.setattr(shot_frames, "_gpu_module", lambda device: Gpu)
     assert render(build, "--pose", POSE, "--pose", POSE, "--device", "gpu", "--out", "g") == 0
     assert told == ["gpu", "render", "render", "close"]
 
 
 def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsys):
-    import sys
+    from world2minecraft.rendering.presentation import shot_frames
 
-    monkeypatch.setattr(
-        sys.modules["world2minecraft.rendering.presentation.shot_frames"],
-        "GPU",
-        "world2minecraft.rendering.none",
-    )
+    monkeypatch.setattr(shot_frames, "GPU", "world2minecraft.rendering.none")
     assert render(build, "--device", "auto") == 0
     assert render(build, "--device", "gpu") == 2
     assert "error: device 'gpu' is not in this version; cpu is\n" in capsys.readouterr().err

@@ -18,7 +18,7 @@ from numba.core.dispatcher import Dispatcher
 from generated_rooms import furnished_room
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.rendering.preview import plan_view, preview
-from world2minecraft.evaluation.report.jit_warmup import _look_at_it, draw_a_box
+from world2minecraft.evaluation.report.jit_warmup import _look_at_it, draw_box
 from world2minecraft.evaluation.report.comparison_pictures import make_pairs
 
 def compiled():
@@ -31,7 +31,7 @@ def compiled():
 grid, placements = furnished_room(5, "living")
 volumes = [build_volume(grid, placements, (), parameters=BuildParameters(style=style))
            for style in ("blocks", "display")]  # Building lights the rooms, by kernels of its own.
-draw_a_box()
+draw_box()
 before = compiled()
 for volume in volumes:
     make_pairs(_look_at_it(), volume)

@@ -156,7 +156,7 @@ def evidence_of(held, scan_to_room):
 def test_a_plan_of_the_same_session_votes_for_what_is_there(place, plan, held):
     evidence = evidence_of(held, np.linalg.inv(plan.plan_to_session))
     laid = align_plan(read_roomplan(place), evidence)
-    assert "shares the scan's frame" in laid.told
+    assert "shares the scan's frame" in laid.note
     assert laid.fit > 0.9
     voted = plan_votes(evidence, laid.plan)
     assert np.array_equal(voted.log_odds, evidence.log_odds)
@@ -174,7 +174,7 @@ def test_a_plan_of_another_frame_is_laid_on_the_walls(plan, held, turns):
     move = rotation_about_z(90.0 * turns + 8.0)
     move[:3, 3] = [12.0, -7.0, 1.3]
     laid = align_plan(move_plan(plan, move), evidence)
-    assert "laid on the scan's walls" in laid.told
+    assert "laid on the scan's walls" in laid.note
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
 
@@ -206,7 +206,7 @@ def test_furniture_tells_which_way_a_plain_room_lies(tmp_path):
     plan = straighten_plan(read_roomplan(path))
     evidence = evidence_of(rasterize_plan(plan), np.eye(4))
     laid = align_plan(move_plan(plan, rotation_about_z(140.0)), evidence)
-    assert "walls and furniture" in laid.told
+    assert "walls and furniture" in laid.note
     true = plan.rooms[0].objects[0].center_m
     assert laid.plan.rooms[0].objects[0].center_m == pytest.approx(true, abs=0.13)
 

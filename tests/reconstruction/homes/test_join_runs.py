@@ -85,8 +85,8 @@ def test_rooms_find_their_doors_from_any_frame(turns):
         assert run.layouts[0].floor_polygon_m.min(axis=0) == pytest.approx(
             true.layouts[0].floor_polygon_m.min(axis=0), abs=0.09
         )
-    assert "hall was set beside kitchen at a door 0.80 m wide" in placed.told
-    assert "bed was set beside kitchen at a door 1.00 m wide" in placed.told
+    assert "hall was set beside kitchen at a door 0.80 m wide" in placed.lines
+    assert "bed was set beside kitchen at a door 1.00 m wide" in placed.lines
 
 
 def test_each_room_stays_as_it_was_and_doors_are_open():
@@ -103,7 +103,7 @@ def test_each_room_stays_as_it_was_and_doors_are_open():
     assert label_components(shoulder == 0, corners=False)[1] == 1
     assert len(home.run.layouts) == 3
     assert home.size_m == pytest.approx([5.2, 6.0, 2.5], abs=0.17)
-    assert "2 doors between the rooms stand open" in home.told
+    assert "2 doors between the rooms stand open" in home.lines
 
 
 def inside(grid, polygon):
@@ -136,7 +136,7 @@ def test_what_was_seen_through_a_door_is_the_next_rooms():
     seen = replace(seen, layouts=seen.layouts[:1])
     home = merge_runs(place_runs([seen, bedroom()], {"bed": Move()}))
     assert len([one for one in home.run.instances if one.class_id == 8]) == 2
-    assert any("seen through doors" in text for text in home.told)
+    assert any("seen through doors" in text for text in home.lines)
 
 
 def test_a_room_that_fits_in_two_places_is_not_guessed():
@@ -174,7 +174,7 @@ def test_a_room_without_a_door_needs_a_place():
     ):
         place_runs([kitchen(), closed])
     placed = place_runs([kitchen(), closed], {"store": Move(1, (100, 0, 0))})
-    assert "store stands where it was put by hand" in placed.told
+    assert "store stands where it was put by hand" in placed.lines
 
 
 def test_rooms_in_one_place_are_refused():
