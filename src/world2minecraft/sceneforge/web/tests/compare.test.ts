@@ -14,7 +14,7 @@ interface Vector {
   miou: number;
 }
 
-const files = import.meta.glob<{ default: { cases: Vector[] } }>("../../../../../tests/forge/vectors/compare.json", {
+const files = import.meta.glob<{ default: { cases: Vector[] } }>("../../../../../tests/sceneforge/vectors/compare.json", {
   eager: true,
 });
 const VECTORS = Object.values(files)[0]!.default.cases;

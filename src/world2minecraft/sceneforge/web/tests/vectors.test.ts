@@ -1,4 +1,4 @@
-// The same vectors as tests/forge/test_edit_vectors.py: both sides must do the same.
+// The same vectors as tests/sceneforge/test_edit_vectors.py: both sides must do the same.
 
 import { describe, expect, it } from "vitest";
 
@@ -7,7 +7,7 @@ import { component, runsOf as toolRuns } from "../src/tools/cells";
 import { cellOf, changedCells, flatOf, runsOf } from "../src/view/volume";
 import type { HeldRun, Run, Vec3 } from "../src/wire";
 
-const files = import.meta.glob<{ default: { cases: unknown[] } }>("../../../../../tests/forge/vectors/*.json", {
+const files = import.meta.glob<{ default: { cases: unknown[] } }>("../../../../../tests/sceneforge/vectors/*.json", {
   eager: true,
 });
 

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-// The same file that tests/walk/ holds the Python to.
-import golden from "../../../../../tests/walk/golden.json?raw";
+// The same file that tests/minecraft/physics/ holds the Python to.
+import golden from "../../../../../tests/minecraft/physics/golden.json?raw";
 import { bodyAt, NO_KEYS, type Box, type Keys } from "../src/walk/body";
 import { step } from "../src/walk/physics";
 import { BlockWorld, BoxWorld } from "../src/walk/world";

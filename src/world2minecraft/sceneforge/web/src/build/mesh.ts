@@ -1,4 +1,4 @@
-// The mesh of a build, as GET /api/build sends it (forge/blocks.py), and what a ray meets in it.
+// The mesh of a build, as GET /api/build sends it (block_preview.py), and what a ray meets in it.
 
 import type { Vec3 } from "../wire";
 import { Packet } from "./packet";

@@ -1,4 +1,4 @@
-// What forge/arrays.py packs: a JSON header, then arrays.
+// What array_messages.py packs: a JSON header, then arrays.
 
 export type Values = Uint8Array | Uint16Array | Int32Array | Float32Array;
 

@@ -4,7 +4,7 @@ import { registerStagePart, type App } from "../ui/slots";
 import type { JobState } from "../wire";
 import { progressLine, type ProgressLine } from "./progress";
 
-const STAGES = new Set(["scene", "planes", "pieces", "doubts"]); // those of forge/beside.py
+const STAGES = new Set(["scene", "planes", "pieces", "doubts"]); // those of jobs/background_job.py
 const SOONEST_MS = 400; // what is over sooner needs no bar
 
 export function registerSceneJobs(): void {

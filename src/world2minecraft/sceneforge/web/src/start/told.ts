@@ -1,4 +1,4 @@
-// What the server tells the start page; forge/start.py says the same.
+// What the server tells the start page; server/start_routes.py says the same.
 
 export interface Doubt {
   level: "ok" | "warn" | "stop";

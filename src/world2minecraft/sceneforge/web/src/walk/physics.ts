@@ -1,4 +1,5 @@
-// One tick of a player on foot: walk/step.py in TypeScript. Both pass tests/walk/golden.json.
+// One tick of a player on foot: minecraft/physics/player_motion.py in TypeScript. Both pass
+// tests/minecraft/physics/golden.json.
 
 import type { Vec3 } from "../wire";
 import {
