@@ -4,8 +4,8 @@
 
 Cameras are at the eyes of people standing in generated houses. Each frame is rendered and
 labelled; a float64 ray caster independent of the kernels (``tests/rendering/oracle.py``) casts each
-pixel again, and ``tests/minecraftocc/label_reference.py`` derives from its depth, cell by cell, what
-is hit, what lies in the frustum and, for a sample, which cells are crossed by a ray. The exit
+pixel again, and ``tests/minecraftocc/label_reference.py`` derives from its depth, cell by cell,
+what is hit, what lies in the frustum and, for a sample, which cells are crossed by a ray. The exit
 code is 1 if any cell of any frame differs; ``--spoil`` shifts the labels by a millimetre to show
 that the check can fail.
 

@@ -59,7 +59,7 @@ def depth_maps(
     progress: Progress = no_progress,
     guide=None,
 ) -> Iterator[DepthMap]:
-    """Yield the depth maps of a scene's photos at half their size; see ``world2minecraft.capture.stereo``.
+    """Yield the depth maps of a scene's photos at half their size; see ``capture.stereo``.
 
     ``parameters`` are those of ours: the angle wanted between photos, and the agreement asked for,
     hold here too. ``guide`` does not.

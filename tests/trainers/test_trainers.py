@@ -108,9 +108,7 @@ def trl_losses(folder, room):
     return losses(out)
 
 
-def test_llamafactory_and_trl_have_equal_losses_for_three_steps(
-    llamafactory_losses, trl_losses
-):
+def test_llamafactory_and_trl_have_equal_losses_for_three_steps(llamafactory_losses, trl_losses):
     print(f"llamafactory {llamafactory_losses} trl {trl_losses}")
     assert len(llamafactory_losses) == len(trl_losses) == 3
     assert llamafactory_losses == pytest.approx(trl_losses, abs=1e-4)

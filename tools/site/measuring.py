@@ -12,9 +12,9 @@ HEAD = """# Benchmarks
 
 Every figure of these pages comes from a command that anyone can run, in a clone of the repository.
 `python -m benchmarks` (`make bench`) measures speed and peak memory against the budgets, each in a
-process of its own; `--only NAME` takes one. `--checks` runs the checks of quality, and `--list` lists all.
-A figure that a page calls measured once was measured with version 0.1 by the script named there, which
-is in the history of the repository at commit 1f340e9.
+process of its own; `--only NAME` takes one. `--checks` runs the checks of quality, and `--list`
+lists all. A figure that a page calls measured once was measured with version 0.1 by the script
+named there, which is in the history of the repository at commit 1f340e9.
 """
 
 

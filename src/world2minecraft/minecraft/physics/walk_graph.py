@@ -86,9 +86,9 @@ class StandingPlaces(NamedTuple):
     """The gaps of a grid of C columns in which a body fits; heights in sixteenths of a block."""
 
     counts: np.ndarray  # int32 [C]
-    floor: np.ndarray  # int32 [C, MOST_FLOORS]
-    ceiling: np.ndarray  # int32 [C, MOST_FLOORS]
-    ground: np.ndarray  # uint8 [C, MOST_FLOORS], the class of what is under the feet
+    floor: np.ndarray  # int32 [C, MAX_FLOORS]
+    ceiling: np.ndarray  # int32 [C, MAX_FLOORS]
+    ground: np.ndarray  # uint8 [C, MAX_FLOORS], the class of what is under the feet
 
 
 def find_standing_places(

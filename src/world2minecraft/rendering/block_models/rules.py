@@ -9,8 +9,8 @@ name counts, else that of what it is cut from, else one of the last file. Keys o
 - ``turn``, ``point``, ``axis``, ``rotation``, ``head``: the property that turns the model, which is
   written for north, for up, along y, for a sign's front to north, for a head's. With none of
   ``parts`` it is a full cube; ``uv`` and ``spin`` are then those of that part.
-- ``parts``: see ``models.py``, or the name of one of ``models``; a rule with neither draws the boxes
-  that are seen (``minecraft.visual_shapes``).
+- ``parts``: see ``models.py``, or the name of one of ``models``; a rule with neither draws the
+  boxes that are seen (``minecraft.visual_shapes``).
 - ``glow``: it is seen by its own light.
 """
 
