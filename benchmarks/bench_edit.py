@@ -13,9 +13,9 @@ import numpy as np
 from benchmarks.render_scenes import room
 from benchmarks.rows import Row
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.editing.backups import list_steps, revert_step
+from world2minecraft.editing.build_into_world import build_into_world, remove_build
 from world2minecraft.editing.cleanup.passes import repair_volume
-from world2minecraft.editing.world_build import build_into_world, remove_build
+from world2minecraft.editing.file_backups import list_steps, revert_step
 from world2minecraft.minecraft.worlds.world_writer import write_world
 
 SIZE = (256, 64, 256)

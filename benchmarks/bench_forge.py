@@ -22,7 +22,7 @@ import numpy as np
 from websockets.sync.client import ClientConnection, connect
 
 from benchmarks.rows import Row
-from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.array_messages import HEADER

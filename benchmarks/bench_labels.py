@@ -8,8 +8,8 @@ import numpy as np
 from benchmarks.check_labels import GAME, NYU, standing_views
 from benchmarks.render_scenes import time_all
 from benchmarks.rows import Row
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.rows import Row
-from world2minecraft.sceneforge.demo import demo_room
+from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
 
 FIGURES = {"density_kernel": 3, "density_threshold": 0.2, "cluster_radius": 2.0}

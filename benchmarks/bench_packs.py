@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 
 from benchmarks.rows import Row
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.rendering.resource_packs import ResourcePackModels
 
 BLOCKS, OTHER_FILES, STATES, REPEATS = 1500, 20_000, 200, 4

@@ -18,7 +18,7 @@ from world2minecraft.navigation.environment.action_spaces import ContinuousActio
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.scene import VlnScene, open_scene
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 from world2minecraft.procgen.worlds import generate_world, write_house
 
 SEED, ROOMS = 700, 6

@@ -36,14 +36,14 @@ from world2minecraft.networks.completion.samples import (
     read_samples,
     write_samples,
 )
-from world2minecraft.reconstruction.semantics.completion import CompletionModel, likeliest
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
+from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel, likeliest
 
 FIRST_SEED, SEEDS_APART = 8_000, 100
 BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))
 COLUMNS = ("all", "observed", "unseen", "observed, near")
 WHO = ("surface", "geometric", "votes", "completion", "ceiling")
-STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``reconstruction/semantics/votes.py``.
+STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``reconstruction/semantics/votes_labeller.py``.
 ROOT = Path(__file__).resolve().parents[1]
 
 

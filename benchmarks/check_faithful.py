@@ -30,7 +30,7 @@ from rich.table import Table
 
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.stage_ablation import AFTER, allowed_cells, stage_losses
+from world2minecraft.evaluation.scoring.stage_losses import AFTER, allowed_cells, stage_losses
 from world2minecraft.formats.run_arrays import read_evidence, write_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, list_trials, write_trial
 from world2minecraft.reconstruction.parameters import Parameters, with_settings

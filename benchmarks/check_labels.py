@@ -31,12 +31,12 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.image_labels import (
     cells_of_pixels,
     label_image,
     resize_camera,
 )
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.tours import nyu_camera
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels

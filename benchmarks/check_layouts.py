@@ -17,11 +17,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.core.files import write_json
-from world2minecraft.navigation.running.tables import format_markdown, format_text
+from world2minecraft.navigation.running.result_tables import format_markdown, format_text
 from world2minecraft.paper.layouts import ComparedScene, score_scene, summary_of
 from world2minecraft.paper.layouts.importers import How, read_layouts_of
-from world2minecraft.paper.layouts.reference import true_scene
-from world2minecraft.paper.layouts.table import NOTES, layout_table, other_table
+from world2minecraft.paper.layouts.reference_scene import true_scene
+from world2minecraft.paper.layouts.score_table import NOTES, layout_table, other_table
 
 EXPECTED = {  # By what the published file's name says.
     "bedroom": {"reaching_out": 0.138, "scenes_reaching_out": 0.511, "overlaps": 1.57},

@@ -28,11 +28,11 @@ import numpy as np
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.capture.sfm.similarity_transform import align_similarity
 from world2minecraft.core.types import OBSERVED, Camera, View
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.photo import prepare_photos, take_photo
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos, take_photo
 
 REACH_VOXELS = 3**0.5 + 0.01
 

@@ -32,12 +32,12 @@ from benchmarks.refinement import (
 )
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
-from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.sceneforge.document.identity import document_folder
+from world2minecraft.sceneforge.document.document_metadata import document_folder
 from world2minecraft.sceneforge.editor import Editor
 
 LABEL_ERROR = 0.1

@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.episodes import random_episodes
 from world2minecraft.navigation.scene import open_scene
-from world2minecraft.navigation.values import MOVE_SETS
+from world2minecraft.navigation.types import MOVE_SETS
 
 LEAST_SPL = 0.95
 

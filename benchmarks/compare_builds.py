@@ -18,7 +18,7 @@ from rich.console import Console
 
 from world2minecraft.core.files import read_json, write_bytes
 from world2minecraft.evaluation.report.comparison_pictures import as_png
-from world2minecraft.evaluation.report.scene import read_built
+from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.rendering.preview import preview
 
 PREVIEW_PX = (960, 720)

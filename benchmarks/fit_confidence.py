@@ -24,7 +24,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 from world2minecraft.evaluation.metrics.calibration import CalibrationCounts, count_calibration
 from world2minecraft.evaluation.scoring.score import TrueRoom, see_truth
-from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, list_trials, write_trial
@@ -34,7 +34,7 @@ from world2minecraft.reconstruction.fusion import (
     extract_grid,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion.confidence import (
+from world2minecraft.reconstruction.fusion.confidence_calibration import (
     FREE_FEATURES,
     OCCUPIED_FEATURES,
     TABLES,

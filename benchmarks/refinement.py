@@ -28,7 +28,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs_of_cells
-from world2minecraft.editing.scene.planes import find_planes
+from world2minecraft.editing.scene.plane_detection import find_planes
 from world2minecraft.evaluation.metrics.objects import (
     TURN_TOLERANCE_DEG,
     TURNED_CLASSES,
@@ -37,7 +37,7 @@ from world2minecraft.evaluation.metrics.objects import (
 )
 from world2minecraft.evaluation.scoring.object_scores import in_room
 from world2minecraft.evaluation.scoring.score import see_truth
-from world2minecraft.evaluation.scoring.truth import Truth, read_instances
+from world2minecraft.evaluation.scoring.truth_files import Truth, read_instances
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture import TEMPLATES, template

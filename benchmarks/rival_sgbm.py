@@ -19,15 +19,15 @@ from world2minecraft.capture.stereo.depth_maps import (
     select_neighbours,
 )
 from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.photo_preparation import StereoPhoto, prepare_stereo_photos
 from world2minecraft.capture.stereo.plane_sweep import depth_range
-from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Camera, DepthMap, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.reconstruction.opening import preparation as preparing
+from world2minecraft.reconstruction.opening import open_capture as preparing
 
 ASKED, PAIRS = 12, 6  # So many neighbours are looked at for so many pairs that can be rectified.
 MOST_ALONG = 0.6  # Share of a motion that may go along the view: rectified, more turns too far.

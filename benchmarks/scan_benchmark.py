@@ -24,8 +24,8 @@ from benchmarks.check_faithful import CLEAN, chosen_trials, rows_table, stages_t
 from world2minecraft.core.errors import InputError, UsageError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.foreign_method import evaluate_foreign, foreign_file
-from world2minecraft.evaluation.scoring.stage_ablation import stage_losses
+from world2minecraft.evaluation.scoring.other_methods import evaluate_foreign, foreign_file
+from world2minecraft.evaluation.scoring.stage_losses import stage_losses
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, write_trial
 
 CAPTURES, TRUTHS = "captures", "truth"

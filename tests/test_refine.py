@@ -15,7 +15,7 @@ from world2minecraft.core.types import OBSERVED, LayoutObject, OccupancyGrid
 from world2minecraft.editing.scene import SceneDraft, objects_of, parse_command
 from world2minecraft.furniture import template, template_cells
 from world2minecraft.reconstruction.instances import find_objects
-from world2minecraft.sceneforge.tools import tools_of
+from world2minecraft.sceneforge.stage_tools import tools_of
 
 TOOLS = tools_of()
 SILL = np.array([0, 2])  # The wall begins over the floor.

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from benchmarks import scan_benchmark
 
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import read_json
-from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.procgen.benchmark_trials import find_trial
 

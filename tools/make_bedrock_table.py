@@ -20,7 +20,7 @@ from typing import Any
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.block_states import parse_state
-from world2minecraft.minecraft.blocks import BlockType, block_table
+from world2minecraft.minecraft.block_table import BlockType, block_table
 
 ROOT = Path(__file__).parents[1] / "src/world2minecraft/minecraft/data"
 TARGET = ROOT / "bedrock_states.json.gz"

@@ -32,7 +32,7 @@ def main() -> None:
 
 
 def table_of(version: str, blocks: list[Any], shapes: dict[str, Any]) -> dict[str, Any]:
-    """Return the table as ``minecraft.blocks`` reads it.
+    """Return the table as ``minecraft.block_table`` reads it.
 
     ``blocks`` maps a name to its properties (indices into ``properties``), the index of its
     default state and one shape index a state, or a single one where all states share it.

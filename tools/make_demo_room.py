@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from world2minecraft.cli import main
-from world2minecraft.sceneforge.sources import DEMO_FOLDER
+from world2minecraft.sceneforge.scene_sources import DEMO_FOLDER
 
 FILES = ("room.npz", "objects.json", "placements.json", "layout.json", "scan.json")
 

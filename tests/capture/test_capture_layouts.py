@@ -9,8 +9,8 @@ from layouts import WRITERS, write_nerfstudio, write_seven_scenes
 from PIL import Image
 
 from world2minecraft.capture import describe_capture, open_scan, write_plain
+from world2minecraft.capture.format_detection import SOURCES, find_capture
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import SOURCES, find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import View

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from PIL import Image, ImageFilter
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.quality import diagnostics
 from world2minecraft.capture.quality.picture_quality import (
@@ -21,6 +20,7 @@ from world2minecraft.capture.quality.view_directions import (
     count_view_directions,
     estimate_up,
 )
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.capture.summary import describe_validated, summary_lines, summary_to_json
 from world2minecraft.capture.validation import validate
 from world2minecraft.core.coordinates import look_at

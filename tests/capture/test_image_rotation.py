@@ -12,8 +12,8 @@ from world2minecraft.capture.alignment.image_rotation import (
     rotate_camera,
     rotate_frame,
 )
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import check_whole, read_colour, read_header, read_raw
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import project

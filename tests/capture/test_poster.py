@@ -8,7 +8,6 @@ import pytest
 from PIL import Image
 
 from world2minecraft.capture import describe_capture, write_plain
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.poster import draw_poster, is_poster, poster_png
 from world2minecraft.capture.poster.canvas import FIRST, PAPER, Sheet, blend_colours, to_ascii
@@ -20,6 +19,7 @@ from world2minecraft.capture.poster.panels import (
     shade_top_view,
 )
 from world2minecraft.capture.quality.picture_quality import measure_picture
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.capture.summary import describe_validated
 from world2minecraft.capture.validation import validate
 

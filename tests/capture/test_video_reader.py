@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.photo_stream import photos_of_capture
 from world2minecraft.capture.readers.video import analyse_video, select_frames
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError, InputError
 

@@ -8,7 +8,7 @@ from world2minecraft.construction import write_build
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.editing.journal import write_edits
-from world2minecraft.evaluation.report.scene import read_built
+from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version

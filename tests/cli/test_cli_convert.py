@@ -10,9 +10,9 @@ from world2minecraft import cli
 from world2minecraft.core.types import AIR, BlockVolume, Entity, Placement
 from world2minecraft.formats import volume_formats as forms
 from world2minecraft.formats.gltf import GlbWriter, read_glb
-from world2minecraft.formats.objects import write_placements
-from world2minecraft.formats.scene import scene_from_volume, write_scene
+from world2minecraft.formats.objects_and_placements import write_placements
 from world2minecraft.formats.volume_formats import read_volume, write_volume
+from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.worlds import session_lock
 

@@ -6,7 +6,7 @@ from PIL import Image
 from tests.exact_room import CAMERA, BoxRoom
 from tests.reconstruction.occupancy.tiny_network import FACTS, sized, write_network
 
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.errors import InputError

@@ -10,7 +10,7 @@ from PIL import Image
 from world2minecraft import cli
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.formats.scene import scene_from_volume, write_scene
+from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.block_designs import body_box, design_box
-from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.block_lattice import Lattice
+from world2minecraft.construction.design_placement import body_box, design_box
 from world2minecraft.furniture import block_design, template
 from world2minecraft.minecraft.rules.stability import find_unstable
 

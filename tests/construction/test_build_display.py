@@ -249,7 +249,7 @@ def test_the_exact_scale_has_no_displays():
 
 
 def test_an_old_game_is_refused(tmp_path, monkeypatch):
-    from world2minecraft.construction import outputs
+    from world2minecraft.construction import build_files as outputs
     from world2minecraft.minecraft.versions import GameVersion
 
     monkeypatch.setattr(outputs, "game_version", lambda name: GameVersion(name, 2975, 9))

@@ -5,6 +5,7 @@ import pytest
 from build_samples import CHAIR, FURN, RED, TABLE, WOOD, Sketch, placement
 
 from world2minecraft.construction import BuildParameters, build_volume
+from world2minecraft.construction.block_lattice import lattice_over
 from world2minecraft.construction.cell_objects import (
     Solid,
     enclosed_cells,
@@ -14,9 +15,8 @@ from world2minecraft.construction.cell_objects import (
 )
 from world2minecraft.construction.fitted_objects import design_of_parts
 from world2minecraft.construction.fitting import CALM, Shape, shape_set
-from world2minecraft.construction.lattice import lattice_over
-from world2minecraft.construction.materials import materials_of
 from world2minecraft.construction.palettes import load_palette
+from world2minecraft.construction.shape_materials import materials_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.furniture import template

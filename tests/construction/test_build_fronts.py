@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.block_designs import design_box, filled_blocks
-from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.block_lattice import Lattice
+from world2minecraft.construction.design_placement import design_box, filled_blocks
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import block_design, template
 

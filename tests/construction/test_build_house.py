@@ -9,8 +9,8 @@ from house_samples import DOOR, UPPER, VOXEL_M, house
 from scipy import ndimage
 
 from world2minecraft.construction import build_volume
+from world2minecraft.construction.block_lattice import lattice_over
 from world2minecraft.construction.doorways import find_gaps
-from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.lighting import MIN_LIGHT
 from world2minecraft.construction.spawn import find_spawn
 from world2minecraft.construction.storeys import add_storeys, upper_floors_m

@@ -4,7 +4,7 @@ from build_samples import furnished
 
 from world2minecraft.construction import build_volume, find_spawn, write_build
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
-from world2minecraft.formats.scene import read_scene
+from world2minecraft.formats.world_labels import read_scene
 from world2minecraft.minecraft.schematics.sponge import read_schem
 from world2minecraft.minecraft.worlds.world_writer import read_world
 

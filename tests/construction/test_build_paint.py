@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.block_designs import DYES
 from world2minecraft.construction.cell_colours import exposure_gains, fill_colours, group_medians
+from world2minecraft.construction.design_placement import DYES
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.surface_painting import (
     choose_blocks,

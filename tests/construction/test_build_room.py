@@ -10,7 +10,7 @@ from generated_rooms import corner_of, furnished_room, true_grid
 from house_samples import house
 
 from world2minecraft.construction import BuildParameters, build_volume, find_spawn
-from world2minecraft.construction.finishing import apply_block_updates
+from world2minecraft.construction.block_updates import apply_block_updates
 from world2minecraft.construction.lighting import MIN_CORNER_LIGHT, WALK_BLOCKS
 from world2minecraft.construction.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
@@ -235,8 +235,8 @@ def test_every_wall_of_a_generated_home_stands(maker, seed, scale):
 
 
 def test_what_would_fall_is_taken_away_with_what_it_carries():
+    from world2minecraft.construction.block_lattice import lattice_over
     from world2minecraft.construction.canvas import Canvas
-    from world2minecraft.construction.lattice import lattice_over
 
     canvas = Canvas(lattice_over(Sketch().grid(), np.array([0.0, 2.0]), 2.0))
     for z, state in enumerate(("sand", "oak_planks", "torch"), 3):

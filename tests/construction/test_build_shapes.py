@@ -5,13 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.cell_objects import resample_cells
-from world2minecraft.construction.lattice import (
+from world2minecraft.construction.block_lattice import (
     center_weights,
     face_shares,
     lattice_over,
     overlap_weights,
 )
+from world2minecraft.construction.cell_objects import resample_cells
 from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.furniture import TEMPLATES, template

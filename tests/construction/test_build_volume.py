@@ -27,7 +27,7 @@ from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.core.coordinates import apply, invert, turn_grid
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
-from world2minecraft.minecraft.transforms import turn_volume
+from world2minecraft.minecraft.turn_and_mirror import turn_volume
 
 BARE = BuildParameters(lights=False, edge="none")
 SCALES = (1.0, 2.0, 3.3, 4.0, 6.25, 12.5, 20.0)

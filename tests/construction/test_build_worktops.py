@@ -2,10 +2,10 @@ import numpy as np
 from build_samples import DARK, FURN, RED, WHITE, Sketch
 
 from world2minecraft.construction import build_volume
+from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import unify_paints
 from world2minecraft.construction.fitted_objects import LOWER
-from world2minecraft.construction.lattice import Lattice
 from world2minecraft.construction.palettes import parse_palette
 from world2minecraft.construction.worktops import PlateBuilder, Worktop, join_worktops
 from world2minecraft.core.coordinates import apply

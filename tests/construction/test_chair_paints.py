@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import lattice_over
 from world2minecraft.construction.fitted_objects import LOWER
-from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.surface_painting import chair_paints, lit_colour
 from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.core.types import OccupancyGrid, Placement

@@ -5,7 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.construction.block_designs import ObjectColours, filled_blocks, recolour_design
+from world2minecraft.construction.design_placement import (
+    ObjectColours,
+    filled_blocks,
+    recolour_design,
+)
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.classes import SemanticClass

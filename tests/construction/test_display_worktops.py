@@ -6,6 +6,7 @@ from build_samples import DARK, FLOOR, FURN, RED, VOXEL_M, WALL, WHITE, Sketch
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.construction.block_lattice import lattice_over
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.display.block_alignment import BlockAligner
 from world2minecraft.construction.display.boxes import DisplayBox, Frame
@@ -18,7 +19,6 @@ from world2minecraft.construction.display.builder import (
 from world2minecraft.construction.display.colliders import MARK, cover_of, put_colliders
 from world2minecraft.construction.display.part_materials import role_colours, states_of_parts
 from world2minecraft.construction.display.worktops import as_counter, deepened, plate_pieces
-from world2minecraft.construction.lattice import lattice_over
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.surface_painting import BlockChoice

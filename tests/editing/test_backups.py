@@ -12,15 +12,15 @@ import pytest
 from worlds import room, tree, write_ground
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
-from world2minecraft.editing import backups
-from world2minecraft.editing.backups import (
+from world2minecraft.editing import file_backups as backups
+from world2minecraft.editing.build_into_world import build_into_world
+from world2minecraft.editing.file_backups import (
     changed_since,
     commit_step,
     list_steps,
     recover,
     revert_step,
 )
-from world2minecraft.editing.world_build import build_into_world
 
 FILES = {
     "region/r.0.0.mca": b"new ground",
@@ -247,7 +247,7 @@ import sys
 sys.path.insert(0, sys.argv[2])
 from pathlib import Path
 from worlds import room
-from world2minecraft.editing.world_build import build_into
+from world2minecraft.editing.build_into_world import build_into
 print("ready", flush=True)
 while True:
     for corner in [(-8, 60, -20), (-20, 62, -10), (0, 60, 0)]:

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from worlds import room, tree, write_ground
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.editing.backups import list_steps, revert_step
-from world2minecraft.editing.world_build import build_into_world
+from world2minecraft.editing.build_into_world import build_into_world
+from world2minecraft.editing.file_backups import list_steps, revert_step
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region
 from world2minecraft.minecraft.worlds.in_place_editing import read_region_file

@@ -24,9 +24,9 @@ from worlds import (
 
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.editing.backups import list_steps, revert_step
-from world2minecraft.editing.relocation import place_volume, translate_volume, trim_air
-from world2minecraft.editing.world_build import affected_mask, build_into_world, remove_build
+from world2minecraft.editing.build_into_world import affected_mask, build_into_world, remove_build
+from world2minecraft.editing.file_backups import list_steps, revert_step
+from world2minecraft.editing.volume_relocation import place_volume, translate_volume, trim_air
 from world2minecraft.minecraft import bit_packing as section_words
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, write_nbt
 from world2minecraft.minecraft.signs import sign_entity

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Corrections
-from world2minecraft.formats.scan import read_poses, write_poses
+from world2minecraft.formats.scan_record import read_poses, write_poses
 
 
 def test_corrections_come_back_as_they_were(tmp_path):

@@ -17,7 +17,7 @@ from world2minecraft.core.types import (
     Placement,
     Scan,
 )
-from world2minecraft.formats.objects import (
+from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
     write_objects,
@@ -34,7 +34,7 @@ from world2minecraft.formats.run_arrays import (
     write_evidence,
     write_room,
 )
-from world2minecraft.formats.scan import read_depth_kind, read_room_size, write_scan
+from world2minecraft.formats.scan_record import read_depth_kind, read_room_size, write_scan
 
 
 def some_grid(seed: int = 0, shape=(6, 5, 4)) -> OccupancyGrid:

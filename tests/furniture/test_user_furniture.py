@@ -21,7 +21,7 @@ from world2minecraft.furniture.user_library import (
     user_design_files,
     user_design_folder,
 )
-from world2minecraft.minecraft.transforms import turn_volume
+from world2minecraft.minecraft.turn_and_mirror import turn_volume
 
 AIR = "minecraft:air"
 STAIR = "minecraft:oak_stairs[facing=north,half=bottom]"

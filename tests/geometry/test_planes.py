@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.geometry.planes import find_horizontal_planes
+from world2minecraft.geometry.level_planes import find_horizontal_planes
 
 
 def room_with_table(table_height_m: float, noise_m: float = 0.0):

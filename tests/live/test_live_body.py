@@ -222,7 +222,7 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
     """Walks of 6 random moves: turns by 15 degrees, steps of half a block, in a furnished flat."""
     from world2minecraft.navigation.environment.observations import Eyes
     from world2minecraft.navigation.server.env import ServerEnv
-    from world2minecraft.navigation.values import Move
+    from world2minecraft.navigation.types import Move
 
     server, folder = flat_server
     version = server.plan["version"]
@@ -252,7 +252,7 @@ def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.episode_runner import walk_episode
     from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
-    from world2minecraft.navigation.server.scene import ServerSimulator, open_server_scene
+    from world2minecraft.navigation.server.streamed_scene import ServerSimulator, open_server_scene
 
     server, folder = flat_server
     with join(server.address, folder=user_cache_dir() / "live-test") as body:
@@ -263,7 +263,7 @@ def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
 
 
 def test_the_eyes_see_what_is_built_while_one_looks(crowd):
-    from world2minecraft.navigation.server.scene import open_server_scene
+    from world2minecraft.navigation.server.streamed_scene import open_server_scene
 
     with join(crowd.address, folder=user_cache_dir() / "live-test") as body:
         body.place((0.5, 64.0, 0.5))

@@ -8,7 +8,7 @@ import pytest
 from test_live_walk import CORNER, HERE, LIMIT_S, START, free_port, furnished_room, node, run_node
 
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.editing.world_build import build_into_world, remove_build
+from world2minecraft.editing.build_into_world import build_into_world, remove_build
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_reader import read_world
 from world2minecraft.minecraft.worlds.world_writer import write_world

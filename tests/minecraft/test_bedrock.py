@@ -25,7 +25,7 @@ from world2minecraft.minecraft.bedrock.states import (
     java_to_bedrock,
 )
 from world2minecraft.minecraft.block_states import states_of
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, Float, Long, NbtLimits, Short

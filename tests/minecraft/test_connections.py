@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.rules.connections import update_connections
-from world2minecraft.minecraft.transforms import mirror_state, turn_state
+from world2minecraft.minecraft.turn_and_mirror import mirror_state, turn_state
 
 CASES = json.loads((Path(__file__).parent / "connection_cases.json").read_text())["cases"]
 STEPS = {way[0]: np.array(step) for way, step in STEP.items()} | {"o": np.zeros(3, int)}

@@ -23,7 +23,7 @@ from world2minecraft.minecraft.entities import (
     owner_tags,
 )
 from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
-from world2minecraft.minecraft.transforms import turn_volume
+from world2minecraft.minecraft.turn_and_mirror import turn_volume
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 

@@ -15,7 +15,7 @@ from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
 from world2minecraft.minecraft.schematics import litematic, sponge, structure
-from world2minecraft.minecraft.server.building import plan_build
+from world2minecraft.minecraft.server.server_build import plan_build
 from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, upgrade_signs, wrap_sign_text
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
 from world2minecraft.minecraft.worlds import world_reader

@@ -15,7 +15,7 @@ from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.minecraft.rules.connections import update_connections
 from world2minecraft.minecraft.rules.light import emitted_light
 from world2minecraft.minecraft.rules.stability import find_unstable, find_unstable_cells
-from world2minecraft.minecraft.transforms import turn_volume
+from world2minecraft.minecraft.turn_and_mirror import turn_volume
 from world2minecraft.minecraft.visual_shapes import visual_boxes
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]

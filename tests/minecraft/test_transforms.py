@@ -14,7 +14,7 @@ from world2minecraft.minecraft.block_states import known_blocks, parse_state, st
 from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.nbt import Byte, Float
 from world2minecraft.minecraft.rules.attached_entities import named_block
-from world2minecraft.minecraft.transforms import mirror_state, turn_state, turn_volume
+from world2minecraft.minecraft.turn_and_mirror import mirror_state, turn_state, turn_volume
 
 # Blocks that have no property for a direction, though their boxes are not the same from all sides:
 # the game cannot turn them.

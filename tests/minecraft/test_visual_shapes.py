@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.collision_shapes import boxes_of
-from world2minecraft.minecraft.transforms import turn_state
+from world2minecraft.minecraft.turn_and_mirror import turn_state
 from world2minecraft.minecraft.visual_shapes import (
     find_visual_family,
     visual_boxes,

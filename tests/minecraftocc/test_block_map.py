@@ -21,7 +21,7 @@ from world2minecraft.minecraftocc.block_map import (
     read_block_map,
     remap_labels,
 )
-from world2minecraft.minecraftocc.block_map.context import (
+from world2minecraft.minecraftocc.block_map.block_conditions import (
     CONDITIONS,
     MEASURES,
     block_columns,

@@ -27,8 +27,8 @@ from world2minecraft.minecraftocc.building import scene_survey as scenes_module
 from world2minecraft.minecraftocc.building.process_registry import wait_for_others
 from world2minecraft.minecraftocc.building.shard_rendering import shard_tasks
 from world2minecraft.minecraftocc.engine import open_engine
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.image_labels import label_image
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.plan import (
     DatasetPlan,

@@ -7,7 +7,7 @@ from tests.minecraftocc.samples import FINE, occ_labels, random_labels, sample
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.minecraftocc.importers.samples import CLASS_KINDS
+from world2minecraft.minecraftocc.importers.imported_samples import CLASS_KINDS
 from world2minecraft.minecraftocc.statistics import (
     StatisticsCounter,
     count_samples,

@@ -17,8 +17,8 @@ from world2minecraft.minecraftocc.frame_completion import (
     read_grid_place,
 )
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
-from world2minecraft.reconstruction.semantics.completion import CompletionModel
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
+from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel
 
 EYE_M, WALL_M = 1.2, 4.0
 # x right, y forward, z up: the camera looks along +y, level, over a floor at z = 0.

@@ -9,6 +9,7 @@ from label_worlds import CAMERA, poses_in, room_of_things
 
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.image_labels import (
     cast_depth,
     cells_of_pixels,
@@ -18,7 +19,6 @@ from world2minecraft.minecraftocc.labels.image_labels import (
     resize_camera,
     unknown_cells,
 )
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import OccSample
 from world2minecraft.minecraftocc.visualization import project_labels

@@ -10,7 +10,7 @@ from house_of_blocks import Blocks, cottage
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
-from world2minecraft.formats.scene import scene_from_volume, write_scene
+from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraftocc.scene_sources import (

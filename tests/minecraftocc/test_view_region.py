@@ -8,13 +8,13 @@ from label_worlds import poses_in, room_of_things
 
 from world2minecraft.core.coordinates import apply, invert, look_at, rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraftocc.labels.image_labels import gather_region, is_on_cells
-from world2minecraft.minecraftocc.labels.region import (
+from world2minecraft.minecraftocc.labels.camera_region import (
     RegionRule,
     floor_under,
     label_region,
     region_in,
 )
+from world2minecraft.minecraftocc.labels.image_labels import gather_region, is_on_cells
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.types import FineClass, SceneVoxels
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from world2minecraft.navigation.values import MOVE_SETS, Episode, Instruction, Move, Stance
+from world2minecraft.navigation.types import MOVE_SETS, Episode, Instruction, Move, Stance
 
 LEAST_X, MOST_X = -1.0, 4.0
 

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume, Layout
 from world2minecraft.formats.layout import write_layouts
-from world2minecraft.formats.scene import scene_from_volume, write_scene
+from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 

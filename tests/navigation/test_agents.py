@@ -14,7 +14,7 @@ from world2minecraft.navigation.agents import AGENTS, Decision, VlmAgent, make_a
 from world2minecraft.navigation.agents.action_format import SCHEMA, parse_step
 from world2minecraft.navigation.agents.vlm_agent import facing, relative_m, trail_text
 from world2minecraft.navigation.running.episode_runner import walk_episode
-from world2minecraft.navigation.values import Move, Stance
+from world2minecraft.navigation.types import Move, Stance
 
 F, L, R, S = Move.FORWARD, Move.LEFT, Move.RIGHT, Move.STOP
 

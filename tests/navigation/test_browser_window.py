@@ -19,7 +19,7 @@ from world2minecraft.navigation.environment.play import play
 from world2minecraft.navigation.free_walk import walk_freely
 from world2minecraft.navigation.running.episode_runner import walk_episode
 from world2minecraft.navigation.running.human_agent import HumanAgent
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 
 
 @pytest.fixture

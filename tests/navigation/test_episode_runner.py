@@ -13,9 +13,9 @@ from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.navigation.agents import AGENTS, Decision, VlmAgent
 from world2minecraft.navigation.running.episode_evaluation import evaluate_agent, write_walks_result
 from world2minecraft.navigation.running.episode_runner import walk_episode
-from world2minecraft.navigation.running.tables import read_result, walks_table
+from world2minecraft.navigation.running.result_tables import read_result, walks_table
 from world2minecraft.navigation.running.trace import TraceWriter, read_trace
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 
 F, L, S = Move.FORWARD, Move.LEFT, Move.STOP
 

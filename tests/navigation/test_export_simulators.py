@@ -27,7 +27,7 @@ from world2minecraft.navigation.exporters.vlnce import (
     vocabulary,
 )
 from world2minecraft.navigation.records import write_episodes
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 
 # The keys that VLN-CE's classes take; another one is a TypeError there.
 EPISODE_KEYS = {

@@ -6,7 +6,7 @@ from small_flat import flat_volume
 
 from world2minecraft.navigation.running.film import compose, printable, wrap_text
 from world2minecraft.navigation.running.floor_map import GOAL, HERE, PlanMap, floor_plans
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 
 
 def near(picture, colour):

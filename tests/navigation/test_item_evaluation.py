@@ -13,9 +13,9 @@ from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.external_models.structured_replies import UnreadableError
 from world2minecraft.navigation.agents.question_answering import Answer, VlmAnswerer, read_answer
-from world2minecraft.navigation.prompts import question_of
+from world2minecraft.navigation.item_prompts import question_of
 from world2minecraft.navigation.running.item_evaluation import accuracy, evaluate, write_result
-from world2minecraft.navigation.running.tables import (
+from world2minecraft.navigation.running.result_tables import (
     answers_table,
     format_markdown,
     format_text,

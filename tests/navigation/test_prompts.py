@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from tests.navigation.vln_sets import next_action, next_view
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.prompts import IMAGE, question_of
-from world2minecraft.navigation.values import Instruction
+from world2minecraft.navigation.item_prompts import IMAGE, question_of
+from world2minecraft.navigation.types import Instruction
 
 ASKED = """\
 You walk through a Minecraft world and follow an instruction.

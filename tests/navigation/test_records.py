@@ -23,7 +23,7 @@ from world2minecraft.navigation.records import (
     write_items,
     write_trajectories,
 )
-from world2minecraft.navigation.values import Episode, Instruction, Item, Move, Stance
+from world2minecraft.navigation.types import Episode, Instruction, Item, Move, Stance
 
 ITEMS = [next_view(step=2), next_view(step=3), next_action(step=0), next_action(step=7)]
 EPISODE = Episode(

@@ -17,11 +17,11 @@ from world2minecraft.navigation.environment.observations import Eyes
 from world2minecraft.navigation.server import mineflayer_install as installing
 from world2minecraft.navigation.server import player as body_module
 from world2minecraft.navigation.server.actions import forward_keys
-from world2minecraft.navigation.server.blocks import MAX_CELLS, checked_box, state_of
 from world2minecraft.navigation.server.env import ServerEnv
 from world2minecraft.navigation.server.player import JsonLineProcess, ServerPlayer, join
-from world2minecraft.navigation.server.scene import open_server_scene
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.server.streamed_blocks import MAX_CELLS, checked_box, state_of
+from world2minecraft.navigation.server.streamed_scene import open_server_scene
+from world2minecraft.navigation.types import Move
 
 HERE = Path(__file__).parent
 SMALL = Eyes(width_px=32, height_px=32)
@@ -306,7 +306,7 @@ def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
     from world2minecraft.navigation.agents import make_agent
     from world2minecraft.navigation.running.episode_runner import walk_episode
     from world2minecraft.navigation.running.sentence_goals import GoalRequest, episode_of_sentence
-    from world2minecraft.navigation.server.scene import ServerSimulator
+    from world2minecraft.navigation.server.streamed_scene import ServerSimulator
 
     with fake() as body:
         scene = open_server_scene(body, labels=flat_path)

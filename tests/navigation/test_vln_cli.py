@@ -20,7 +20,7 @@ from world2minecraft.navigation.running.item_evaluation import select_items
 from world2minecraft.navigation.running.sentence_goals import find_named_landmark
 from world2minecraft.navigation.running.trace import read_trace
 from world2minecraft.navigation.scene import camera_of
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 
 
 def test_the_oracle_finds_the_piano_on_film(flat_path, tmp_path, capsys):

@@ -17,7 +17,7 @@ from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.environment.observations import SENSORS, Eyes
 from world2minecraft.navigation.episodes import random_episodes
 from world2minecraft.navigation.records import read_episodes, write_episodes
-from world2minecraft.navigation.values import Move, Stance
+from world2minecraft.navigation.types import Move, Stance
 
 EYES = Eyes(32, 24)
 STAND = {"keys": np.zeros(7, np.int8), "camera": np.zeros(2, np.float32), "stop": 0}

@@ -22,7 +22,7 @@ from world2minecraft.navigation.moves import (
     wrap_yaw,
 )
 from world2minecraft.navigation.oracle import plan_expert_path
-from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
+from world2minecraft.navigation.types import MOVE_SETS, Move, Stance
 
 SIZE = BodySize(0.3, 1.8, 0.6, 3.0)
 PALETTE = (

@@ -18,7 +18,7 @@ from world2minecraft.navigation.scene import (
     distance_from_field,
     open_scene,
 )
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 
 
 def test_things_have_names_that_tell_them_apart(flat):

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.navigation.records import write_episodes, write_items, write_trajectories
-from world2minecraft.navigation.values import (
+from world2minecraft.navigation.types import (
     LETTERS,
     Episode,
     Instruction,

@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.networks.batch import OccInput, OccTarget
 from world2minecraft.procgen import generate_room
-from world2minecraft.procgen.sensors.photo import prepare_photos, take_photo
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos, take_photo
 
 SHAPE, VOXEL_M = (30, 30, 18), 0.16
 CAMERA = Camera(96, 72, 78.0, 78.0, 48.0, 36.0)

@@ -12,8 +12,8 @@ from world2minecraft.networks.completion.network import TINY, CompletionNet
 from world2minecraft.networks.completion.sample_pool import SamplePool
 from world2minecraft.networks.completion.samples import Sample, write_samples
 from world2minecraft.networks.completion.training import CompletionRun, Trainer, completion_loss
-from world2minecraft.reconstruction.semantics.completion import CompletionModel, spans
 from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS, Sight
+from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel, spans
 
 RUN = CompletionRun(steps=60, batch=2, warm_steps=5, crop=(16, 16, 16), size=TINY)
 

@@ -11,7 +11,7 @@ from world2minecraft import cli
 from world2minecraft.networks.checkpoints import write_weights
 from world2minecraft.networks.config import DataSource, RunConfig
 from world2minecraft.networks.training import build_network
-from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
+from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from dataclasses import replace
 from tests.minecraftocc.exchange.synthetic import sample
 
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.minecraftocc.store import write_store
 from world2minecraft.networks.config import DataSource, RunConfig
 

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from PIL import Image
 from tests.exact_room import BoxRoom
 
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.navigation.running.simulator import SceneSimulator
 from world2minecraft.navigation.scene import open_scene
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.paper import figure
 from world2minecraft.paper.figure import spread, views_of_walk
 

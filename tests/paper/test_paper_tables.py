@@ -7,14 +7,14 @@ import pytest
 from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, NYU
 
 from world2minecraft.cli.verbs import VERBS, load
-from world2minecraft.evaluation.metrics.effort import PAPER_REFINED, PAPER_SCRATCH
+from world2minecraft.evaluation.metrics.editing_effort import PAPER_REFINED, PAPER_SCRATCH
 from world2minecraft.minecraftocc.statistics.published_figures import (
     PUBLISHED_QUALITY,
     PUBLISHED_SETS,
 )
 from world2minecraft.navigation.data.statistics import PAPER_LENGTHS
 from world2minecraft.paper import fill_table, read_table, table_names
-from world2minecraft.paper.table_definitions import measured
+from world2minecraft.paper.table_reader import measured
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = list(table_names())

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from world2minecraft.procgen.houses.plan import railing_model
-from world2minecraft.procgen.rooms import bathroom as washing
-from world2minecraft.procgen.rooms import children_and_hall as playing
-from world2minecraft.procgen.rooms import decor, seating, storage
+from world2minecraft.procgen.rooms import bathroom_fittings as washing
+from world2minecraft.procgen.rooms import children_and_hall_furniture as playing
+from world2minecraft.procgen.rooms import decor
+from world2minecraft.procgen.rooms import seats_beds_tables as seating
+from world2minecraft.procgen.rooms import storage_furniture as storage
 from world2minecraft.procgen.rooms.clutter_models import IRREGULAR, ON_BEDS, ON_FLOORS, ON_TABLES
 from world2minecraft.procgen.rooms.furniture_model import Part, round_to_step, shade
 

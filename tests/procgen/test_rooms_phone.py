@@ -9,8 +9,8 @@ from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.procgen.sensors.phone import TURN, plan_camera_track
-from world2minecraft.procgen.sensors.photo import prepare_photos
-from world2minecraft.procgen.sensors.shots import ScanSettings
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
+from world2minecraft.procgen.sensors.scan_frames import ScanSettings
 from world2minecraft.procgen.sensors.surface_textures import hash_to_unit
 
 SMALL = {"width": 160, "height": 120, "seed": 3}

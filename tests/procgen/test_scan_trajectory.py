@@ -9,7 +9,7 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Layout, Opening
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.sensors.navmesh import BODY_M, HEAD_M, build_navmesh, is_inside
-from world2minecraft.procgen.sensors.shots import ScanSettings, room_shots
+from world2minecraft.procgen.sensors.scan_frames import ScanSettings, room_shots
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory, plan_walk
 from world2minecraft.rendering import cast_voxels, prepare_voxels
 

@@ -12,7 +12,7 @@ from world2minecraft.core.files import read_npz
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.procgen import generate_room, room_views, scan_room
 from world2minecraft.procgen.sensors.depth_camera import scale_factor
-from world2minecraft.procgen.sensors.shots import ScanSettings, room_shots, room_to_scan
+from world2minecraft.procgen.sensors.scan_frames import ScanSettings, room_shots, room_to_scan
 from world2minecraft.rendering import cast_voxels, prepare_voxels
 
 NAMES = (

@@ -9,7 +9,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import read_json
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.scene import read_scene
+from world2minecraft.formats.world_labels import read_scene
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.minecraft.physics.shortest_paths import shortest_path
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
@@ -17,7 +17,7 @@ from world2minecraft.minecraft.rules.stability import find_unstable
 from world2minecraft.minecraft.worlds.world_reader import read_level
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.procgen.worlds import generate_world, write_worlds
-from world2minecraft.procgen.worlds.world import LEVEL, count_reachable_floor
+from world2minecraft.procgen.worlds.house_world import LEVEL, count_reachable_floor
 from world2minecraft.procgen.worlds.world_files import house_layouts
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.

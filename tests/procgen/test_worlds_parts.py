@@ -11,18 +11,18 @@ from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
-from world2minecraft.procgen.worlds.display_stands import (
+from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
+from world2minecraft.procgen.worlds.house_layout import person_size_blocks, plan_block_house
+from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
+from world2minecraft.procgen.worlds.shell import rails
+from world2minecraft.procgen.worlds.styles import draw_look, styles
+from world2minecraft.procgen.worlds.wares_and_stands import (
     HOME,
     MOUNTS,
     WareDeck,
     load_wares,
     mount_table,
 )
-from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
-from world2minecraft.procgen.worlds.house import person_size_blocks, plan_block_house
-from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
-from world2minecraft.procgen.worlds.shell import rails
-from world2minecraft.procgen.worlds.styles import draw_look, styles
 
 PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]
 

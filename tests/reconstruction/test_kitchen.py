@@ -11,7 +11,7 @@ from benchmarks.check_photos import compare as compare_rooms
 from benchmarks.check_tsdf import compare, read_frames
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.evaluation.report.scene import read_built
+from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.minecraft.block_colours import colours_of
 
 

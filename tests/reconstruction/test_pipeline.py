@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.formats.objects import read_objects, read_placements
+from world2minecraft.formats.objects_and_placements import read_objects, read_placements
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraft.schematics.sponge import read_schem
 from world2minecraft.minecraft.worlds.world_writer import read_world

@@ -9,7 +9,7 @@ from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.entities import block_display
 from world2minecraft.rendering import NEUTRAL, prepare_scene, render_volume
 from world2minecraft.rendering.cutaway import without_ceiling, without_near_walls
-from world2minecraft.rendering.light.settings import (
+from world2minecraft.rendering.light.light_settings import (
     NEUTRAL_CORNER,
     NEUTRAL_EXPOSURE,
     NEUTRAL_HEADLIGHT,

@@ -6,7 +6,7 @@ from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraft.transforms import turn_volume
+from world2minecraft.minecraft.turn_and_mirror import turn_volume
 from world2minecraft.rendering import cast_voxels, prepare_scene, render_volume
 from world2minecraft.rendering.plain_models import INVISIBLE, visible_boxes
 

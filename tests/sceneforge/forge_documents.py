@@ -6,10 +6,10 @@ import numpy as np
 
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
 from world2minecraft.editing.scene.scene_objects import object_key
-from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.sources import detect_objects
+from world2minecraft.sceneforge.scene_sources import detect_objects
 
 SHAPE = (20, 18, 14)
 

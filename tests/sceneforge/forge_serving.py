@@ -11,8 +11,8 @@ from websockets.sync.client import connect
 
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.server.serve import ForgeServer
-from world2minecraft.sceneforge.sources import OpenedScene
+from world2minecraft.sceneforge.scene_sources import OpenedScene
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 HANG_S = 180.0  # No measure of speed: only what never answers is given up.
 

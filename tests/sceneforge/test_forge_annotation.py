@@ -13,7 +13,7 @@ from world2minecraft.navigation.language.human_instructions import (
     with_annotations,
 )
 from world2minecraft.navigation.records import read_trajectories, write_trajectories
-from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
+from world2minecraft.navigation.types import Instruction, Keyframe, Stance, Trajectory
 from world2minecraft.sceneforge.annotation.app import PAGE, annotation_server, build_app
 from world2minecraft.sceneforge.annotation.store import AnnotationStore
 

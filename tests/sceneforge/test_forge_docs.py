@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from forge_serving import served
 
-from world2minecraft.sceneforge.demo import demo_room
+from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.app import routes
 

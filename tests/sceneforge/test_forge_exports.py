@@ -18,7 +18,12 @@ from world2minecraft.formats.volume_formats import read_volume, writable_format_
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.reconstruction.stages import built_volume
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.exports import export_forms, stats_csv, write_data, write_snapshot
+from world2minecraft.sceneforge.export_options import (
+    export_forms,
+    stats_csv,
+    write_data,
+    write_snapshot,
+)
 from world2minecraft.sceneforge.jobs.worker import TASKS
 from world2minecraft.sceneforge.server import export_routes
 

@@ -6,7 +6,7 @@ import random
 import pytest
 from benchmarks.check_forge_kill import forked, killed
 
-from world2minecraft.sceneforge.demo import demo_room
+from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
 
 KILLS = 8

@@ -17,7 +17,7 @@ from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.undistort import undistort_image
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.photos import find_capture_of, ideal_camera, read_photos
+from world2minecraft.sceneforge.run_photos import find_capture_of, ideal_camera, read_photos
 
 
 @pytest.fixture(scope="module")

@@ -175,7 +175,7 @@ def test_two_servers_live_side_by_side():
 
 def test_a_port_that_is_taken_is_said_so():
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.sceneforge.server.serve import ForgeServer
+    from world2minecraft.sceneforge.server.server_process import ForgeServer
 
     with served(small_editor()) as one, pytest.raises(UsageError, match="leave out --port"):
         ForgeServer(port=one.port)

@@ -14,11 +14,11 @@ from PIL import Image
 
 from world2minecraft.core.errors import ConflictError
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.sceneforge.document.identity import document_folder
+from world2minecraft.sceneforge.document.document_metadata import document_folder
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
+from world2minecraft.sceneforge.scene_sources import DEMO_FOLDER
 from world2minecraft.sceneforge.session import Session
-from world2minecraft.sceneforge.sources import DEMO_FOLDER
 from world2minecraft.sceneforge.uploads import CaptureStore, is_capture
 from world2minecraft.sceneforge.workspace import Workspace
 

@@ -20,7 +20,7 @@ from world2minecraft.sceneforge import broadcast as hub
 from world2minecraft.sceneforge import session
 from world2minecraft.sceneforge.array_messages import HEADER
 from world2minecraft.sceneforge.broadcast import MAX_QUEUED, MAX_TABS, Broadcaster
-from world2minecraft.sceneforge.server.serve import ForgeServer
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 
 @pytest.mark.parametrize("quick_cells", [session.QUICK_CELLS, 0])  # At once; by the thread.

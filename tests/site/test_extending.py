@@ -12,8 +12,8 @@ from tests.site.pages import FENCE
 
 from world2minecraft import cli
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.readers.plain import write_plain
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.unlabelled_volume import unlabelled_volume
@@ -119,7 +119,7 @@ def test_the_agent_walks_turns_and_stops():
     pytest.importorskip("gymnasium", reason="gymnasium is not installed")
     from world2minecraft.navigation.agents import Observation, Task
     from world2minecraft.navigation.moves import get_move_set
-    from world2minecraft.navigation.values import Move, Stance
+    from world2minecraft.navigation.types import Move, Stance
 
     agent = AGENTS.load("wall_follower")()
     agent.begin(Task("Go to the table", get_move_set("vlnce"), 0.25, 5, 0.25))

@@ -11,7 +11,7 @@ from tests.minecraft.server.console import Console
 from tests.site.pages import Step, steps_of
 
 from world2minecraft import cli
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 FIRST = "tutorial-phone-scan"

@@ -55,11 +55,15 @@ VARYING_PRINTS: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"127\.0\.0\.1:\d+"), "<address>"),
 )
 # Lines of what commands print that tell of speed alone.
-VARYING_LINES = re.compile(r"^\s*made   .* images in .*CPU each")
+VARYING_LINES = re.compile(
+    r"^\s*made   .* images in .*CPU each|^\s*(Total time|Automated process|Manual refinement)\b"
+)
 
 # Keys of JSON whose values differ by nature, by a pattern of the file's path: ".*" stands for all.
 VARYING_KEYS: tuple[tuple[str, frozenset[str]], ...] = (
     (r"(.*/)?run\.json", frozenset({"*"})),  # Seconds, memory, the machine: nothing reads it.
+    (r"(.*/)?w2m_undo/.*/manifest\.json", frozenset({"time_ns"})),  # Of the world's own files.
+    (r"(.*/)?(replies|answers|trace)\.jsonl", frozenset({"latency_s"})),  # A model's.
     (r"(.*/)?effort\.jsonl", frozenset({"time_s"})),  # When a person edited.
     (r"(.*/)?journal\.bin", frozenset({"time_s"})),
     (r"\d+\.stdout", frozenset({"active_s", "manual_s", "total_s"})),  # Of w2m forge stats --json.
@@ -69,6 +73,8 @@ VARYING_KEYS: tuple[tuple[str, frozenset[str]], ...] = (
 VARYING_FILES: tuple[str, ...] = (
     r"(.*/)?events\.out\.tfevents\..*",  # TensorBoard's; metrics.csv beside it says the same.
 )
+# Archives whose members are compared, and not when these were written.
+VARYING_ARCHIVES: tuple[str, ...] = (r"exported-world-.*\.zip",)
 # Names that hold a time, a machine or a number of a process: a pattern, and what stands for it.
 VARYING_NAMES: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"events\.out\.tfevents\..*"), "events.out.tfevents.*"),

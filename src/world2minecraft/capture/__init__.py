@@ -7,7 +7,7 @@ that are read from disk one at a time. ``describe_capture`` summarises a capture
 
 from world2minecraft.capture.alignment.room_frame import realign
 from world2minecraft.capture.open_scan import open_scan
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.capture.summary import CaptureSummary, describe_capture
 from world2minecraft.capture.view_stream import skip_damaged_frames
 

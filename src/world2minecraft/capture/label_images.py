@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header, read_raw
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.errors import CaptureError
 
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_colour
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Photo

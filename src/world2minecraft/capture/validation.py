@@ -24,7 +24,7 @@ from world2minecraft.capture.depth_images import (
     find_encoding,
     read_depth,
 )
-from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.images import (
     ImageHeader,
     ImagePlace,
@@ -34,8 +34,8 @@ from world2minecraft.capture.images import (
 )
 from world2minecraft.capture.label_images import attach_labels, check_labels
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.poses import check_camera_spread, is_lost, repair_pose
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.pose_validation import check_camera_spread, is_lost, repair_pose
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,

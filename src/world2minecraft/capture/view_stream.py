@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from world2minecraft.capture.depth_images import DepthEncoding, read_depth
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import read_colour, read_raw
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Scan, View
 

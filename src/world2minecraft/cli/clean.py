@@ -121,7 +121,7 @@ def open_history(build: Path) -> "History":
     """
     from world2minecraft.editing.journal import EDITS_FILE, Journal
     from world2minecraft.editing.volume_draft import History
-    from world2minecraft.evaluation.report.scene import read_built
+    from world2minecraft.evaluation.report.finished_run import read_built
 
     volume = read_built(build)
     try:
@@ -168,7 +168,7 @@ def rewrite_build(build: Path, history: "History") -> None:
     """Write a build with other blocks in it, under the name that its world has."""
     from world2minecraft.construction import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json
-    from world2minecraft.formats.scene import read_scene
+    from world2minecraft.formats.world_labels import read_scene
     from world2minecraft.minecraft.worlds.world_reader import read_level
     from world2minecraft.reconstruction.parameters import Parameters
     from world2minecraft.reconstruction.stages import write_further_forms

@@ -76,7 +76,7 @@ def run(
     the room, x, y, z up. A capture with --grid answers in that grid, whose world must be the
     capture's. ``labels`` is uint8, ids 0 to 11, 255 where nobody looked.
     """
-    from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
+    from world2minecraft.capture.readers.photo_folder import PHOTO_SUFFIXES
     from world2minecraft.core.errors import InputError
     from world2minecraft.minecraftocc.frame_completion import read_grid_place
 
@@ -158,7 +158,7 @@ class _Frame:
         from world2minecraft.capture.images import read_colour, read_header
         from world2minecraft.core.errors import CaptureError
         from world2minecraft.minecraftocc.cell_predictions import predict_cells
-        from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
+        from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 
         photo = self.colour or self.source
         if read_header(photo).mode.startswith(("I", "F")):

@@ -198,7 +198,7 @@ def build_lone_plan(
 
     UsageError for options that need frames, of which a plan has none.
     """
-    from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
+    from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.reconstruction.opening import scene_name

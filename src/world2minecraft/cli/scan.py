@@ -49,7 +49,7 @@ def run(
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
     from world2minecraft.capture import describe_capture
-    from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
+    from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
     from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan

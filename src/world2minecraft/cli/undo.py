@@ -42,7 +42,7 @@ def run(
     """
     if blocks and force:
         raise UsageError("--blocks and --force are two ways to undo; choose one")
-    from world2minecraft.editing.backups import list_steps
+    from world2minecraft.editing.file_backups import list_steps
     from world2minecraft.minecraft.worlds.level_dat import no_world
 
     if list_:
@@ -57,7 +57,7 @@ def run(
         print(f"{count_text(len(steps), 'step')} to undo, the last one first.")
         return
     if blocks:
-        from world2minecraft.editing.world_build import remove_build
+        from world2minecraft.editing.build_into_world import remove_build
 
         done = remove_build(world)
         kept = f"; {count_text(done.kept, 'block')} changed since stay" if done.kept else ""
@@ -72,7 +72,7 @@ def undo_files(world: Path, force: bool) -> str:
     Raises:
         UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
     """
-    from world2minecraft.editing.backups import changed_since, list_steps, recover, revert_step
+    from world2minecraft.editing.file_backups import changed_since, list_steps, recover, revert_step
     from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     with session_lock(world):

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.core.coordinates import block_to_room, grid_to_block_axes
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.types import AIR, BlockVolume, Entity

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import Lattice, face_shares
 from world2minecraft.construction.colour_sources import ColourSource
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
@@ -31,11 +32,10 @@ from world2minecraft.construction.fitting import (
     thin_cells,
 )
 from world2minecraft.construction.fitting.shapes import SUB
-from world2minecraft.construction.lattice import Lattice, face_shares
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
-from world2minecraft.furniture.solids import OWN_CELLS
+from world2minecraft.furniture.solid_parts import OWN_CELLS
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
 # What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.fitting import Fit, PartsFit, fit_parts
 from world2minecraft.construction.fitting.shapes import SUB, ShapeSet, shape_set
-from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Part

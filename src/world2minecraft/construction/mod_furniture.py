@@ -9,14 +9,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from world2minecraft.construction.block_designs import design_box
 from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.design_placement import design_box
 from world2minecraft.construction.palettes import FACINGS, FurniturePiece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import BlockDesign, template
 from world2minecraft.furniture.block_designs import block_size, lay_template
-from world2minecraft.furniture.solids import own_cells
+from world2minecraft.furniture.solid_parts import own_cells
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab

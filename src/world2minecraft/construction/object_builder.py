@@ -5,16 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.construction.block_designs import (
-    CanvasWindow,
-    ObjectColours,
-    ObjectLabel,
-    body_box,
-    canvas_window,
-    design_box,
-    filled_blocks,
-    place_design,
-)
+from world2minecraft.construction.block_lattice import volume_shares
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import block_colour, fill_colours
 from world2minecraft.construction.cell_objects import (
@@ -32,6 +23,16 @@ from world2minecraft.construction.cell_objects import (
     resample_cells,
 )
 from world2minecraft.construction.colour_sources import BuildSource, ColourSamples, ColourSource
+from world2minecraft.construction.design_placement import (
+    CanvasWindow,
+    ObjectColours,
+    ObjectLabel,
+    body_box,
+    canvas_window,
+    design_box,
+    filled_blocks,
+    place_design,
+)
 from world2minecraft.construction.fitted_objects import (
     LAID_ON,
     Design,
@@ -41,7 +42,6 @@ from world2minecraft.construction.fitted_objects import (
 )
 from world2minecraft.construction.fitting import remove_loose_blocks
 from world2minecraft.construction.fitting.shapes import SUB
-from world2minecraft.construction.lattice import volume_shares
 from world2minecraft.construction.overlap_avoidance import best_place, best_step
 from world2minecraft.construction.substitutes import substitute_templates
 from world2minecraft.construction.surface_painting import block_colours, chair_paints
@@ -56,7 +56,7 @@ from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, Placement
 from world2minecraft.furniture import BlockDesign, block_design, template
-from world2minecraft.furniture.solids import own_cells
+from world2minecraft.furniture.solid_parts import own_cells
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.

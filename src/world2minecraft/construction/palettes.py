@@ -1,11 +1,11 @@
 """Palettes: which blocks a room may be built of, by name or from a JSON or YAML file.
 
 A palette lists the full blocks that a surface of each class may be made of. A palette of a mod also
-lists which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
-(``meanings``). One that lists ``blocks`` is restricted to them (``finishing``). A file may extend
-another palette (``extends``), so that a user's file needs two lines: a name and the blocks. Every
-block is looked up in the game's table, except those of other namespaces, which are of mods.
-docs/palettes.md describes the format.
+lists which of its blocks stand for which furniture (``mod_furniture``) and what its blocks mean
+(``block_meanings``). One that lists ``blocks`` is restricted to them (``palette_restriction``). A
+file may extend another palette (``extends``), so that a user's file needs two lines: a name and the
+blocks. Every block is looked up in the game's table, except those of other namespaces, which are of
+mods. docs/palettes.md describes the format.
 """
 
 import json

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 

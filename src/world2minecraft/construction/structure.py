@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.construction.doorways import open_doorways
-from world2minecraft.construction.lattice import (
+from world2minecraft.construction.block_lattice import (
     Lattice,
     face_shares,
     overlap_weights,
     volume_shares,
 )
+from world2minecraft.construction.doorways import open_doorways
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure_faces import (
     blocks_behind,

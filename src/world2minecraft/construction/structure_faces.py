@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.construction.lattice import Lattice, overlap_weights, weighted_sum
+from world2minecraft.construction.block_lattice import Lattice, overlap_weights, weighted_sum
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.types import OccupancyGrid
 

@@ -10,18 +10,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.fitted_objects import Design, halves_from_layers
-from world2minecraft.construction.lattice import Lattice
-from world2minecraft.construction.materials import WEIGHTS, materials_of
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.shape_materials import WEIGHTS, materials_of
 from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Part
-from world2minecraft.furniture.solids import OWN_CELLS
+from world2minecraft.furniture.solid_parts import OWN_CELLS
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.morphology import dilate
 from world2minecraft.minecraft.block_colours import colours_of

@@ -4,16 +4,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import is_exact, lattice_over, snap_corner_m
+from world2minecraft.construction.block_updates import apply_block_updates
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import cell_colours, coloured_cells, unify_paints
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.display.builder import DisplayBuilder
-from world2minecraft.construction.finishing import apply_block_updates, restrict_to_palette
 from world2minecraft.construction.floating_blocks import close_gaps, support_floaters
-from world2minecraft.construction.lattice import is_exact, lattice_over, snap_corner_m
 from world2minecraft.construction.lighting import hang_lamps, put_lights
 from world2minecraft.construction.mod_furniture import place_mod_furniture
 from world2minecraft.construction.object_builder import ObjectBuilder
+from world2minecraft.construction.palette_restriction import restrict_to_palette
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.plaque import SIGN, WALL_SIGN, add_plaque

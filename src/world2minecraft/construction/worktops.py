@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.construction.block_lattice import Lattice, overlap_weights
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.fitted_objects import FULL, LOWER, Design
-from world2minecraft.construction.lattice import Lattice, overlap_weights
 from world2minecraft.construction.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid

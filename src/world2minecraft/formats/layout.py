@@ -15,7 +15,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Layout, OccupancyGrid, Opening
-from world2minecraft.formats.scan import read_room_size
+from world2minecraft.formats.scan_record import read_room_size
 
 
 def write_layouts(path: str | Path, layouts: tuple[Layout, ...]) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.scene import Scene, read_scene
+from world2minecraft.formats.world_labels import Scene, read_scene
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.formats import (
     FORMATS,
@@ -298,6 +298,6 @@ def read_run_templates(folder: str | Path) -> Mapping[int, str]:
     path = Path(folder) / "placements.json"
     if not path.is_file():
         return {}
-    from world2minecraft.formats.objects import read_placements  # noqa: PLC0415
+    from world2minecraft.formats.objects_and_placements import read_placements  # noqa: PLC0415
 
     return {placement.object_id: placement.template for placement in read_placements(path)}

@@ -6,7 +6,7 @@ A design of your own is one data file in ``designs/``, or an entry point of the 
 
 from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_designs import BlockDesign, DesignBlock, block_design
-from world2minecraft.furniture.facing import Facing, estimate_facing, read_surroundings
+from world2minecraft.furniture.front_estimation import Facing, estimate_facing, read_surroundings
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of_class, variants_of
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.rasterization import (

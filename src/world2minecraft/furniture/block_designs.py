@@ -77,7 +77,7 @@ def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
 def _turn_design(local: list[LocalBlock], quarter_turns: int) -> BlockDesign:
     # Imported late: the block tables cost time that scales above three never need.
     from world2minecraft.minecraft.block_states import complete, parse_state  # noqa: PLC0415
-    from world2minecraft.minecraft.transforms import turn_state  # noqa: PLC0415
+    from world2minecraft.minecraft.turn_and_mirror import turn_state  # noqa: PLC0415
 
     depth, width, height = (1 + max(block.cell[axis] for block in local) for axis in range(3))
     blocks = []

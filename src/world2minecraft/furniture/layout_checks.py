@@ -4,9 +4,9 @@ In: objects as boxes (ObjectInstance, LayoutObject), as placements, or as labels
 at before they become cells, so that touching furniture is no collision.
 
 A **collision** is where solid parts meet. A placement is as solid as its template's parts or its
-own cells (``furniture.solids``): a chair pushed under a table is none, its back through the table's
-top is one. Of an object that is but a box, all of the box is solid. ``overlapping_boxes`` counts
-boxes whatever they hold, as the layout methods of the paper do.
+own cells (``furniture.solid_parts``): a chair pushed under a table is none, its back
+through the table's top is one. Of an object that is but a box, all of the box is solid.
+``overlapping_boxes`` counts boxes whatever they hold, as the layout methods of the paper do.
 
 **Semantic integrity** is the paper's: the categories of the true room that the scene has, over
 all of them (``category_integrity``). Beside it stands ``kept_objects``: the objects that were found
@@ -23,7 +23,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.furniture.solids import depth_m, solids_m
+from world2minecraft.furniture.solid_parts import depth_m, solids_m
 from world2minecraft.geometry.connected_components import label_components
 
 OVERLAP_M = 0.04  # Half a default cell: less than the resolution of sizes read from cells.

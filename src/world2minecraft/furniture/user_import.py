@@ -24,7 +24,7 @@ from world2minecraft.furniture.user_library import (
     role_of,
 )
 from world2minecraft.minecraft.block_states import parse_state
-from world2minecraft.minecraft.transforms import SIDES, turn_volume
+from world2minecraft.minecraft.turn_and_mirror import SIDES, turn_volume
 
 SEATS = ("chair", "sofa", "bed")
 OPPOSITE = {"north": "south", "south": "north", "east": "west", "west": "east"}

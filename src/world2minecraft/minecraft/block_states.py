@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 
 MAX_TEXT = 1000  # The longest state of the game has about 150 characters.
 _NAME = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")

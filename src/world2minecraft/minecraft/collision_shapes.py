@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, parse_state
-from world2minecraft.minecraft.blocks import BlockType, block_table
+from world2minecraft.minecraft.block_table import BlockType, block_table
 
 # Blocks whose shapes those of mods and newer games with such names are taken to have.
 TWINS = {

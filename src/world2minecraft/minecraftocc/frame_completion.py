@@ -24,8 +24,8 @@ from world2minecraft.reconstruction.fusion import (
     remove_floaters,
 )
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
-from world2minecraft.reconstruction.semantics.completion import CompletionModel, likeliest
 from world2minecraft.reconstruction.semantics.completion_channels import sight_of
+from world2minecraft.reconstruction.semantics.completion_labeller import CompletionModel, likeliest
 
 SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
 FILE_AXES = (0, 2, 1)

@@ -17,12 +17,17 @@ from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
 from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
+from world2minecraft.minecraftocc.labels.camera_region import region_in
 from world2minecraft.minecraftocc.labels.image_labels import label_image
-from world2minecraft.minecraftocc.labels.region import region_in
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, FineClass, OccSample, SceneVoxels
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.procgen.rooms.recipes import KINDS
-from world2minecraft.procgen.sensors.photo import TexturedScene, develop, expose, prepare_textured
+from world2minecraft.procgen.sensors.photo_rendering import (
+    TexturedScene,
+    develop,
+    expose,
+    prepare_textured,
+)
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.rendering.voxel_camera import cast_voxels
 

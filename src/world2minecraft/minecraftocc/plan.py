@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.labels.region import RegionRule
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule
 from world2minecraft.minecraftocc.scene_sources import scene_id_of
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.tours import nyu_camera

@@ -25,9 +25,9 @@ from world2minecraft.formats.build_source import (
     level_spawn,
     read_build,
 )
-from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import Box
 from world2minecraft.formats.volume_formats import overlapping_cells, read_run_templates
+from world2minecraft.formats.world_labels import read_scene
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk

@@ -19,7 +19,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 
 LOOPBACK = "127.0.0.1"
 MAX_QUEUED_KEYS = 64  # Keys; what nobody reads is dropped.

@@ -16,7 +16,7 @@ from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.oracle import ORACLE_VERSION, ExpertPath, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.scores import EpisodeScore, WalkedPath, score_episode
-from world2minecraft.navigation.values import Episode, Instruction, MoveSet, Stance
+from world2minecraft.navigation.types import Episode, Instruction, MoveSet, Stance
 
 MIN_PATH_M, MAX_PATH_M = 1.0, 25.0  # Of the way on foot; shorter is no walk.
 MAX_HEIGHT_M = 1.2  # What hangs so high over the floor is nothing to walk to.

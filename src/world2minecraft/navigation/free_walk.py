@@ -3,7 +3,7 @@
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
 from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.scene import VlnScene, camera_of
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 
 VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
 

@@ -15,10 +15,10 @@ import numpy as np
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
+from world2minecraft.minecraft.physics.player_body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
 from world2minecraft.minecraft.physics.walk_graph import DROP, WET
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import MOVE_SETS, Move, MoveSet, Stance
+from world2minecraft.navigation.types import MOVE_SETS, Move, MoveSet, Stance
 
 SUBSTEP = 0.4  # Of half a body's width: how long the pieces of a way are.
 FIRST_FURNITURE, LAST_FURNITURE = (

@@ -25,7 +25,7 @@ from world2minecraft.navigation.moves import (
     wrap_yaw,
 )
 from world2minecraft.navigation.scene import VlnScene, distance_from_field
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 
 HEURISTIC_FACTOR = 0.98  # Between places the field is too long by little: by so much at most.
 ORACLE_VERSION = "w2m-oracle-2"

@@ -1,6 +1,6 @@
 """Items, trajectories and episodes on disk: JSONL, one record a line, checked before it is used.
 
-A line is the JSON object of a value of ``navigation.values`` under the names of its fields; a
+A line is the JSON object of a value of ``navigation.types`` under the names of its fields; a
 ``Move`` is its number. The lines of ``write_items`` are sorted by nothing but the caller, and the
 same values give the same bytes. Files of others are hostile until read: sizes come before memory,
 types are exact (no number in quotes), and a name that would leave the folder is refused.
@@ -19,7 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import write_text
-from world2minecraft.navigation.values import Episode, Item, Trajectory
+from world2minecraft.navigation.types import Episode, Item, Trajectory
 
 ITEMS = "items.jsonl"
 TRAJECTORIES = "trajectories.jsonl"

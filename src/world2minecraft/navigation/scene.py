@@ -27,7 +27,7 @@ from world2minecraft.minecraft.physics.any_angle_paths import (
     build_lattice,
     straight_distances_m,
 )
-from world2minecraft.minecraft.physics.body import EYE
+from world2minecraft.minecraft.physics.player_body import EYE
 from world2minecraft.minecraft.physics.shortest_paths import connected_parts
 from world2minecraft.minecraft.physics.walk_graph import (
     CollisionGrid,
@@ -41,8 +41,8 @@ from world2minecraft.minecraftocc.scene_sources import SceneSource, open_scene_s
 from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
 from world2minecraft.minecraftocc.tours.types import TourRule
 from world2minecraft.navigation.landmarks import Landmark, landmarks_of
-from world2minecraft.navigation.places import SceneRoom, rooms_of_places, scene_rooms
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.rooms_and_doors import SceneRoom, rooms_of_places, scene_rooms
+from world2minecraft.navigation.types import Stance
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene, prepare_scene

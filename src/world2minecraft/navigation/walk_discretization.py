@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrap_deg
 
 EPSILON_M = 0.25  # A move: what lies nearer to a line cannot be walked otherwise.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.rendering.views.pose_file import TourPose
 
 

@@ -17,7 +17,7 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import count_scene
 from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.config import GRIDS, RunConfig
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import cells_with_masks

@@ -23,7 +23,7 @@ from world2minecraft.evaluation.metrics.protocols import (
     protocol_named,
 )
 from world2minecraft.minecraftocc.importers.embodied import SceneSet
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.config import Grid
 from world2minecraft.networks.data.cache import Frames
 from world2minecraft.networks.data.frames import cells_with_masks

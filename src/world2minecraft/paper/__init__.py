@@ -6,13 +6,13 @@ that tells it. ``from_program`` reads what the program itself knows: the mapping
 recipes of fine-tuning, the sizes. ``layout`` puts all of it into one table, ``writing`` prints it.
 """
 
-from world2minecraft.paper.measured_values import fill_table
-from world2minecraft.paper.table_definitions import (
+from world2minecraft.paper.table_reader import (
     Ours,
     PaperTable,
     read_results,
     read_table,
     table_names,
 )
+from world2minecraft.paper.table_rows import fill_table
 
 __all__ = ["Ours", "PaperTable", "fill_table", "read_results", "read_table", "table_names"]

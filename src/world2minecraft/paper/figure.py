@@ -17,13 +17,13 @@ from world2minecraft.core.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import AIR, BlockVolume, Camera, OccupancyGrid
+from world2minecraft.evaluation.report.finished_run import read_built
 from world2minecraft.evaluation.report.placed_frames import (
     PlacedFrame,
     judge_capture_of,
     placed_frames,
     used_by,
 )
-from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 from world2minecraft.navigation.running.simulator import SceneSimulator

@@ -12,8 +12,8 @@ from string import ascii_lowercase, ascii_uppercase
 from typing import Any
 
 from world2minecraft.minecraftocc.statistics.tables import escape_latex
-from world2minecraft.navigation.running.tables import format_markdown
-from world2minecraft.paper.table_definitions import Ours, PaperRow, PaperTable
+from world2minecraft.navigation.running.result_tables import format_markdown
+from world2minecraft.paper.table_reader import Ours, PaperRow, PaperTable
 
 CELL_WIDTH = 36  # Longer cells are broken into lines.
 PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.

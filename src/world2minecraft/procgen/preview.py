@@ -8,7 +8,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.photo import prepare_photos, take_photo
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos, take_photo
 
 ELEVATION_DEG = {"room": 42.0, "house": 58.0}  # Inner walls hide less from a steeper place.
 TURN_DEG = 32.0

@@ -16,7 +16,7 @@ from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.core.types import Layout, LayoutObject, Opening
-from world2minecraft.formats.objects import round_metres
+from world2minecraft.formats.objects_and_placements import round_metres
 from world2minecraft.procgen.rooms.room import Room
 
 LAYOUT, TRUTH = "layout.json", "truth.npz"

@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, LayoutObject, Opening, View
-from world2minecraft.formats.objects import round_metres
+from world2minecraft.formats.objects_and_placements import round_metres
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.phone import phone_shots, write_photos, write_video
-from world2minecraft.procgen.sensors.shots import (
+from world2minecraft.procgen.sensors.scan_frames import (
     FrameTruth,
     ScanSettings,
     Shot,

@@ -17,9 +17,9 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.capture import open_scan, realign, write_plain
-from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.construction import build_volume
 from world2minecraft.core.errors import InputError, UsageError

@@ -22,7 +22,7 @@ from world2minecraft.capture import realign, skip_damaged_frames
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.run_arrays import write_evidence
-from world2minecraft.formats.scan import (
+from world2minecraft.formats.scan_record import (
     read_poses,
     read_registration,
     with_recorded_alignment,

@@ -18,7 +18,7 @@ from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, Oc
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.journal import write_edits
 from world2minecraft.formats.layout import read_rooms, write_layouts
-from world2minecraft.formats.objects import (
+from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
     write_objects,
@@ -27,7 +27,7 @@ from world2minecraft.formats.objects import (
 from world2minecraft.formats.occupancy_files import inner_corner_m
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_evidence, read_room, write_centers, write_room
-from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
+from world2minecraft.formats.scan_record import read_depth_kind, read_room_size, read_scene_name
 from world2minecraft.formats.volume_formats import (
     format_by_name,
     read_run_templates,

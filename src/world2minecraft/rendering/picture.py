@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LightSettings
+from world2minecraft.rendering.observed_free_space import observed_free_space
 from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.rendering.ray_caster.ray import GridCamera
 from world2minecraft.rendering.scene import BlockScene, prepare_scene

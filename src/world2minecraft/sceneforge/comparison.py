@@ -13,8 +13,8 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import UNSEEN
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import resample_labels
-from world2minecraft.evaluation.metrics.truth import carry_truth
-from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
+from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.formats.occupancy_files import read_occupancy
 
 SUFFIXES = (".npz", ".npy", ".json")

@@ -22,12 +22,12 @@ from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import Command, SceneDraft, parse_command
 from world2minecraft.sceneforge.document.document import Document
-from world2minecraft.sceneforge.document.identity import document_folder
+from world2minecraft.sceneforge.document.document_metadata import document_folder
 from world2minecraft.sceneforge.document.memory_document import MemoryDocument
 from world2minecraft.sceneforge.queries import parse_query
-from world2minecraft.sceneforge.sources import OpenedScene
-from world2minecraft.sceneforge.tools import tools_of
-from world2minecraft.sceneforge.wire import PROTOCOL, classes_json, counts_json, objects_json
+from world2minecraft.sceneforge.scene_sources import OpenedScene
+from world2minecraft.sceneforge.stage_tools import tools_of
+from world2minecraft.sceneforge.wire_format import PROTOCOL, classes_json, counts_json, objects_json
 
 Listener = Callable[[int, str, Operation], None]
 Value = TypeVar("Value")

@@ -9,7 +9,7 @@ from typing import Any
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
-from world2minecraft.evaluation.metrics.effort import (
+from world2minecraft.evaluation.metrics.editing_effort import (
     PAPER_REFINED,
     PAPER_SCRATCH,
     Effort,
@@ -17,8 +17,8 @@ from world2minecraft.evaluation.metrics.effort import (
     improvement,
     mean_row,
 )
+from world2minecraft.sceneforge.document.document_metadata import document_folder, read_identity
 from world2minecraft.sceneforge.document.effort_log import read_effort
-from world2minecraft.sceneforge.document.identity import document_folder, read_identity
 
 Row = Mapping[str, float | None]
 # The paper's rows: name, title, how far it is indented.

@@ -23,7 +23,7 @@ from world2minecraft.editing.scene.difference import compare_labels
 from world2minecraft.editing.scene.furniture_commands import ObjectClass
 from world2minecraft.editing.scene.object_boxes import object_by_id
 from world2minecraft.editing.scene.object_transforms import Id
-from world2minecraft.editing.scene.planes import find_planes
+from world2minecraft.editing.scene.plane_detection import find_planes
 from world2minecraft.editing.scene.repair import (
     HOLE_M2,
     MAX_CELLS,
@@ -48,7 +48,7 @@ from world2minecraft.sceneforge.comparison import (
     read_file_labels,
     read_truth_labels,
 )
-from world2minecraft.sceneforge.sources import OpenedScene
+from world2minecraft.sceneforge.scene_sources import OpenedScene
 
 OPENED, TRUTH = "opened", "truth"
 DECIMALS = 4

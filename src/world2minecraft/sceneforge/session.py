@@ -24,7 +24,7 @@ from world2minecraft.sceneforge.broadcast import Broadcaster
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.jobs.background_job import TITLES, copy_editor, run_in_background
 from world2minecraft.sceneforge.jobs.jobs import Jobs
-from world2minecraft.sceneforge.wire import PROTOCOL, counts_json, object_json
+from world2minecraft.sceneforge.wire_format import PROTOCOL, counts_json, object_json
 
 MAX_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})

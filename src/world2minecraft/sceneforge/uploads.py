@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
 from world2minecraft.core.errors import (
     ConflictError,
     DamagedFileError,

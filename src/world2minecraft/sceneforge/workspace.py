@@ -15,8 +15,8 @@ from world2minecraft.core.errors import InputError, OutputError, UnknownNameErro
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.sceneforge.comparison import find_truth_folder
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.exports import write_snapshot
-from world2minecraft.sceneforge.photos import (
+from world2minecraft.sceneforge.export_options import write_snapshot
+from world2minecraft.sceneforge.run_photos import (
     RunPhotos,
     count_photos,
     find_capture_of,

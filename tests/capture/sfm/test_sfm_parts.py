@@ -7,7 +7,8 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.capture.sfm.box_room import poses
 
-from world2minecraft.capture.sfm import SfmParameters, find_poses, pycolmap_session, results
+from world2minecraft.capture.sfm import SfmParameters, find_poses, results
+from world2minecraft.capture.sfm import pycolmap_access as pycolmap_session
 from world2minecraft.capture.sfm.bundle_adjustment import project_points
 from world2minecraft.capture.sfm.camera_groups import (
     default_camera,

@@ -6,7 +6,7 @@ import numpy as np
 from voxel_scenes import VOXEL_M, grid_of
 
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 from world2minecraft.procgen import generate_room
 
 DOOR = (slice(20, 30), slice(0, 1), slice(1, 27))  # x, y, z

@@ -10,7 +10,7 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.planes import find_planes
+from world2minecraft.editing.scene.plane_detection import find_planes
 from world2minecraft.editing.scene.repair import find_floaters, pinholes, plane_gaps, smooth_labels
 
 AROUND = [step for step in itertools.product((-1, 0, 1), repeat=3) if any(step)]

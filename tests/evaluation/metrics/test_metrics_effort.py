@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.evaluation.metrics.effort import (
+from world2minecraft.evaluation.metrics.editing_effort import (
     PAPER_REFINED,
     PAPER_SCRATCH,
     active_s,

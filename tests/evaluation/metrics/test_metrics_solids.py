@@ -24,7 +24,7 @@ from world2minecraft.furniture.layout_checks import (
     out_of_rooms,
     overlapping_boxes,
 )
-from world2minecraft.furniture.solids import box_m, depth_m, own_cells, solids_m
+from world2minecraft.furniture.solid_parts import box_m, depth_m, own_cells, solids_m
 
 NAMES = ["chair", "dining_table", "sofa", "counter", "bookcase", "desk", "double_bed"]
 

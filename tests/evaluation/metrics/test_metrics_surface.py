@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
-from world2minecraft.evaluation.metrics.surface import (
+from world2minecraft.evaluation.metrics.surface_scores import (
     SurfaceCounts,
     count_surface,
     free_space_recall,

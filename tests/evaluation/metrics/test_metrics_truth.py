@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
-from world2minecraft.evaluation.metrics.truth import carry_truth, scored_cells
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth, scored_cells
 
 FINE_M, COARSE_M = 0.02, 0.08
 

@@ -16,8 +16,12 @@ from world2minecraft.core.types import (
     OccupancyGrid,
     Placement,
 )
-from world2minecraft.evaluation.report.figures import in_solid_block, scene_facts, surface_explained
-from world2minecraft.evaluation.report.scene import FinishedScene, read_built
+from world2minecraft.evaluation.report.finished_run import FinishedScene, read_built
+from world2minecraft.evaluation.report.measures import (
+    in_solid_block,
+    scene_facts,
+    surface_explained,
+)
 
 VOXEL_M = 0.08
 

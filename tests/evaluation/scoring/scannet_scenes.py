@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.procgen import generate_room
-from world2minecraft.procgen.sensors.shots import room_to_scan
+from world2minecraft.procgen.sensors.scan_frames import room_to_scan
 from world2minecraft.procgen.virtual_scan import room_views
 
 NAME = "scene0000_00"

@@ -4,8 +4,8 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import Layout, Opening
-from world2minecraft.evaluation.scoring.openings import opening_facts
-from world2minecraft.evaluation.scoring.visibility import Reached
+from world2minecraft.evaluation.scoring.observed_cells import Reached
+from world2minecraft.evaluation.scoring.opening_scores import opening_facts
 
 OUTLINE = np.array([[0, 0], [4, 0], [4, 3], [0, 3]], np.float64)
 LEFT = np.array([[-4, 0], [0, 0], [0, 3], [-4, 3]], np.float64)

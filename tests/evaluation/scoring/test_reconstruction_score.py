@@ -10,7 +10,7 @@ from true_rooms import OBJECTS, VOXEL_M, write_capture, write_perfect
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.formats.objects import read_objects, write_objects
+from world2minecraft.formats.objects_and_placements import read_objects, write_objects
 from world2minecraft.formats.run_arrays import read_room, write_room
 
 

@@ -14,17 +14,17 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.classes import CLASS_COUNT, STRUCTURE_CLASSES
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
-from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 from world2minecraft.evaluation.scoring import Truth, evaluate_reconstruction, read_truth
+from world2minecraft.evaluation.scoring.observed_cells import reached_cells
 from world2minecraft.evaluation.scoring.scannet.labelled_mesh import (
     LabelledMesh,
     read_labelled_mesh,
 )
-from world2minecraft.evaluation.scoring.scannet.truth import seen_free, surface_voxels
-from world2minecraft.evaluation.scoring.truth import read_instances
+from world2minecraft.evaluation.scoring.scannet.scannet_truth import seen_free, surface_voxels
+from world2minecraft.evaluation.scoring.truth_files import read_instances
 from world2minecraft.evaluation.scoring.used_frames import all_frames
-from world2minecraft.evaluation.scoring.visibility import reached_cells
-from world2minecraft.formats.objects import write_objects
+from world2minecraft.formats.objects_and_placements import write_objects
 from world2minecraft.formats.run_arrays import write_room
 
 VOXEL_M = 0.08

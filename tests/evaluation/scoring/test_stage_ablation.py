@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.capture import open_scan
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 from world2minecraft.evaluation.scoring.oracle_stages import true_evidence
-from world2minecraft.evaluation.scoring.stage_ablation import (
+from world2minecraft.evaluation.scoring.stage_losses import (
     AFTER,
     TrueViews,
     allowed_cells,
@@ -14,7 +14,7 @@ from world2minecraft.evaluation.scoring.stage_ablation import (
     recorded_parameters,
     stage_losses,
 )
-from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.reconstruction.fusion import extract_grid
 from world2minecraft.reconstruction.parameters import Parameters, with_settings

@@ -5,9 +5,9 @@ import pytest
 from true_rooms import CAMERA, FINE_M, SHELL, VOXEL_M, cameras, fine_room, slow_reach
 
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.evaluation.scoring.truth import Truth
+from world2minecraft.evaluation.scoring.observed_cells import CROSSED, reached_cells
+from world2minecraft.evaluation.scoring.truth_files import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame
-from world2minecraft.evaluation.scoring.visibility import CROSSED, reached_cells
 
 
 def true_room() -> Truth:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, Camera, OccupancyGrid, Scan, View
@@ -12,9 +12,9 @@ from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.evaluation.scoring.oracle_stages import put_true_objects
 from world2minecraft.evaluation.scoring.score import see_truth
 from world2minecraft.evaluation.scoring.used_frames import used_frames
-from world2minecraft.formats.objects import write_objects
+from world2minecraft.formats.objects_and_placements import write_objects
 from world2minecraft.formats.run_arrays import read_room, write_room
-from world2minecraft.formats.scan import write_scan
+from world2minecraft.formats.scan_record import write_scan
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.rendering.voxel_camera import cast_voxels, prepare_voxels
 

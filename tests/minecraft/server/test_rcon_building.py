@@ -13,8 +13,8 @@ from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.file_format import Losses
-from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
+from world2minecraft.minecraft.server.server_build import LiveBuilder, plan_build
 from world2minecraft.minecraft.versions import game_version
 
 NAMES = ("white_concrete", "oak_stairs[facing=west]", "torch", "oak_sign")

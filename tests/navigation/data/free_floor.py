@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_discretization import StepFunction
 from world2minecraft.navigation.walk_stream import wrap_deg
 

@@ -16,7 +16,7 @@ from world2minecraft.navigation.data.distractors import (
     is_valid_choice,
 )
 from world2minecraft.navigation.data.keyframes import find_keyframes
-from world2minecraft.navigation.data.pictures import (
+from world2minecraft.navigation.data.picture_store import (
     EncodedPicture,
     PictureStore,
     StoredPicture,
@@ -24,7 +24,7 @@ from world2minecraft.navigation.data.pictures import (
     show_different_views,
 )
 from world2minecraft.navigation.data.tasks import FOUND_OF, GRADES, MAX_FAR, view_question
-from world2minecraft.navigation.values import MOVE_SETS, Move, Stance
+from world2minecraft.navigation.types import MOVE_SETS, Move, Stance
 from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
 VLNCE = MOVE_SETS["vlnce"]

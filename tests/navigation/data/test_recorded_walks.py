@@ -20,7 +20,7 @@ from world2minecraft.navigation.data.recorded_walks import (
 from world2minecraft.navigation.data.scene_items import SceneRule
 from world2minecraft.navigation.data.set_building import BuildRule, build_navigation_set
 from world2minecraft.navigation.records import read_episodes, read_trajectories
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame
 
 RULE = SceneRule(size_px=(64, 36), balanced=False, seed=4)

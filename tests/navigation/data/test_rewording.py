@@ -20,7 +20,7 @@ from world2minecraft.navigation.data.rewording import (
     write_set,
 )
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
-from world2minecraft.navigation.values import LEVELS, Instruction
+from world2minecraft.navigation.types import LEVELS, Instruction
 
 SAME = "At the door take a left, pass the table and halt at the piano."
 RECORDS = ("items.jsonl", "trajectories.jsonl", "episodes.jsonl")

@@ -23,7 +23,7 @@ from world2minecraft.navigation.data.set_building import (
 )
 from world2minecraft.navigation.data.splits import PAPER_SHARE, paper_splits, tour_of
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
-from world2minecraft.navigation.values import (
+from world2minecraft.navigation.types import (
     Instruction,
     Item,
     Keyframe,

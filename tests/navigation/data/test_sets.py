@@ -14,7 +14,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.navigation.data.blind_baselines import score_baselines
 from world2minecraft.navigation.data.item_building import LetterBalancer, cut_to_quotas
 from world2minecraft.navigation.data.keyframes import KeyframeMark
-from world2minecraft.navigation.data.pictures import show_different_views
+from world2minecraft.navigation.data.picture_store import show_different_views
 from world2minecraft.navigation.data.scene_items import SceneRule
 from world2minecraft.navigation.data.set_building import (
     BuildRule,
@@ -35,10 +35,10 @@ from world2minecraft.navigation.data.statistics import (
     write_histograms,
 )
 from world2minecraft.navigation.data.tasks import action_steps
-from world2minecraft.navigation.language.parsing import parse_instruction
+from world2minecraft.navigation.language.instruction_parsing import parse_instruction
 from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
-from world2minecraft.navigation.values import Instruction, Item, Move, Option, Stance
+from world2minecraft.navigation.types import Instruction, Item, Move, Option, Stance
 
 ACTIONS = ("move forward", "turn left", "turn right", "stop")
 

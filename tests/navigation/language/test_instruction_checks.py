@@ -3,14 +3,14 @@
 import pytest
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.language.checking import (
+from world2minecraft.navigation.language.instruction_checking import (
     Mention,
     check_instruction,
     find_mentions,
     goal_name,
     landmark_names_of,
 )
-from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
+from world2minecraft.navigation.types import Instruction, Keyframe, Stance, Trajectory
 
 NAMES = ("blue chair", "red chair", "red chair beside the piano", "upright piano")
 TOLD = (

@@ -9,20 +9,20 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.language.generation import (
-    generate_instructions,
-    goal_text,
-    landmark_text,
-)
 from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
 )
+from world2minecraft.navigation.language.instruction_generation import (
+    generate_instructions,
+    goal_text,
+    landmark_text,
+)
+from world2minecraft.navigation.language.instruction_parsing import parse_instruction
 from world2minecraft.navigation.language.landmark_names import (
     matching_landmarks,
     unambiguous_landmarks,
 )
-from world2minecraft.navigation.language.parsing import parse_instruction
 from world2minecraft.navigation.language.rewriting import rewrite
 from world2minecraft.navigation.language.route_events import (
     ObservedWalk,
@@ -30,7 +30,7 @@ from world2minecraft.navigation.language.route_events import (
     RouteSegment,
     describe_route,
 )
-from world2minecraft.navigation.values import Instruction, Keyframe, Move, Stance, Trajectory
+from world2minecraft.navigation.types import Instruction, Keyframe, Move, Stance, Trajectory
 
 NAMES = ["bed", "sofa", "coffee table", "table", "red chair", "chair beside the sofa", "desk"]
 

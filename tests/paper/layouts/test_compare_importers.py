@@ -9,8 +9,8 @@ from made_layouts import gpt_record, placed, shell, vlm_task, write
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.paper.layouts.compared_scene import SCENE_FILE, read_scene, write_scene
 from world2minecraft.paper.layouts.importers import How, read_layouts_of
-from world2minecraft.paper.layouts.values import SCENE_FILE, read_scene, write_scene
 
 # A bed with its head at the south wall, looking north; a chair at the east wall, looking west.
 BED = ((1.2, 1.0, 0.25), (2.0, 1.6, 0.5), 90.0)

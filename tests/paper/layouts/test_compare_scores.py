@@ -11,8 +11,8 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
 from world2minecraft.paper.layouts import ComparedScene, Margins, score_scene, summary_of
+from world2minecraft.paper.layouts.score_table import layout_table, other_table
 from world2minecraft.paper.layouts.scores import integrity
-from world2minecraft.paper.layouts.table import layout_table, other_table
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.5)
 

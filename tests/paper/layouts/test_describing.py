@@ -14,14 +14,14 @@ from world2minecraft.core.types import Layout, Opening, Placement
 from world2minecraft.external_models.chat_client import open_chat
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.paper.layouts import ComparedScene
-from world2minecraft.paper.layouts.describing import (
+from world2minecraft.paper.layouts.importers.value_checks import Box, object_of
+from world2minecraft.paper.layouts.room_description import (
     describe_photos,
     describe_scene,
     for_method,
     layoutgpt_px_m,
     room_kind,
 )
-from world2minecraft.paper.layouts.importers.reading import Box, object_of
 
 ROOM = Layout(
     [[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2.5, 3], 0.9, 2.0),)
@@ -107,7 +107,7 @@ def test_a_model_describes_photos():
 
 
 def test_photos_are_spread_over_a_capture_and_made_small(tmp_path, monkeypatch):
-    from world2minecraft.paper.layouts import describing as photos
+    from world2minecraft.paper.layouts import room_description as photos
 
     paths = []
     for n in range(10):

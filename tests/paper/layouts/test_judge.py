@@ -17,7 +17,7 @@ from world2minecraft.paper.layouts.judge import (
     prompt_text,
     read_grades,
 )
-from world2minecraft.paper.layouts.table import grade_table
+from world2minecraft.paper.layouts.score_table import grade_table
 
 SHOWN = (Picture(b"one"), Picture(b"two"))
 

@@ -10,13 +10,13 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Layout, Opening
 from world2minecraft.formats.layout import layout_to_json, write_layouts
-from world2minecraft.formats.objects import write_placements
+from world2minecraft.formats.objects_and_placements import write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.paper.layouts import ComparedScene, score_scene
 from world2minecraft.paper.layouts.importers import How, read_layouts_of
-from world2minecraft.paper.layouts.importers.reading import Box, object_of
-from world2minecraft.paper.layouts.reference import is_truth, true_scene
-from world2minecraft.paper.layouts.world import plan_of
+from world2minecraft.paper.layouts.importers.value_checks import Box, object_of
+from world2minecraft.paper.layouts.layout_to_world import plan_of
+from world2minecraft.paper.layouts.reference_scene import is_truth, true_scene
 from world2minecraft.reconstruction.floorplans import layouts_of
 from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.types import Layout, Placement
-from world2minecraft.furniture.solids import solids_m
+from world2minecraft.furniture.solid_parts import solids_m
 from world2minecraft.paper.layouts import ComparedScene, score_scene
-from world2minecraft.paper.layouts.importers.reading import Box, object_of
+from world2minecraft.paper.layouts.importers.value_checks import Box, object_of
 from world2minecraft.paper.layouts.scores import solid_collisions, solid_parts
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)

@@ -9,14 +9,14 @@ from roomplans import captured_room, session_of
 from test_plan_grid import layout
 
 from world2minecraft import cli
-from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
+from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
 from world2minecraft.cli.reconstruct import print_plan_outcome
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.progress import no_progress
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.objects import read_objects, read_placements
+from world2minecraft.formats.objects_and_placements import read_objects, read_placements
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.floorplans import (

@@ -8,13 +8,9 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
-from world2minecraft.reconstruction.fusion import (
-    ConfidenceTable,
-    calibrate,
-    confidence,
-    confidence_table,
-)
-from world2minecraft.reconstruction.fusion.confidence import (
+from world2minecraft.reconstruction.fusion import ConfidenceTable, calibrate, confidence_table
+from world2minecraft.reconstruction.fusion import confidence_calibration as confidence
+from world2minecraft.reconstruction.fusion.confidence_calibration import (
     _neighbours,
     free_features,
     occupied_features,

@@ -11,7 +11,7 @@ from world2minecraft.reconstruction.fusion import (
     extract_grid,
     remove_floaters,
 )
-from world2minecraft.reconstruction.fusion.cleaning import structure_layers
+from world2minecraft.reconstruction.fusion.grid_cleaning import structure_layers
 
 
 def grid_of(labels: np.ndarray) -> OccupancyGrid:

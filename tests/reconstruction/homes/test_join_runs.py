@@ -10,7 +10,11 @@ from homes import BED, KITCHEN, bedroom, hall, kitchen, room, run_of, table
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.formats.layout import read_layouts, write_layouts
-from world2minecraft.formats.objects import read_objects, write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import (
+    read_objects,
+    write_objects,
+    write_placements,
+)
 from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.homes import (

@@ -12,11 +12,11 @@ from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotat
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.minecraftocc.labels.region import RegionRule, label_region
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, label_region
 from world2minecraft.reconstruction.fusion import extract_grid, fuse_views
-from world2minecraft.reconstruction.occupancy import monocular as mono
+from world2minecraft.reconstruction.occupancy import monocular_occupancy as mono
 from world2minecraft.reconstruction.occupancy import predictor
-from world2minecraft.reconstruction.occupancy.monocular import (
+from world2minecraft.reconstruction.occupancy.monocular_occupancy import (
     MonoPredictor,
     before_walls,
     depth_of,

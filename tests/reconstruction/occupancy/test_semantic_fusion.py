@@ -16,7 +16,7 @@ from world2minecraft.reconstruction.occupancy import OccupyParameters, notes_of,
 from world2minecraft.reconstruction.occupancy import semantic_fusion as kept
 from world2minecraft.reconstruction.occupancy import semantic_fusion as voters
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
-from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
+from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 from world2minecraft.reconstruction.occupancy.semantic_fusion import CellVoter, PixelVoter, spread
 
 ROOM = BoxRoom()

@@ -10,8 +10,8 @@ from tests.exact_room import BoxRoom
 from tests.reconstruction.occupancy.tiny_network import FACTS, write_network
 
 from world2minecraft.capture import describe_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import parse_options
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.summary import summary_lines
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError, UsageError

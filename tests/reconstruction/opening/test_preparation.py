@@ -15,9 +15,9 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
 from world2minecraft.geometry.unprojection import project, unproject_depth
-from world2minecraft.reconstruction.opening import preparation as preparing
+from world2minecraft.reconstruction.opening import open_capture as preparing
 from world2minecraft.reconstruction.opening import prepare_and_open, prepare_capture
-from world2minecraft.reconstruction.opening.scale import (
+from world2minecraft.reconstruction.opening.metric_scale import (
     clicked,
     depth_ratios,
     normalise_scale,

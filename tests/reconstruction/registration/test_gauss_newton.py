@@ -11,7 +11,7 @@ from world2minecraft.reconstruction.registration.gauss_newton import (
     solve,
     surfel_means,
 )
-from world2minecraft.reconstruction.registration.surfels import find_surfels
+from world2minecraft.reconstruction.registration.patch_correspondences import find_surfels
 
 FRAMES, SURFELS, COUNT = 4, 30, 400
 

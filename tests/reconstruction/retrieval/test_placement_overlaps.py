@@ -8,7 +8,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import collisions
-from world2minecraft.reconstruction.retrieval.placement import merge_crumbs
+from world2minecraft.reconstruction.retrieval.furniture_placement import merge_crumbs
 from world2minecraft.reconstruction.retrieval.placement_settling import clear_overlaps
 
 CLOSE = 1e-6

@@ -10,7 +10,7 @@ from label_grids import grid_of
 
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
-from world2minecraft.furniture.solids import box_m, depth_m, solids_m
+from world2minecraft.furniture.solid_parts import box_m, depth_m, solids_m
 from world2minecraft.reconstruction.retrieval.placement_settling import (
     settle_placements,
     within_rooms,

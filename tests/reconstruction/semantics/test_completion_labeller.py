@@ -9,7 +9,8 @@ import pytest
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.reconstruction.semantics import labeller
-from world2minecraft.reconstruction.semantics.completion import (
+from world2minecraft.reconstruction.semantics.completion_channels import Sight
+from world2minecraft.reconstruction.semantics.completion_labeller import (
     WEIGHTS,
     CompletionLabeller,
     CompletionModel,
@@ -17,8 +18,7 @@ from world2minecraft.reconstruction.semantics.completion import (
     likeliest,
     piece_votes,
 )
-from world2minecraft.reconstruction.semantics.completion_channels import Sight
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 from world2minecraft.reconstruction.semantics.labeller_choice import choose_labeller
 
 

@@ -3,7 +3,7 @@
 import label_rooms as rooms
 import numpy as np
 
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 CARDBOARD, LIT = (190, 150, 100), (70, 120, 165)
 

@@ -12,7 +12,7 @@ from scipy import ndimage
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import COMPLETED, OBSERVED
 from world2minecraft.reconstruction.semantics import LABELLERS, labeller
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 
 def labelled(room, **options):

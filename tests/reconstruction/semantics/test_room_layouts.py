@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from world2minecraft.reconstruction.fusion import extract_grid
 from world2minecraft.reconstruction.layout.room_layouts import outline_of
 from world2minecraft.reconstruction.semantics import find_structure
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 WALL = rooms.WHITE
 

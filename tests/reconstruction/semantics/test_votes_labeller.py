@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
-from world2minecraft.reconstruction.semantics.votes import VotesLabeller
+from world2minecraft.reconstruction.semantics.votes_labeller import VotesLabeller
 
 
 def furnished():

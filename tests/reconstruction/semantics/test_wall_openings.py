@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.reconstruction.semantics import find_structure
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 
 def with_wall(room, thick_m, hole):

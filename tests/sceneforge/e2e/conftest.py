@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 from forge_driving import Driver, opened_page
 
-from world2minecraft.sceneforge.demo import demo_room
+from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.server.serve import ForgeServer
-from world2minecraft.sceneforge.sources import OpenedScene
+from world2minecraft.sceneforge.scene_sources import OpenedScene
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 TESTS = Path(__file__).resolve().parents[2]
 for part in ("plans", "server"):  # RoomPlans and a server's console, written for other tests.

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.server.serve import ForgeServer
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 BLOCKS = "window.__forge.build.blocks"
 FEET = "window.__forge.walk.walker.feet"

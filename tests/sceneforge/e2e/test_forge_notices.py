@@ -3,7 +3,7 @@
 from forge_driving import opened_page
 
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.server.serve import ForgeServer
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 
 def test_edits_that_a_crash_left_are_told_once(browser, room, tmp_path):

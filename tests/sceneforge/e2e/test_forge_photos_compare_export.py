@@ -10,7 +10,7 @@ from console import Console
 from forge_driving import Driver, opened_page
 
 from world2minecraft.sceneforge.editor import Editor
-from world2minecraft.sceneforge.server.serve import ForgeServer
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 MOST_MS = 60_000
 

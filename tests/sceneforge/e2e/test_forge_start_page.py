@@ -16,7 +16,7 @@ from roomplans import captured_room
 from scipy.ndimage import gaussian_filter
 
 from world2minecraft.procgen import generate_room, scan_room
-from world2minecraft.sceneforge.server.serve import ForgeServer
+from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 MOST_MS = 60_000  # A room of ten frames takes ten seconds; machines that test are busy.
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import (
     ImageHeader,
     ImagePlace,
@@ -20,6 +19,7 @@ from world2minecraft.capture.images import (
     read_header,
     read_raw,
 )
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.types import Camera
 
 MIN_UP_IN_IMAGE = 0.3  # A camera within 17 degrees of straight up or down does not tell its roll.

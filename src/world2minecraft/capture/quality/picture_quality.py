@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 from PIL import Image, ImageFilter
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header, read_small
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import evenly_spaced
 from world2minecraft.core.errors import InputError
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from world2minecraft.capture.alignment.gravity import rotation_to_z
 from world2minecraft.capture.alignment.room_frame import Alignment, ImplausibleRoomError, align
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.open_scan import ALIGNMENT_FRAMES
 from world2minecraft.capture.quality.view_directions import estimate_up
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture, evenly_spaced
 from world2minecraft.capture.view_stream import CaptureViews
 from world2minecraft.core.coordinates import apply

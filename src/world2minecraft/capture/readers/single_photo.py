@@ -6,14 +6,14 @@ camera's place comes from depth by a network, or is that of a person's eye.
 
 import re
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.photo_exif import (
     PhotoMetadata,
     UprightPhoto,
     read_photo_metadata,
 )
-from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
+from world2minecraft.capture.readers.photo_folder import PHOTO_SUFFIXES
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import focal_px_of_fov
 from world2minecraft.core.types import Camera

@@ -25,7 +25,7 @@ from world2minecraft.capture.sfm.camera_groups import (
 from world2minecraft.capture.sfm.features import Features, pixel_unit
 from world2minecraft.capture.sfm.matching import MatchGraph
 from world2minecraft.capture.sfm.parameters import SfmParameters
-from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
+from world2minecraft.capture.sfm.pycolmap_access import pycolmap_session
 from world2minecraft.core.types import Camera
 
 CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,

@@ -8,7 +8,7 @@ from PIL import Image
 
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
-from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_session
+from world2minecraft.capture.sfm.pycolmap_access import PHOTOS, pycolmap_session
 from world2minecraft.core.errors import CaptureError, LimitError
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream

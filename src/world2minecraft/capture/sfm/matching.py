@@ -16,7 +16,7 @@ from world2minecraft.capture.sfm.camera_groups import CameraGroup, to_colmap
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
-from world2minecraft.capture.sfm.pycolmap_session import pycolmap_session
+from world2minecraft.capture.sfm.pycolmap_access import pycolmap_session
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import Camera
 

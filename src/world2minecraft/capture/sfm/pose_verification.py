@@ -22,7 +22,7 @@ from world2minecraft.capture.sfm.incremental_mapping import (
 from world2minecraft.capture.sfm.matching import MatchGraph, match_photos
 from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
-from world2minecraft.capture.sfm.pycolmap_session import PHOTOS, pycolmap_session
+from world2minecraft.capture.sfm.pycolmap_access import PHOTOS, pycolmap_session
 from world2minecraft.capture.sfm.results import (
     check_enough,
     explain_left_out,

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.capture.sfm.bundle_adjustment import SparseModel
 from world2minecraft.capture.sfm.features import Features
 from world2minecraft.capture.sfm.matching import MatchGraph
-from world2minecraft.capture.sfm.pycolmap_session import PHOTOS
+from world2minecraft.capture.sfm.pycolmap_access import PHOTOS
 from world2minecraft.capture.sfm.similarity_transform import Similarity
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, SparseScene

@@ -7,9 +7,9 @@ import numpy as np
 from world2minecraft.capture.stereo.consistency import check_consistency, filter_speckles
 from world2minecraft.capture.stereo.monocular_depth import DepthModel, fill_holes
 from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.photo_preparation import StereoPhoto, prepare_stereo_photos
 from world2minecraft.capture.stereo.planar_regions import fill_planar_regions
 from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep_depth
-from world2minecraft.capture.stereo.stereo_photos import StereoPhoto, prepare_stereo_photos
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, no_progress

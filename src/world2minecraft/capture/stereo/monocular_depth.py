@@ -15,7 +15,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.stereo_photos import prepare_stereo_photos
+from world2minecraft.capture.stereo.photo_preparation import prepare_stereo_photos
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.registry import Registry

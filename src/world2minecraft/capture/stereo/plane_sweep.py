@@ -10,7 +10,7 @@ each plane, the least cost of everything behind it; the plane with the least sum
 import numpy as np
 
 from world2minecraft.capture.stereo.parameters import StereoParameters
-from world2minecraft.capture.stereo.stereo_photos import StereoPhoto
+from world2minecraft.capture.stereo.photo_preparation import StereoPhoto
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.jit import njit
 

@@ -183,7 +183,7 @@ def check_destination(into: Path | None, rcon: str | None, air: str, new_chunks:
     Raises:
         UsageError: one is wrong, or says nothing of what is asked for.
     """
-    from world2minecraft.editing.world_build import check_air
+    from world2minecraft.editing.build_into_world import check_air
 
     check_air(air)
     if new_chunks and into is None:
@@ -196,7 +196,7 @@ def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
     """Build a world of its own and its other forms under ``out``, and say how to play."""
     from world2minecraft.cli.outcome import print_compile_note, print_play_steps
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.reconstruction.rebuild import rebuild
+    from world2minecraft.reconstruction.build_without_capture import rebuild
 
     print_compile_note()
     with show_progress() as progress:
@@ -207,7 +207,7 @@ def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
 
 def holds_room(source: Path) -> bool:
     """Whether ``source`` is a room, whose floor is known, and not blocks made elsewhere."""
-    from world2minecraft.reconstruction.rebuild import is_block_file
+    from world2minecraft.reconstruction.build_without_capture import is_block_file
 
     return not is_block_file(source)
 
@@ -216,7 +216,7 @@ def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":
     """Return the blocks of a room for a target that is no folder; nothing is written."""
     from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.reconstruction.rebuild import blocks_of
+    from world2minecraft.reconstruction.build_without_capture import blocks_of
 
     print_compile_note()
     with show_progress() as progress:

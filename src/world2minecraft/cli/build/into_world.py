@@ -14,7 +14,7 @@ def check_world(world: Path, air: str) -> None:
         InputError: there is no world. ConflictError: the game has it open.
         UsageError: no such ``air``.
     """
-    from world2minecraft.editing.world_build import check_air
+    from world2minecraft.editing.build_into_world import check_air
     from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     check_air(air)
@@ -47,8 +47,8 @@ def into_world(
         UsageError, InputError: as ``edit.into_world.build_into``.
     """
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
-    from world2minecraft.editing.relocation import place_volume
-    from world2minecraft.editing.world_build import build_into_world
+    from world2minecraft.editing.build_into_world import build_into_world
+    from world2minecraft.editing.volume_relocation import place_volume
     from world2minecraft.minecraft.commands.player_scale import size_pack
 
     ground_y = ROOM_CORNER_BLOCK[1] if is_room else None

@@ -29,7 +29,7 @@ def on_server(
         address: ``HOST`` or ``HOST:PORT`` of its remote console.
         at: where the blocks' smallest x and z, and their ground, come to stand; 0 64 0 for None.
         turns: quarter turns before that.
-        air: which air is built, as ``editing.world_build`` has it.
+        air: which air is built, as ``editing.build_into_world`` has it.
         is_room: whether the volume is a room of ours, whose ground is at the usual height.
         mc_version: the server's game.
 
@@ -41,11 +41,11 @@ def on_server(
     password = password_of_environment()
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
-    from world2minecraft.editing.relocation import place_volume
-    from world2minecraft.editing.world_build import affected_mask
+    from world2minecraft.editing.build_into_world import affected_mask
+    from world2minecraft.editing.volume_relocation import place_volume
     from world2minecraft.minecraft.file_format import Losses
-    from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
     from world2minecraft.minecraft.server.rcon import RconClient
+    from world2minecraft.minecraft.server.server_build import LiveBuilder, plan_build
     from world2minecraft.minecraft.versions import game_version
 
     at = at or ROOM_CORNER_BLOCK
@@ -74,7 +74,7 @@ def check_server(address: str, air: str) -> None:
     Raises:
         UsageError: the address or the environment lacks something, or there is no such ``air``.
     """
-    from world2minecraft.editing.world_build import check_air
+    from world2minecraft.editing.build_into_world import check_air
 
     parse_address(address)
     password_of_environment()

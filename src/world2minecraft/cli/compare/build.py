@@ -52,7 +52,7 @@ def run(
     from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.paper.layouts.importers import How, read_layouts_of
-    from world2minecraft.paper.layouts.world import build_scene
+    from world2minecraft.paper.layouts.layout_to_world import build_scene
     from world2minecraft.reconstruction.parameters import Parameters
 
     option.check_px(px_m)

@@ -62,14 +62,14 @@ def run(
     """
     from world2minecraft.core.errors import UnknownNameError, UsageError
     from world2minecraft.core.files import write_text
-    from world2minecraft.paper.layouts.describing import (
+    from world2minecraft.paper.layouts.importers import read_layouts_of
+    from world2minecraft.paper.layouts.reference_scene import true_scene
+    from world2minecraft.paper.layouts.room_description import (
         METHODS,
         describe_scene,
         for_method,
         layoutgpt_px_m,
     )
-    from world2minecraft.paper.layouts.importers import read_layouts_of
-    from world2minecraft.paper.layouts.reference import true_scene
 
     if method not in METHODS:
         raise UnknownNameError("form", method, METHODS)
@@ -96,6 +96,6 @@ def run(
 
 def describe_photos(capture: Path, count: int, chat: object) -> str:
     """Return what a model says of photos spread over a capture."""
-    from world2minecraft.paper.layouts.describing import capture_photos, describe_photos
+    from world2minecraft.paper.layouts.room_description import capture_photos, describe_photos
 
     return describe_photos(chat, capture_photos(capture, count))  # type: ignore[arg-type]

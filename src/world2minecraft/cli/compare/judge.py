@@ -63,9 +63,9 @@ def run(
         InputError: a world cannot be read. ServerError, BudgetError: the model cannot be asked.
     """
     from world2minecraft.core.files import read_bytes, write_json
-    from world2minecraft.navigation.running.tables import format_text
+    from world2minecraft.navigation.running.result_tables import format_text
     from world2minecraft.paper.layouts.judge import means_of, prompt_sum
-    from world2minecraft.paper.layouts.table import grade_table
+    from world2minecraft.paper.layouts.score_table import grade_table
 
     told = read_bytes(wish, MAX_WISH_BYTES).decode("utf-8", "replace") if wish else ""
     chat = model_options.open(agent, out)

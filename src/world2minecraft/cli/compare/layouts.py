@@ -57,11 +57,16 @@ def run(
     """
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_json
-    from world2minecraft.navigation.running.tables import format_markdown, format_text
+    from world2minecraft.navigation.running.result_tables import format_markdown, format_text
     from world2minecraft.paper.layouts import score_scene, summary_of
     from world2minecraft.paper.layouts.importers import How, read_layouts_of
-    from world2minecraft.paper.layouts.reference import is_truth, true_scene
-    from world2minecraft.paper.layouts.table import NOTES, by_method, layout_table, other_table
+    from world2minecraft.paper.layouts.reference_scene import is_truth, true_scene
+    from world2minecraft.paper.layouts.score_table import (
+        NOTES,
+        by_method,
+        layout_table,
+        other_table,
+    )
 
     option.check_px(px_m)
     known = score_scene(true_scene(truth)) if truth is not None else None

@@ -58,7 +58,7 @@ def run(
         UsageError: the words contradict each other. ConflictError: the folder has another data
         set, or another run works there. InputError: a scene cannot be read, the disk is full.
     """
-    from world2minecraft.minecraftocc.labels.region import RegionRule
+    from world2minecraft.minecraftocc.labels.camera_region import RegionRule
     from world2minecraft.minecraftocc.plan import Recipe, plan_dataset
     from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 

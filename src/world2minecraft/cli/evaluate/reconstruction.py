@@ -47,8 +47,8 @@ def run(
     from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.scoring import evaluate_reconstruction
-    from world2minecraft.evaluation.scoring.foreign_method import evaluate_foreign, foreign_file
-    from world2minecraft.evaluation.scoring.stage_ablation import stage_losses
+    from world2minecraft.evaluation.scoring.other_methods import evaluate_foreign, foreign_file
+    from world2minecraft.evaluation.scoring.stage_losses import stage_losses
 
     foreign = foreign_file(out)
     if foreign is not None and stages:

@@ -9,7 +9,7 @@ from world2minecraft.cli.browser import open_link
 
 if TYPE_CHECKING:
     from world2minecraft.sceneforge.editor import Editor
-    from world2minecraft.sceneforge.server.serve import ForgeServer
+    from world2minecraft.sceneforge.server.server_process import ForgeServer
 
 EXAMPLES = """\
 w2m forge OUT                   a run: its room, objects, photos, blocks
@@ -86,10 +86,10 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.sceneforge.document.identity import document_folder
+    from world2minecraft.sceneforge.document.document_metadata import document_folder
     from world2minecraft.sceneforge.editor import Editor
-    from world2minecraft.sceneforge.server.serve import ForgeServer
-    from world2minecraft.sceneforge.sources import DEMO_OUT
+    from world2minecraft.sceneforge.scene_sources import DEMO_OUT
+    from world2minecraft.sceneforge.server.server_process import ForgeServer
     from world2minecraft.sceneforge.uploads import is_capture, user_home
 
     if walk:

@@ -17,7 +17,7 @@ from world2minecraft.cli.render.output_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render.shots import (
+from world2minecraft.cli.render.shot_selection import (
     Plan,
     View,
     plan_of,

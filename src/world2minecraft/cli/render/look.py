@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.cli.render.shots import Kind, Medium
+    from world2minecraft.cli.render.shot_selection import Kind, Medium
     from world2minecraft.rendering import BlockScene, LightSettings, Picture
     from world2minecraft.rendering.block_elements import ModelSource
     from world2minecraft.rendering.presentation.shot_frames import DrawOptions

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.cli.render.shots import Kind, Medium
+from world2minecraft.cli.render.shot_selection import Kind, Medium
 from world2minecraft.core.errors import OutputError, UsageError
 
 if TYPE_CHECKING:

@@ -101,7 +101,7 @@ def _check_source(
 def _check_figures(given: dict[str, Any]) -> None:
     """Refuse figures out of range before any work is done."""
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.procgen.sensors.shots import ScanSettings
+    from world2minecraft.procgen.sensors.scan_frames import ScanSettings
 
     try:
         ScanSettings(**given)

@@ -138,7 +138,7 @@ def _build(
 
 def _moves(name: str) -> str:
     from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.navigation.values import MOVE_SETS
+    from world2minecraft.navigation.types import MOVE_SETS
 
     if name not in MOVE_SETS:
         raise UnknownNameError("set of moves", name, MOVE_SETS)

@@ -8,7 +8,7 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.values import Item
+    from world2minecraft.navigation.types import Item
 
 EXAMPLES = """\
 w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
@@ -136,7 +136,11 @@ def _baseline(
 
 
 def _print_summary(target: Path, items: "list[Item]", chat: Any) -> None:
-    from world2minecraft.navigation.running.tables import answers_table, format_text, read_result
+    from world2minecraft.navigation.running.result_tables import (
+        answers_table,
+        format_text,
+        read_result,
+    )
 
     print()
     print(format_text(answers_table([read_result(target)])))

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.agents.values import Decision, Observation
+    from world2minecraft.navigation.agents.types import Decision, Observation
     from world2minecraft.navigation.running.episode_runner import EpisodeWalk
-    from world2minecraft.navigation.values import Episode, Move, Stance
+    from world2minecraft.navigation.types import Episode, Move, Stance
 
 VIEW_COLUMNS, VIEW_ROWS = 64, 24
 MAX_ROWS = 8

@@ -10,7 +10,7 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.values import Episode, Stance
+    from world2minecraft.navigation.types import Episode, Stance
 
 EXAMPLES = """\
 w2m vln run OUT "Go to the table"                        the oracle shows the way, no network needed
@@ -160,7 +160,7 @@ class _Simulators:
 
     def _on_server(self, path: str) -> Any:
         from world2minecraft.navigation.server.player import join
-        from world2minecraft.navigation.server.scene import open_server_scene
+        from world2minecraft.navigation.server.streamed_scene import open_server_scene
 
         if not self._bodies:
             self._bodies.append(join(self._server))
@@ -177,7 +177,7 @@ class _Simulators:
         if key not in self._grounds:
             scene = self.scene(episode.scene)
             if self._server:
-                from world2minecraft.navigation.server.scene import ServerSimulator
+                from world2minecraft.navigation.server.streamed_scene import ServerSimulator
 
                 self._grounds[key] = ServerSimulator(scene, episode.move_set)
             else:
@@ -275,7 +275,11 @@ def _place(episode: "Episode", episodes: "list[Episode]") -> str:
 def _print_summary(
     folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
 ) -> None:
-    from world2minecraft.navigation.running.tables import HEADS_NOTE, format_text, walks_table
+    from world2minecraft.navigation.running.result_tables import (
+        HEADS_NOTE,
+        format_text,
+        walks_table,
+    )
 
     print()
     print(f"{format_text(walks_table([told]))}\n{HEADS_NOTE}")
@@ -292,7 +296,7 @@ def _stance(text: str) -> "Stance | None":
     from math import isfinite
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.navigation.values import Stance
+    from world2minecraft.navigation.types import Stance
 
     if not text:
         return None

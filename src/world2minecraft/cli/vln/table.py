@@ -23,7 +23,7 @@ def run(runs: Runs, markdown: Markdown = False) -> None:
     Raises:
         InputError: a run has no result.
     """
-    from world2minecraft.navigation.running.tables import (
+    from world2minecraft.navigation.running.result_tables import (
         HEADS_NOTE,
         answers_table,
         format_markdown,

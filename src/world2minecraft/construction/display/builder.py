@@ -40,7 +40,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Part, Template, template
-from world2minecraft.furniture.solids import OWN_CELLS, own_cells
+from world2minecraft.furniture.solid_parts import OWN_CELLS, own_cells
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.geometry.morphology import dilate_faces
 from world2minecraft.minecraft.entities import VIEW_BLOCKS

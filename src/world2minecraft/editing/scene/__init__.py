@@ -3,8 +3,8 @@
 from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cells
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.command_registry import COMMANDS, parse_command
-from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.history import MemoryLog, SceneHistory, Timeline
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.editing.scene.scene_objects import instances_of, objects_of, placements_of
 
 __all__ = [

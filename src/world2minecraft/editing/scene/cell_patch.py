@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, GridCells, Operation
-from world2minecraft.editing.scene.draft import ARRAYS, SceneDraft
+from world2minecraft.editing.scene.scene_draft import ARRAYS, SceneDraft
 
 
 def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import ObjectInstance, OccupancyGrid, Operation, Placement
-from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 MAX_RUNS = 200_000
 

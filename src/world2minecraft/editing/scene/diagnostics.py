@@ -14,8 +14,8 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
-from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.repair import find_floaters
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.geometry.connected_components import label_components
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,6 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, Placement, SceneObject
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
-from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.object_boxes import (
     OWN_CELLS,
     free_object_id,
@@ -20,6 +19,7 @@ from world2minecraft.editing.scene.object_boxes import (
 )
 from world2minecraft.editing.scene.object_placement import standing_box
 from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 from world2minecraft.furniture import Template, template, template_cells, templates_of_class
 

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation
-from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 
 class Log(Protocol):

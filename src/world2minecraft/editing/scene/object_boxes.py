@@ -9,7 +9,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Placement, SceneObject
-from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
 MAX_OBJECTS = 65535

@@ -10,7 +10,6 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid, Operation, SceneObject
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
-from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.furniture_commands import (
     ObjectClass,
 )
@@ -25,6 +24,7 @@ from world2minecraft.editing.scene.object_transforms import (
     Ids,
     Metre,
 )
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 
 ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.

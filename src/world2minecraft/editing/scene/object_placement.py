@@ -10,9 +10,9 @@ from world2minecraft.core.coordinates import metres_to_cells
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, SceneObject
 from world2minecraft.editing.scene.command import Command, Tools
-from world2minecraft.editing.scene.draft import SceneDraft
 from world2minecraft.editing.scene.object_boxes import describe_object, object_by_id, plan_extent_m
 from world2minecraft.editing.scene.object_transforms import Id, plan_shift
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.furniture import Template, estimate_facing, read_surroundings, size_in_cells
 
 WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)

@@ -14,7 +14,6 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import GridCells, Operation, SceneObject
 from world2minecraft.editing.scene.cell_patch import Patch
 from world2minecraft.editing.scene.command import Command, Tools
-from world2minecraft.editing.scene.draft import ARRAYS, SceneDraft
 from world2minecraft.editing.scene.object_boxes import (
     common_class,
     copy_object,
@@ -28,6 +27,7 @@ from world2minecraft.editing.scene.object_boxes import (
     rotate_object,
     translate_object,
 )
+from world2minecraft.editing.scene.scene_draft import ARRAYS, SceneDraft
 
 Id = Annotated[int, Field(ge=1, le=65535)]
 Ids = Annotated[tuple[Id, ...], Field(min_length=1, max_length=65535)]

@@ -42,8 +42,8 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene.cell_patch import cells_of_runs
 from world2minecraft.editing.scene.command import MAX_RUNS, Tools
-from world2minecraft.editing.scene.draft import SceneDraft
-from world2minecraft.editing.scene.planes import WALL_CLASSES, WALL_M2, Plane, find_planes
+from world2minecraft.editing.scene.plane_detection import WALL_CLASSES, WALL_M2, Plane, find_planes
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 from world2minecraft.editing.scene.voxel_commands import (
     Cell,
     CellCommand,

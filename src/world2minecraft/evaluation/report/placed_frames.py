@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture, validate_capture
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluation.scoring.used_frames import computed
-from world2minecraft.formats.scan import read_poses
+from world2minecraft.formats.scan_record import read_poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,13 +24,13 @@ from world2minecraft.evaluation.report.comparison_pictures import (
     as_png,
     make_pairs,
 )
-from world2minecraft.evaluation.report.figures import built_categories, scene_facts
-from world2minecraft.evaluation.report.scene import read_built, read_finished
+from world2minecraft.evaluation.report.finished_run import read_built, read_finished
+from world2minecraft.evaluation.report.measures import built_categories, scene_facts
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.evaluation.scoring.truth_files import read_truth
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.objects import read_placements
-from world2minecraft.formats.scan import read_registration
+from world2minecraft.formats.objects_and_placements import read_placements
+from world2minecraft.formats.scan_record import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.rendering.preview import plan_view, preview
 

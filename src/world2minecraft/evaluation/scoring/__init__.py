@@ -5,6 +5,6 @@ docs/metrics.md.
 """
 
 from world2minecraft.evaluation.scoring.score import evaluate_reconstruction
-from world2minecraft.evaluation.scoring.truth import Truth, read_truth
+from world2minecraft.evaluation.scoring.truth_files import Truth, read_truth
 
 __all__ = ["Truth", "evaluate_reconstruction", "read_truth"]

@@ -16,10 +16,10 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid
 from world2minecraft.evaluation.metrics.objects import ObjectCounts, count_objects, match_objects
-from world2minecraft.evaluation.scoring.truth import Truth, read_instances
-from world2minecraft.evaluation.scoring.visibility import Reached
+from world2minecraft.evaluation.scoring.observed_cells import Reached
+from world2minecraft.evaluation.scoring.truth_files import Truth, read_instances
 from world2minecraft.formats.layout import read_rooms
-from world2minecraft.formats.objects import read_placements
+from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.furniture.layout_checks import category_integrity, collisions, out_of_rooms
 
 

@@ -26,10 +26,10 @@ from world2minecraft.core.types import (
     Placement,
     View,
 )
+from world2minecraft.evaluation.scoring.observed_cells import PUSH_M, RAYS_WIDE, pinhole
 from world2minecraft.evaluation.scoring.score import TrueRoom, placed
-from world2minecraft.evaluation.scoring.truth import read_instances
-from world2minecraft.evaluation.scoring.visibility import PUSH_M, RAYS_WIDE, pinhole
-from world2minecraft.formats.objects import (
+from world2minecraft.evaluation.scoring.truth_files import read_instances
+from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
     write_objects,

@@ -12,9 +12,9 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import Layout
-from world2minecraft.evaluation.scoring.truth import Truth
+from world2minecraft.evaluation.scoring.truth_files import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame, common_move
-from world2minecraft.formats.scan import read_poses
+from world2minecraft.formats.scan_record import read_poses
 
 STRAIGHT_DEG = 10.0  # A wall of the truth that runs along an axis of the estimated frame.
 

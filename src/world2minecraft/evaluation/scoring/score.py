@@ -17,12 +17,12 @@ from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
 from world2minecraft.evaluation.metrics.calibration import count_calibration
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
-from world2minecraft.evaluation.metrics.surface import (
+from world2minecraft.evaluation.metrics.surface_scores import (
     SurfaceCounts,
     count_surface,
     free_space_recall,
 )
-from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 from world2minecraft.evaluation.scoring.object_scores import (
     TrueObjects,
     in_room,
@@ -31,15 +31,15 @@ from world2minecraft.evaluation.scoring.object_scores import (
     object_facts,
     true_objects,
 )
-from world2minecraft.evaluation.scoring.openings import opening_facts
+from world2minecraft.evaluation.scoring.observed_cells import CROSSED, Reached, reached_cells
+from world2minecraft.evaluation.scoring.opening_scores import opening_facts
 from world2minecraft.evaluation.scoring.pose_errors import frame_error, pose_facts
-from world2minecraft.evaluation.scoring.truth import Truth
+from world2minecraft.evaluation.scoring.truth_files import Truth
 from world2minecraft.evaluation.scoring.used_frames import UsedFrame, truth_of_run, used_frames
-from world2minecraft.evaluation.scoring.visibility import CROSSED, Reached, reached_cells
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.formats.objects import read_objects
+from world2minecraft.formats.objects_and_placements import read_objects
 from world2minecraft.formats.run_arrays import read_room
-from world2minecraft.formats.scene import Scene, read_scene
+from world2minecraft.formats.world_labels import Scene, read_scene
 
 NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
-from world2minecraft.evaluation.scoring.truth import Truth, read_truth
+from world2minecraft.evaluation.scoring.truth_files import Truth, read_truth
 
 COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
 MIN_POSED = 3

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from world2minecraft.furniture.block_plan import Numbers, Plan, panel_properties
 from world2minecraft.furniture.template import BlockSize
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 
 MIN_REST, MAX_REST = 0.04, 0.7  # Of a block: what a front stands in; more is body.
 COARSE = 1.5  # Up to so many blocks a metre a front beyond the body would be in people's way.

@@ -14,7 +14,7 @@ from importlib.resources import files
 from typing import Any
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.nbt import Byte
 
 TABLE_FILE = "data/bedrock_states.json.gz"

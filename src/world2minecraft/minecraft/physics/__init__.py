@@ -5,12 +5,18 @@ collision boxes of blocks, ``BoxWorld`` those of a list. ``find_standing_place``
 finds where to begin.
 """
 
-from world2minecraft.minecraft.physics.body import TICKS_PER_S, Body, Keys, body_box, eye_height
 from world2minecraft.minecraft.physics.collisions import (
     BlockWorld,
     BoxWorld,
     World,
     find_standing_place,
+)
+from world2minecraft.minecraft.physics.player_body import (
+    TICKS_PER_S,
+    Body,
+    Keys,
+    body_box,
+    eye_height,
 )
 from world2minecraft.minecraft.physics.player_motion import step
 

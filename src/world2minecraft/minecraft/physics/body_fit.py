@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.minecraft.physics.body import TOUCH
+from world2minecraft.minecraft.physics.player_body import TOUCH
 from world2minecraft.minecraft.physics.walk_graph import CollisionGrid
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.collision_shapes import boxes_of
-from world2minecraft.minecraft.physics.body import STEP_HEIGHT, TOUCH, WIDTH, body_box
+from world2minecraft.minecraft.physics.player_body import STEP_HEIGHT, TOUCH, WIDTH, body_box
 
 _OTHERS = ((1, 2), (0, 2), (0, 1))
 _TALLEST = 1  # Cells by which a box may reach beyond its own: fences are 1.5 high.

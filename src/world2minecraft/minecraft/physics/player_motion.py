@@ -4,7 +4,13 @@ import math
 
 import numpy as np
 
-from world2minecraft.minecraft.physics.body import (
+from world2minecraft.minecraft.physics.collisions import (
+    World,
+    find_overlaps,
+    sweep_box,
+    sweep_with_step,
+)
+from world2minecraft.minecraft.physics.player_body import (
     AIR_ACCELERATION,
     AIR_INERTIA,
     EDGE_STEP,
@@ -24,12 +30,6 @@ from world2minecraft.minecraft.physics.body import (
     Body,
     Keys,
     body_box,
-)
-from world2minecraft.minecraft.physics.collisions import (
-    World,
-    find_overlaps,
-    sweep_box,
-    sweep_with_step,
 )
 
 _MARGIN = 1.0  # Blocks around what a tick can reach.

@@ -19,8 +19,8 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE
-from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
 from world2minecraft.minecraft.physics.collisions import BlockWorld
+from world2minecraft.minecraft.physics.player_body import HEIGHT, STEP_HEIGHT, TOUCH, WIDTH
 
 _OPENED = ("_door", "_fence_gate")
 _LOCKED = ("minecraft:iron_door",)

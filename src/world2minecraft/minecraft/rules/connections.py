@@ -20,7 +20,7 @@ import numpy as np
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.block_states import complete, parse_state
-from world2minecraft.minecraft.rules.name_patterns import is_among
+from world2minecraft.minecraft.rules.block_traits import is_among
 from world2minecraft.minecraft.rules.supports import (
     DIRECTIONS,
     DOWN,

@@ -25,7 +25,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
-from world2minecraft.minecraft.rules.name_patterns import pattern_of
+from world2minecraft.minecraft.rules.block_traits import pattern_of
 
 SHUT = 0xFFFFFF
 DIMS = 1 << 24

@@ -17,9 +17,9 @@ import numpy as np
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.rules.block_traits import pattern_of
 from world2minecraft.minecraft.rules.connections import StateGrid, update_connections
 from world2minecraft.minecraft.rules.light import block_light, lets_light_through
-from world2minecraft.minecraft.rules.name_patterns import pattern_of
 from world2minecraft.minecraft.rules.supports import (
     DIRECTIONS,
     DOWN,

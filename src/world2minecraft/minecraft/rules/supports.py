@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE, boxes_of, is_full_cube
-from world2minecraft.minecraft.rules.name_patterns import is_among
+from world2minecraft.minecraft.rules.block_traits import is_among
 
 # Directions by number: north (-z), east (+x), south (+z), west (-x), up, down.
 NORTH, EAST, SOUTH, WEST, UP, DOWN = range(6)

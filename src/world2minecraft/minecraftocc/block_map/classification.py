@@ -17,7 +17,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.minecraft.block_states import known_blocks
-from world2minecraft.minecraftocc.block_map.context import Context
+from world2minecraft.minecraftocc.block_map.block_conditions import Context
 from world2minecraft.minecraftocc.block_map.rules import BlockMap, Rule, matches
 from world2minecraft.minecraftocc.types import FineClass
 

@@ -12,7 +12,7 @@ from typing import Any
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UnknownNameError
 from world2minecraft.core.files import load_plain_yaml, read_bytes
-from world2minecraft.minecraftocc.block_map.context import CONDITIONS, MEASURES, NEIGHBOURS
+from world2minecraft.minecraftocc.block_map.block_conditions import CONDITIONS, MEASURES, NEIGHBOURS
 from world2minecraft.minecraftocc.block_map.rules import (
     BlockMap,
     Pattern,

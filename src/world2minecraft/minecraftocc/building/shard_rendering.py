@@ -25,8 +25,8 @@ from world2minecraft.minecraftocc.building.scene_survey import (
     read_facts,
 )
 from world2minecraft.minecraftocc.camera_records import camera_record
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.image_labels import cast_depth, label_image
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
 from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, SceneSpec
 from world2minecraft.minecraftocc.store.folder import read_classes, shard_name

@@ -13,13 +13,13 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
-from world2minecraft.minecraftocc.importers.occscannet import read_frame
-from world2minecraft.minecraftocc.importers.samples import (
+from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedSet,
     checked_labels,
     checked_numbers,
     make_sample,
 )
+from world2minecraft.minecraftocc.importers.occscannet import read_frame
 from world2minecraft.minecraftocc.types import DEFAULT_VOXEL_M, OccSample
 
 _FRAME = re.compile(r"([\w-]{1,100})_(\d{1,9})_new", re.ASCII)

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 from world2minecraft.core.errors import InputError, UnknownNameError
 from world2minecraft.minecraftocc.importers.embodied import is_embodied, open_embodied
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.minecraftocc.importers.npz import is_npz, open_npz
 from world2minecraft.minecraftocc.importers.nyu import is_nyu, open_nyu
 from world2minecraft.minecraftocc.importers.occscannet import is_occscannet, open_occscannet
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
 
 
 class FormatReader(NamedTuple):

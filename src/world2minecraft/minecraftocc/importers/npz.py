@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import npz_array_names, read_npz
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 
 SPLITS = {"train": "train", "test": "test", "val": "val", "all": ""}

@@ -13,7 +13,7 @@ from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.minecraftocc.formats.cameras import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
 from world2minecraft.minecraftocc.formats.safe_pickle import read_pickle
 from world2minecraft.minecraftocc.formats.sscnet import downsample_labels, read_bin
-from world2minecraft.minecraftocc.importers.samples import (
+from world2minecraft.minecraftocc.importers.imported_samples import (
     ImportedFrame,
     ImportedSet,
     checked_labels,

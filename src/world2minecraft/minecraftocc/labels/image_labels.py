@@ -20,6 +20,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.labels.camera_region import RegionRule, region_in
 from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, mark_free, max_depth_tiles
 from world2minecraft.minecraftocc.labels.label_kernels import (
     DepthImage,
@@ -28,7 +29,6 @@ from world2minecraft.minecraftocc.labels.label_kernels import (
     mark_in_frustum,
     source_cells,
 )
-from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
 from world2minecraft.minecraftocc.types import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.rendering import BlockScene, render_volume
 
@@ -48,7 +48,7 @@ def label_image(
 
     Args:
         voxels: the scene.
-        region: which cells; see ``minecraftocc.labels.region``.
+        region: which cells; see ``minecraftocc.labels.camera_region``.
         camera: of the image; its distortion is ignored.
         camera_to_room: 4x4, OpenCV axes, metres.
         depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply
-from world2minecraft.minecraftocc.importers.samples import CLASS_KINDS
+from world2minecraft.minecraftocc.importers.imported_samples import CLASS_KINDS
 from world2minecraft.minecraftocc.statistics.types import (
     MIN_PIXELS,
     DatasetStatistics,

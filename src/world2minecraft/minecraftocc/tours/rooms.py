@@ -19,7 +19,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume, Layout
 from world2minecraft.formats.layout import read_layouts
-from world2minecraft.minecraft.physics.body import HEIGHT
+from world2minecraft.minecraft.physics.player_body import HEIGHT
 from world2minecraft.minecraft.physics.shortest_paths import connected_parts, reachable
 from world2minecraft.minecraft.physics.walk_graph import CollisionGrid, WalkGraph
 from world2minecraft.minecraftocc.tours.types import TourRule

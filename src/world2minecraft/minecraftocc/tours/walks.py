@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
+from world2minecraft.minecraft.physics.player_body import HEIGHT, STEP_HEIGHT
 from world2minecraft.minecraft.physics.shortest_paths import (
     clearance_m,
     connected_parts,

@@ -1,7 +1,7 @@
 """Agents: blind baselines, privileged experts that know the scene, and vision-language models."""
 
 from world2minecraft.navigation.agents.registry import AGENTS, REFERENCE_AGENTS, make_agent
-from world2minecraft.navigation.agents.values import Agent, Decision, Guide, Observation, Task
+from world2minecraft.navigation.agents.types import Agent, Decision, Guide, Observation, Task
 from world2minecraft.navigation.agents.vlm_agent import VlmAgent
 
 __all__ = [

@@ -14,7 +14,7 @@ from world2minecraft.external_models.structured_replies import (
     UnreadableError,
     extract_json_object,
 )
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.types import Move
 
 MAX_MOVES = 4
 MAX_THOUGHT_CHARACTERS = 2000  # Characters that are kept.

@@ -8,8 +8,8 @@ import random
 from itertools import product
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.agents.values import Decision, Guide, Observation, Task
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.agents.types import Decision, Guide, Observation, Task
+from world2minecraft.navigation.types import Move
 
 # How often each move comes in VLN-CE's training split; its random agent draws by these.
 MOVE_SHARES = {Move.STOP: 0.02, Move.FORWARD: 0.68, Move.LEFT: 0.15, Move.RIGHT: 0.15}

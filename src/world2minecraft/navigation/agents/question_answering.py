@@ -30,8 +30,8 @@ from world2minecraft.external_models.structured_replies import (
     extract_json_object,
 )
 from world2minecraft.navigation.agents.vlm_agent import describe_try
-from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.item_prompts import LETTER_ALONE, question_of
+from world2minecraft.navigation.types import Item
 
 STYLES = ("letter", "think", "json")
 THINK = (

@@ -8,7 +8,7 @@ from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import MAX_PX
 from world2minecraft.external_models.chat_transport import ENDPOINTS, is_endpoint
 from world2minecraft.navigation.agents.action_format import MAX_MOVES
-from world2minecraft.navigation.agents.values import Agent
+from world2minecraft.navigation.agents.types import Agent
 from world2minecraft.navigation.agents.vlm_agent import HISTORY, VlmAgent
 from world2minecraft.navigation.agents.vlm_prompts import MAPS, MapKind
 

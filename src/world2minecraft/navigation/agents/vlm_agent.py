@@ -20,7 +20,7 @@ from world2minecraft.external_models.chat_messages import MAX_PX, Picture, check
 from world2minecraft.external_models.chat_transport import BusyServerError, RefusedQuestionError
 from world2minecraft.external_models.structured_replies import Attempt, ask_structured
 from world2minecraft.navigation.agents.action_format import MAX_MOVES, step_form
-from world2minecraft.navigation.agents.values import Decision, Observation, Task
+from world2minecraft.navigation.agents.types import Decision, Observation, Task
 from world2minecraft.navigation.agents.vlm_prompts import (
     MAPS,
     MapKind,
@@ -28,7 +28,7 @@ from world2minecraft.navigation.agents.vlm_prompts import (
     step_turn,
     system_turn,
 )
-from world2minecraft.navigation.values import Move, Stance
+from world2minecraft.navigation.types import Move, Stance
 
 MAX_PLACES = 12  # Of a map in words; those between are left out evenly.
 MIN_SPACING_M = 0.5  # Places nearer to the last one are the same place.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from world2minecraft.external_models.chat_messages import Picture, Turn
-from world2minecraft.navigation.agents.values import Task
-from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.agents.types import Task
+from world2minecraft.navigation.types import Move
 
 MapKind = Literal["none", "text", "plan"]
 MAPS: tuple[MapKind, ...] = get_args(MapKind)

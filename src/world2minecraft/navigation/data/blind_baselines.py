@@ -16,7 +16,7 @@ from PIL import Image
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.navigation.data.tasks import GRADES
 from world2minecraft.navigation.scores import Rate, rate
-from world2minecraft.navigation.values import TASKS, Item
+from world2minecraft.navigation.types import TASKS, Item
 
 FLAG_POINTS = 0.10
 SMALL_PX = (32, 18)  # Pictures are compared so small.

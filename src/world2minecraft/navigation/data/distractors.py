@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.navigation.data.keyframes import MAX_FORWARD_M, KeyframeMark
-from world2minecraft.navigation.data.pictures import (
+from world2minecraft.navigation.data.picture_store import (
     EncodedPicture,
     PictureStore,
     StoredPicture,
@@ -27,7 +27,7 @@ from world2minecraft.navigation.data.pictures import (
     is_near_duplicate,
     picture_difference,
 )
-from world2minecraft.navigation.values import Move, Stance
+from world2minecraft.navigation.types import Move, Stance
 from world2minecraft.navigation.walk_discretization import StepFunction
 from world2minecraft.navigation.walk_stream import wrap_deg
 

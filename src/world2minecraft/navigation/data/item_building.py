@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.navigation.data.pictures import StoredPicture
+from world2minecraft.navigation.data.picture_store import StoredPicture
 from world2minecraft.navigation.data.scene_items import WALK_VERSION, SceneItems
 from world2minecraft.navigation.data.tasks import ViewQuestion, action_item, view_item
-from world2minecraft.navigation.values import LETTERS, Item, Trajectory
+from world2minecraft.navigation.types import LETTERS, Item, Trajectory
 
 # Of the paper's table of instruction lengths; its table of sizes has the two rows swapped.
 PAPER_SIZE: Mapping[tuple[str, str], int] = {

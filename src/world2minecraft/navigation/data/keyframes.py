@@ -11,8 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.navigation.data.pictures import hash_distance
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.data.picture_store import hash_distance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 from world2minecraft.navigation.walk_discretization import DiscreteWalk
 
 ACTIONS = {

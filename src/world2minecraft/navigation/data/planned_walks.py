@@ -14,7 +14,7 @@ from world2minecraft.minecraft.physics.shortest_paths import clearance_m, shorte
 from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.language.landmark_names import unambiguous_landmarks
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, wrap_deg
 
 EVERY_S = 0.2

@@ -19,7 +19,7 @@ from world2minecraft.navigation.language.human_instructions import (
     read_annotations,
     with_annotations,
 )
-from world2minecraft.navigation.language.parsing import parse_instruction
+from world2minecraft.navigation.language.instruction_parsing import parse_instruction
 from world2minecraft.navigation.language.rewriting import Ask, Rewriting, rewrite
 from world2minecraft.navigation.records import (
     ABOUT,
@@ -33,7 +33,7 @@ from world2minecraft.navigation.records import (
     write_items,
     write_trajectories,
 )
-from world2minecraft.navigation.values import Episode, Instruction, Item, Trajectory
+from world2minecraft.navigation.types import Episode, Instruction, Item, Trajectory
 
 ORDER = ("human", "llm", "template")  # Whose words are asked by, where there are any.
 NO_REPLY, NO_BUDGET = "no reply", "no budget left"

@@ -11,7 +11,7 @@ import numpy as np
 from world2minecraft.core.types import Camera
 from world2minecraft.navigation.data.distractors import DistractorSampler, RankBalancer
 from world2minecraft.navigation.data.keyframes import picture_fault
-from world2minecraft.navigation.data.pictures import (
+from world2minecraft.navigation.data.picture_store import (
     EncodedPicture,
     PictureStore,
     StoredPicture,
@@ -28,11 +28,11 @@ from world2minecraft.navigation.data.tasks import (
     view_question,
     view_steps,
 )
-from world2minecraft.navigation.data.trajectories import Candidate, TrajectoryBuilder
+from world2minecraft.navigation.data.trajectory_builder import Candidate, TrajectoryBuilder
 from world2minecraft.navigation.moves import apply_move
 from world2minecraft.navigation.oracle import ORACLE_VERSION, plan_expert_path
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import (
+from world2minecraft.navigation.types import (
     LEVELS,
     MOVE_SETS,
     Episode,

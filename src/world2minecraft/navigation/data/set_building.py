@@ -56,7 +56,7 @@ from world2minecraft.navigation.records import (
     write_trajectories,
 )
 from world2minecraft.navigation.scene import open_scene
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.types import Item
 
 WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
 RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.

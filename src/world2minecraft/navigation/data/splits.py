@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.values import Item, Trajectory
+from world2minecraft.navigation.types import Item, Trajectory
 
 UNSEEN_SHARE = 0.2  # Of the scenes of each composition: the paper's test share of items is 0.21.
 SEEN_SHARE = 0.1  # Of the tours of the other scenes.

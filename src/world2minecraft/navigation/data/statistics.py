@@ -19,7 +19,7 @@ from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.navigation.data.blind_baselines import BaselineRow
 from world2minecraft.navigation.data.splits import Leaks
-from world2minecraft.navigation.values import SPLITS, TASKS, Item
+from world2minecraft.navigation.types import SPLITS, TASKS, Item
 
 # Of the paper's table "Statistical Summary of Instruction Lengths", in characters.
 PAPER_LENGTHS = {

@@ -33,14 +33,14 @@ from world2minecraft.navigation.data.distractors import (
     is_valid_choice,
 )
 from world2minecraft.navigation.data.keyframes import ACTIONS, KeyframeMark
-from world2minecraft.navigation.data.pictures import (
+from world2minecraft.navigation.data.picture_store import (
     PictureStore,
     StoredPicture,
     has_detail,
     picture_difference,
     show_different_views,
 )
-from world2minecraft.navigation.values import LETTERS, Instruction, Item, Move, Option, Trajectory
+from world2minecraft.navigation.types import LETTERS, Instruction, Item, Move, Option, Trajectory
 
 HISTORY = 3  # Pictures that are shown; the last is the current one.
 # What is taken for a question, and what serves where nothing is; of a grade.

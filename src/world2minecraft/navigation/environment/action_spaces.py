@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, step
 from world2minecraft.navigation.moves import apply_move, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 
 KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
 MAX_RUN = 12  # Moves of one run: 3 m of steps, or half a turn.

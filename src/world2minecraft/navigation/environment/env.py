@@ -20,7 +20,7 @@ from world2minecraft.navigation.environment.observations import DEFAULT_SENSORS,
 from world2minecraft.navigation.episodes import score_walk
 from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.scene import VlnScene, open_scene
-from world2minecraft.navigation.values import Episode, MoveSet, Stance, check_reachable
+from world2minecraft.navigation.types import Episode, MoveSet, Stance, check_reachable
 
 ACTIONS = ("discrete", "continuous")
 DEFAULT_MAX_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.

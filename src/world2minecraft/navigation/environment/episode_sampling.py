@@ -11,7 +11,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.episodes import Target, random_episode, target_of, targets_of
 from world2minecraft.navigation.records import read_episodes
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import Episode
+from world2minecraft.navigation.types import Episode
 
 OPTIONS = ("episode", "goal")
 

@@ -11,7 +11,7 @@ from gymnasium import spaces
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene, camera_of
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.shading_parameters import DAY
 

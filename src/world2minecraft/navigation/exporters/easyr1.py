@@ -38,8 +38,8 @@ from world2minecraft.navigation.exporters.training_costs import (
     grpo_plan,
     row_tokens,
 )
-from world2minecraft.navigation.prompts import question_of
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.item_prompts import question_of
+from world2minecraft.navigation.types import Item
 
 PROMPT_TOKENS, RESPONSE_TOKENS = 4096, 1024  # The paper's.
 GPUS = 8  # The paper's node.

@@ -36,8 +36,8 @@ from world2minecraft.navigation.exporters.training_costs import (
     row_tokens,
     sft_steps,
 )
-from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.item_prompts import LETTER_ALONE, question_of
+from world2minecraft.navigation.types import Item
 
 CUTOFF = 8192  # The paper's.
 COLUMNS = {"messages": "messages", "images": "images"}

@@ -14,7 +14,7 @@ import jinja2
 
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError, UsageError
 from world2minecraft.core.files import read_bytes, read_json
-from world2minecraft.navigation.prompts import IMAGE
+from world2minecraft.navigation.item_prompts import IMAGE
 from world2minecraft.navigation.records import check_image_name
 
 MAX_BYTES = 1 << 30

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.navigation.values import SPLITS, TASKS, Item
+from world2minecraft.navigation.types import SPLITS, TASKS, Item
 
 COMPOSITIONS = ("base", "extend", "combined")
 IMAGE_STYLES = ("paths", "embedded")

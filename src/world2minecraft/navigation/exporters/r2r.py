@@ -21,7 +21,7 @@ import numpy as np
 
 from world2minecraft.core.files import write_json
 from world2minecraft.navigation.exporters.options import ExportedFile
-from world2minecraft.navigation.values import SPLITS, Keyframe, Trajectory
+from world2minecraft.navigation.types import SPLITS, Keyframe, Trajectory
 
 EYE_M = 1.5  # What R2R says is the height of a camera; its evaluation does not read it.
 _Place = tuple[float, float, float]

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.exporters.pictures import SetPictures
-from world2minecraft.navigation.prompts import IMAGE, Question
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.item_prompts import IMAGE, Question
+from world2minecraft.navigation.types import Item
 
 # Of the paper's tables.
 SFT_EPOCHS, SFT_BATCH, SFT_ACCUMULATED = 5, 1, 2

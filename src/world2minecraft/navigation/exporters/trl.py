@@ -36,8 +36,8 @@ from world2minecraft.navigation.exporters.training_costs import (
     SFT_EPOCHS,
     sft_steps,
 )
-from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
-from world2minecraft.navigation.values import Item
+from world2minecraft.navigation.item_prompts import LETTER_ALONE, question_of
+from world2minecraft.navigation.types import Item
 
 
 def write_trl(

@@ -25,7 +25,7 @@ from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.navigation.exporters.options import ExportedFile
 from world2minecraft.navigation.records import resolve_scene_path
-from world2minecraft.navigation.values import SPLITS, Episode, Move, Stance
+from world2minecraft.navigation.types import SPLITS, Episode, Move, Stance
 
 SCENE_FILE = "scene.json"
 PAD, UNKNOWN = "<pad>", "<unk>"

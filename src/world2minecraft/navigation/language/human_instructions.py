@@ -13,8 +13,8 @@ from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.files import parse_json_lines, read_bytes
-from world2minecraft.navigation.prompts import find_reserved_token
-from world2minecraft.navigation.values import LEVELS, Instruction, Trajectory
+from world2minecraft.navigation.item_prompts import find_reserved_token
+from world2minecraft.navigation.types import LEVELS, Instruction, Trajectory
 
 MAX_BYTES = 64 << 20
 MAX_TEXT = 4_000  # Characters; the paper's longest instruction has 334.

@@ -8,9 +8,9 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
-from world2minecraft.navigation.language.parsing import parse_instruction
-from world2minecraft.navigation.prompts import find_reserved_token
-from world2minecraft.navigation.values import Instruction
+from world2minecraft.navigation.item_prompts import find_reserved_token
+from world2minecraft.navigation.language.instruction_parsing import parse_instruction
+from world2minecraft.navigation.types import Instruction
 
 Ask = Callable[[str], str]
 """A language model: the prompt in, its reply out."""

@@ -15,7 +15,7 @@ from world2minecraft.navigation.running.item_evaluation import RESULT_FILE
 from world2minecraft.navigation.running.simulator import Simulator
 from world2minecraft.navigation.running.trace import score_json
 from world2minecraft.navigation.scores import summarise
-from world2minecraft.navigation.values import Episode, check_reachable
+from world2minecraft.navigation.types import Episode, check_reachable
 
 Observers = Callable[[Episode, Simulator], Sequence[Observer]]
 

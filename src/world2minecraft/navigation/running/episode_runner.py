@@ -11,10 +11,10 @@ from typing import Protocol
 
 import numpy as np
 
-from world2minecraft.navigation.agents.values import Agent, Decision, Observation, Task
+from world2minecraft.navigation.agents.types import Agent, Decision, Observation, Task
 from world2minecraft.navigation.running.simulator import Simulator, SimulatorGuide
 from world2minecraft.navigation.scores import EpisodeScore, WalkedPath, score_episode
-from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
+from world2minecraft.navigation.types import Episode, Move, Stance, check_reachable
 
 MAX_SILENT_DECISIONS = 3  # Decisions without moves in a row that end a walk.
 ENDS = ("stopped", "out of steps", "gave up")

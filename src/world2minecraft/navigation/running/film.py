@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.navigation.agents.values import Decision, Observation
+from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk
 from world2minecraft.navigation.running.floor_map import SIDE_PX, PlanMap
 from world2minecraft.navigation.running.simulator import Simulator
-from world2minecraft.navigation.values import Episode, Move, Stance
+from world2minecraft.navigation.types import Episode, Move, Stance
 from world2minecraft.rendering.output.animation import FrameWriter, animation_writer
 
 FILM_FILE = "walk.mp4"

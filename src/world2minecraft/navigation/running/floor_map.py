@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.types import Stance
 from world2minecraft.rendering.cutaway import split_storeys
 from world2minecraft.rendering.preview import plan_view
 

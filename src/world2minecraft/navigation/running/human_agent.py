@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.navigation.agents.values import Decision, Observation, Task
+from world2minecraft.navigation.agents.types import Decision, Observation, Task
 from world2minecraft.navigation.browser_window import PATIENCE_S, Window, wait_for_move
-from world2minecraft.navigation.values import Episode, Move, Stance
+from world2minecraft.navigation.types import Episode, Move, Stance
 
 if TYPE_CHECKING:
     from world2minecraft.navigation.running.episode_runner import EpisodeWalk

@@ -18,7 +18,7 @@ from world2minecraft.core.files import write_json, write_text
 from world2minecraft.core.progress import Progress
 from world2minecraft.navigation.agents.question_answering import Answer
 from world2minecraft.navigation.scores import rate
-from world2minecraft.navigation.values import SPLITS, TASKS, Item
+from world2minecraft.navigation.types import SPLITS, TASKS, Item
 
 COMPOSITIONS = ("base", "extend", "combined")
 ANSWERS_FILE, RESULT_FILE = "answers.jsonl", "result.json"

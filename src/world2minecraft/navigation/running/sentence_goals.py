@@ -12,7 +12,7 @@ from world2minecraft.navigation.episodes import target_of
 from world2minecraft.navigation.landmarks import Landmark
 from world2minecraft.navigation.moves import wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
-from world2minecraft.navigation.values import Episode, Instruction, Stance
+from world2minecraft.navigation.types import Episode, Instruction, Stance
 
 MAX_INSTRUCTION = 4000
 YAW_STEP_DEG = 15.0  # A turn of most sets of moves.

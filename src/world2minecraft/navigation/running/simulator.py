@@ -11,7 +11,7 @@ from world2minecraft.navigation.moves import apply_move, forward_blocks, get_mov
 from world2minecraft.navigation.oracle import plan_expert_path
 from world2minecraft.navigation.running.floor_map import PlanMap, floor_plans
 from world2minecraft.navigation.scene import VlnScene, camera_of
-from world2minecraft.navigation.values import Episode, Move, MoveSet, Stance
+from world2minecraft.navigation.types import Episode, Move, MoveSet, Stance
 
 VIEW_PX = (640, 480)
 VIEW_FOV_DEG = 79.0  # Horizontal: RxR's camera, of this size too.

@@ -15,11 +15,11 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, OutputError
 from world2minecraft.core.files import parse_json_lines, read_bytes, write_bytes
-from world2minecraft.navigation.agents.values import Decision, Observation
+from world2minecraft.navigation.agents.types import Decision, Observation
 from world2minecraft.navigation.agents.vlm_agent import encode_jpeg
 from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 from world2minecraft.navigation.running.episode_runner import EpisodeWalk
-from world2minecraft.navigation.values import Episode, Move, Stance
+from world2minecraft.navigation.types import Episode, Move, Stance
 
 TRACE_FILE, VIEWS_FOLDER = "trace.jsonl", "views"
 MAX_TRACE_BYTES = 256 << 20

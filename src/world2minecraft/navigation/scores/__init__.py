@@ -4,7 +4,6 @@
 compares two paths, ``confidence`` says how sure a rate is and whether two agents differ.
 """
 
-from world2minecraft.navigation.scores.confidence import Rate, paired_p, rate
 from world2minecraft.navigation.scores.navigation import (
     RADII_M,
     EpisodeScore,
@@ -13,6 +12,7 @@ from world2minecraft.navigation.scores.navigation import (
     summarise,
 )
 from world2minecraft.navigation.scores.path_similarity import cls, dtw_m, ndtw, path_length_m
+from world2minecraft.navigation.scores.significance import Rate, paired_p, rate
 
 __all__ = [
     "RADII_M",

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.navigation.scores.confidence import rate
 from world2minecraft.navigation.scores.path_similarity import cls, ndtw, path_length_m
+from world2minecraft.navigation.scores.significance import rate
 
 RADII_M = (0.5, 1.0, 2.0, 3.0)
 USUAL_M = 3.0  # The radius of OSR, SPL and SDTW in the papers.

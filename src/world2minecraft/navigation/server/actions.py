@@ -11,7 +11,7 @@ from world2minecraft.navigation.environment.action_spaces import ContinuousActio
 from world2minecraft.navigation.moves import forward_blocks, heading_vector, wrap_yaw
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.server.player import ServerPlayer
-from world2minecraft.navigation.values import Move, MoveSet, Stance
+from world2minecraft.navigation.types import Move, MoveSet, Stance
 
 MAX_SNEAKING_TICKS = 9  # Ticks: with as many, most lengths are met to a hundredth.
 MAX_BLOCKS = 16.0

@@ -7,10 +7,10 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.action_spaces import ActionController
 from world2minecraft.navigation.environment.env import VlnEnv
 from world2minecraft.navigation.server.actions import ServerContinuousActions, ServerDiscreteActions
-from world2minecraft.navigation.server.blocks import Box
 from world2minecraft.navigation.server.player import DEFAULT_NAME, ServerPlayer, join
-from world2minecraft.navigation.server.scene import open_server_scene
-from world2minecraft.navigation.values import MoveSet
+from world2minecraft.navigation.server.streamed_blocks import Box
+from world2minecraft.navigation.server.streamed_scene import open_server_scene
+from world2minecraft.navigation.types import MoveSet
 
 
 class ServerEnv(VlnEnv):

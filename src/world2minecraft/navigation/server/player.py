@@ -22,13 +22,13 @@ from typing import IO, Any, NamedTuple, NoReturn
 from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics import TICKS_PER_S, Body, Keys
-from world2minecraft.navigation.server.blocks import (
+from world2minecraft.navigation.server.mineflayer_install import body_folder, node, script
+from world2minecraft.navigation.server.streamed_blocks import (
     checked_box,
     data_version_of,
     read_blocks,
     state_of,
 )
-from world2minecraft.navigation.server.mineflayer_install import body_folder, node, script
 
 MAX_LINE = 8 << 20  # Bytes: the blocks of a chunk column take up to 1 MB.
 MAX_WAITING = 16  # Lines that nobody asked for.

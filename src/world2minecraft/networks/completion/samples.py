@@ -19,7 +19,7 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import npz_array_names, read_npz, write_npz
 from world2minecraft.core.types import Camera, FusedEvidence
-from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth_resampling import carry_truth
 from world2minecraft.networks.completion.sensor_noise import ScanNoise, draw_noise
 from world2minecraft.networks.completion.virtual_views import (
     TOUR_VIEWS,
@@ -30,12 +30,12 @@ from world2minecraft.networks.completion.virtual_views import (
 )
 from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.photo import prepare_photos
+from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
 from world2minecraft.reconstruction.fusion import CleanParameters, extract_grid, remove_floaters
-from world2minecraft.reconstruction.semantics.completion import hint_of
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
-from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+from world2minecraft.reconstruction.semantics.completion_labeller import hint_of
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
 
 FIRST_SEED = 10_000
 HOUSE_SHARE = 0.06  # A house takes four times a room's time.

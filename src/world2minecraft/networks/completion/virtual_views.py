@@ -19,8 +19,8 @@ from world2minecraft.networks.completion.sensor_noise import (
 )
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import jitter_pose, scale_factor, sense_depth
-from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
-from world2minecraft.procgen.sensors.shots import LUMINANCE
+from world2minecraft.procgen.sensors.photo_rendering import PhotoScene, take_photo
+from world2minecraft.procgen.sensors.scan_frames import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 

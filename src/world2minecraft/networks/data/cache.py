@@ -19,7 +19,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, no_progress
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.data.frames import Frame, FrameRule, make_frame
 
 VERSION = 1  # Of what lies in the folder.

@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.minecraftocc.importers import open_occupancy
-from world2minecraft.minecraftocc.importers.samples import ImportedSet
+from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.config import RunConfig
 from world2minecraft.networks.data.batches import TrainingSet
 from world2minecraft.networks.data.cache import Frames, StreamedFrames, open_cached_frames

@@ -5,7 +5,7 @@
 there. ``building`` makes Minecraft worlds of them, ``judge`` asks a model how they look.
 """
 
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
 from world2minecraft.paper.layouts.scores import Margins, SceneScores, score_scene, summary_of
-from world2minecraft.paper.layouts.values import ComparedScene
 
 __all__ = ["ComparedScene", "Margins", "SceneScores", "score_scene", "summary_of"]

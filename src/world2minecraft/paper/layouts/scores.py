@@ -36,8 +36,8 @@ from world2minecraft.furniture.layout_checks import (
     plan_corners_m,
 )
 from world2minecraft.navigation.scores import rate
-from world2minecraft.paper.layouts.designs import design_of
-from world2minecraft.paper.layouts.values import ComparedScene
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.design_lookup import design_of
 from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.

@@ -13,7 +13,7 @@ from world2minecraft.procgen.houses.plan import (
     plan_house,
     stairwell,
 )
-from world2minecraft.procgen.houses.rooms import furnish_cells
+from world2minecraft.procgen.houses.room_furnishing import furnish_cells
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style, choose_style
 from world2minecraft.procgen.rooms.floor_shapes import dilate_mask
 from world2minecraft.procgen.rooms.furniture_model import shade

@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms import decor
-from world2minecraft.procgen.rooms.children_and_hall import BRIGHT_COLOURS, bright_colour
+from world2minecraft.procgen.rooms.children_and_hall_furniture import BRIGHT_COLOURS, bright_colour
 from world2minecraft.procgen.rooms.furniture_model import (
     Bar,
     Colour,

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.procgen.rooms import bathroom as washing
-from world2minecraft.procgen.rooms import children_and_hall as playing
-from world2minecraft.procgen.rooms import decor, seating, storage
+from world2minecraft.procgen.rooms import bathroom_fittings as washing
+from world2minecraft.procgen.rooms import children_and_hall_furniture as playing
+from world2minecraft.procgen.rooms import decor
+from world2minecraft.procgen.rooms import seats_beds_tables as seating
+from world2minecraft.procgen.rooms import storage_furniture as storage
 from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
 from world2minecraft.procgen.rooms.furniture_model import Model, round_to_step
 from world2minecraft.procgen.rooms.placement import (

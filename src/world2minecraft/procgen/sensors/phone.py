@@ -21,8 +21,13 @@ from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import Camera, View
 from world2minecraft.procgen.rooms.room import Room
-from world2minecraft.procgen.sensors.photo import TexturedScene, develop, expose, prepare_textured
-from world2minecraft.procgen.sensors.shots import FrameTruth, ScanSettings, Shot, room_to_scan
+from world2minecraft.procgen.sensors.photo_rendering import (
+    TexturedScene,
+    develop,
+    expose,
+    prepare_textured,
+)
+from world2minecraft.procgen.sensors.scan_frames import FrameTruth, ScanSettings, Shot, room_to_scan
 from world2minecraft.procgen.sensors.trajectory import camera_positions_m, plan_walk
 from world2minecraft.procgen.sensors.view_planning import ViewPlanner
 from world2minecraft.rendering.voxel_camera import VoxelScene

@@ -7,7 +7,12 @@ the floor, is not put.
 import numpy as np
 
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom, person_size_blocks
+from world2minecraft.procgen.worlds.house_layout import (
+    BlockGap,
+    BlockHouse,
+    BlockRoom,
+    person_size_blocks,
+)
 
 KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,
 KEPT_PLACES = 0.95  # and of the places where a person fits that one must still come to.

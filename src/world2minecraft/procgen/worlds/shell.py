@@ -5,7 +5,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.house import (
+from world2minecraft.procgen.worlds.house_layout import (
     RAIL,
     BlockGap,
     BlockHouse,

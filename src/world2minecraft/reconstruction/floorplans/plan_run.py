@@ -14,11 +14,11 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Layout, Scan
 from world2minecraft.formats.layout import write_layouts
-from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
 from world2minecraft.formats.run_arrays import write_room
-from world2minecraft.formats.scan import write_scan
+from world2minecraft.formats.scan_record import write_scan
 from world2minecraft.reconstruction.floorplans.plan_grid import PlanCells, rasterize_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     layouts_of,

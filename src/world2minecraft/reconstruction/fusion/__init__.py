@@ -10,17 +10,17 @@ from world2minecraft.reconstruction.fusion.accumulator import (
     FuseParameters,
     fuse_views,
 )
-from world2minecraft.reconstruction.fusion.cleaning import (
-    CleanParameters,
-    close_structure,
-    remove_floaters,
-)
-from world2minecraft.reconstruction.fusion.confidence import (
+from world2minecraft.reconstruction.fusion.confidence_calibration import (
     ConfidenceTable,
     calibrate,
     confidence_table,
 )
 from world2minecraft.reconstruction.fusion.extract_grid import extract_grid
+from world2minecraft.reconstruction.fusion.grid_cleaning import (
+    CleanParameters,
+    close_structure,
+    remove_floaters,
+)
 
 __all__ = [
     "CleanParameters",

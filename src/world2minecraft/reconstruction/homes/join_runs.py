@@ -11,7 +11,7 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.layout import read_rooms, write_layouts
-from world2minecraft.formats.objects import (
+from world2minecraft.formats.objects_and_placements import (
     read_objects,
     read_placements,
     write_objects,
@@ -19,7 +19,7 @@ from world2minecraft.formats.objects import (
 )
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_room, write_room
-from world2minecraft.formats.scan import write_scan
+from world2minecraft.formats.scan_record import write_scan
 from world2minecraft.reconstruction.homes.merged_run import Home, merge_runs
 from world2minecraft.reconstruction.homes.moved_run import Run
 from world2minecraft.reconstruction.homes.room_placement import (

@@ -14,7 +14,11 @@ from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
-from world2minecraft.furniture.facing import Surroundings, estimate_facing, read_surroundings
+from world2minecraft.furniture.front_estimation import (
+    Surroundings,
+    estimate_facing,
+    read_surroundings,
+)
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import (

@@ -19,7 +19,7 @@ PREDICTORS = Registry(
     "predictor",
     {
         "depth": "world2minecraft.reconstruction.occupancy.depth_evidence:DepthPredictor",
-        "mono": "world2minecraft.reconstruction.occupancy.monocular:MonoPredictor",
+        "mono": "world2minecraft.reconstruction.occupancy.monocular_occupancy:MonoPredictor",
     },
 )
 

@@ -28,7 +28,7 @@ from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import View
 from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
 from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_classes, read_table
-from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
+from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
 from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
 
 FOLDER = "semantics"

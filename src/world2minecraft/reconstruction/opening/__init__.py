@@ -6,7 +6,7 @@ pictures without distortion, poses, depth, how far each pixel is to be trusted, 
 is from.
 """
 
-from world2minecraft.reconstruction.opening.preparation import (
+from world2minecraft.reconstruction.opening.open_capture import (
     FOLDER,
     prepare_and_open,
     prepare_capture,

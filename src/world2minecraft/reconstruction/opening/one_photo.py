@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.photo_stream import photos_of_capture
-from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.capture_json import write_plain
 from world2minecraft.capture.readers.single_photo import SOURCE
 from world2minecraft.capture.stereo import DepthModel, load_depth_model
 from world2minecraft.capture.validation import ValidatedCapture

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header
 from world2minecraft.capture.photo_stream import CapturePhotos
+from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError

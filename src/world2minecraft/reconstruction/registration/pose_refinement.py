@@ -27,7 +27,7 @@ from world2minecraft.reconstruction.registration.gauss_newton import (
     surfel_means,
 )
 from world2minecraft.reconstruction.registration.parameters import RegisterParameters
-from world2minecraft.reconstruction.registration.surfels import Surfels, find_surfels
+from world2minecraft.reconstruction.registration.patch_correspondences import Surfels, find_surfels
 
 # The gap that parts two surfaces and the residual beyond which a patch is no look at its surfel
 # narrow from pass to pass: a depth scale that is 10 % off moves a wall at 3 m by 30 cm.

@@ -4,7 +4,7 @@ It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their un
 """
 
 from world2minecraft.reconstruction.retrieval.chosen_template import fit_template, ranked_matches
+from world2minecraft.reconstruction.retrieval.furniture_placement import place_templates
 from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
-from world2minecraft.reconstruction.retrieval.placement import place_templates
 
 __all__ = ["FurnishParameters", "fit_template", "place_templates", "ranked_matches"]

@@ -23,12 +23,13 @@ __all__ = [
     "remove_wall_guesses",
 ]
 
+_FOLDER = "world2minecraft.reconstruction.semantics"
 LABELLERS = Registry(
     "labeller",
     {
-        "geometric": "world2minecraft.reconstruction.semantics.geometric:GeometricLabeller",
-        "votes": "world2minecraft.reconstruction.semantics.votes:VotesLabeller",
-        "completion": "world2minecraft.reconstruction.semantics.completion:CompletionLabeller",
+        "geometric": f"{_FOLDER}.geometric_labeller:GeometricLabeller",
+        "votes": f"{_FOLDER}.votes_labeller:VotesLabeller",
+        "completion": f"{_FOLDER}.completion_labeller:CompletionLabeller",
     },
 )
 

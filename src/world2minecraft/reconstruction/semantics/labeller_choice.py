@@ -1,7 +1,10 @@
 """The labeller that ``auto`` stands for, by what the evidence is made of."""
 
 from world2minecraft.core.types import FusedEvidence
-from world2minecraft.reconstruction.semantics.completion import LEARNT_VOXEL_M, VOXEL_TOLERANCE
+from world2minecraft.reconstruction.semantics.completion_labeller import (
+    LEARNT_VOXEL_M,
+    VOXEL_TOLERANCE,
+)
 
 
 def choose_labeller(evidence: FusedEvidence, from_photos: bool) -> str:

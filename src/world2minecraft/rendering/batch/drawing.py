@@ -19,8 +19,8 @@ from world2minecraft.rendering.batch.arrays import (
     draw_poses,
     kernel_arrays,
 )
-from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.light import LightSettings
+from world2minecraft.rendering.observed_free_space import observed_free_space
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import TILE, band_memory, draw_rows

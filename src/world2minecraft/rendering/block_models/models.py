@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.rules.light import BRIGHTEST, emitted_light
 from world2minecraft.minecraft.visual_shapes import is_luminous, visual_boxes
 from world2minecraft.rendering.block_elements import (

@@ -23,7 +23,7 @@ from importlib.resources import files
 from typing import Any
 
 from world2minecraft.minecraft.block_states import BlockState
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 
 FILES = (
     "cubes.json",

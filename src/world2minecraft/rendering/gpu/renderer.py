@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.free_space import observed_free_space
 from world2minecraft.rendering.gpu.device import (
     GpuError,
     device_errors,
@@ -34,6 +33,7 @@ from world2minecraft.rendering.gpu.uniforms import (
     view_of,
 )
 from world2minecraft.rendering.light import LightSettings
+from world2minecraft.rendering.observed_free_space import observed_free_space
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
 from world2minecraft.rendering.ray_caster.picture_kernel import INSTANCE, SEMANTIC

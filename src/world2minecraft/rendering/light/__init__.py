@@ -23,6 +23,7 @@ lattice, ``shading.corner_lights``, in place of the first and third):
 
 from world2minecraft.rendering.light.exposure import scene_exposure
 from world2minecraft.rendering.light.light_field import LightField, light_field
+from world2minecraft.rendering.light.light_settings import LightSettings
 from world2minecraft.rendering.light.pixel_light import (
     LightCoefficients,
     direction_shade,
@@ -31,7 +32,6 @@ from world2minecraft.rendering.light.pixel_light import (
     light_multipliers,
 )
 from world2minecraft.rendering.light.relight import edit_light
-from world2minecraft.rendering.light.settings import LightSettings
 from world2minecraft.rendering.light.sky import Background, background_light
 from world2minecraft.rendering.light.tone_mapping import Tone, tone_map_pixel
 

@@ -10,8 +10,8 @@ import numpy as np
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.light import SHUT, SOLID, neighbour_steps
 from world2minecraft.rendering.light.light_field import LightField
+from world2minecraft.rendering.light.light_settings import LightSettings
 from world2minecraft.rendering.light.propagation import BRIGHTEST, light_units
-from world2minecraft.rendering.light.settings import LightSettings
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
 # a night.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.rendering.block_elements import Element
-from world2minecraft.rendering.light.settings import NEUTRAL_SHADE
+from world2minecraft.rendering.light.light_settings import NEUTRAL_SHADE
 from world2minecraft.rendering.scene_baking import ElementTable
 from world2minecraft.rendering.scene_tables import FACE_NORMALS, FLAGS, FULL, PANE, UNSHADED
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import inlined
-from world2minecraft.rendering.light.settings import LightSettings
+from world2minecraft.rendering.light.light_settings import LightSettings
 from world2minecraft.rendering.light.sky import (
     DISC,
     DISC_COSINE,

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from world2minecraft.minecraft.block_states import BlockState
-from world2minecraft.minecraft.blocks import block_table
+from world2minecraft.minecraft.block_table import block_table
 from world2minecraft.minecraft.versions import name_in_version, new_names
 from world2minecraft.minecraft.visual_shapes import find_visual_family, visual_boxes
 from world2minecraft.rendering.block_elements import (

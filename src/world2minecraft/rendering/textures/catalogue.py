@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from world2minecraft.rendering.textures import cloth, faces, fittings, ground, plants, stone, wood
+from world2minecraft.rendering.textures import cloth, fittings, ground, plants, stone, wood
 from world2minecraft.rendering.textures import fittings as openings
+from world2minecraft.rendering.textures import furniture_faces as faces
 from world2minecraft.rendering.textures import walls as wall
 from world2minecraft.rendering.textures.generator import Accent, Generator
 from world2minecraft.rendering.textures.recipe import Choice, Number

@@ -11,10 +11,10 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.layout import bevel, box, bricks, rim, stones
+from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.recipe import Recipe
 from world2minecraft.rendering.textures.stencil import draw, paints_of
-from world2minecraft.rendering.textures.surface import Surface
+from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 
 GLINTS = ((7.0, 1.0, 2.5, 5.5), (9.0, 1.0, 3.0, 5.0), (23.0, 1.0, 10.5, 13.5))

@@ -13,10 +13,10 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.layout import stones
+from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.plants import scatter
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.surface import Surface
+from world2minecraft.rendering.textures.tiling_layouts import stones
 
 # Flames: foot, height and half width, in sixteenths.
 FLAMES = ((2.0, 8.0, 2.2), (5.0, 12.5, 2.6), (8.5, 15.5, 3.0), (11.5, 10.5, 2.6), (14.0, 8.5, 2.0))

@@ -13,10 +13,10 @@ from world2minecraft.rendering.textures.canvas import (
     pick,
     smooth,
 )
-from world2minecraft.rendering.textures.layout import stones
+from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.recipe import Recipe
 from world2minecraft.rendering.textures.stencil import draw, paints_of
-from world2minecraft.rendering.textures.surface import Surface
+from world2minecraft.rendering.textures.tiling_layouts import stones
 
 FLOWERS = {
     "poppy": """

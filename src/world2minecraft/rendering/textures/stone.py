@@ -12,9 +12,9 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.layout import bevel, rim, stones
+from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.surface import Surface
+from world2minecraft.rendering.textures.tiling_layouts import bevel, rim, stones
 
 
 def rock(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:

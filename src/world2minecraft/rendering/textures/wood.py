@@ -11,9 +11,9 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.layout import Pieces, bevel, boards, rim
+from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.surface import Surface
+from world2minecraft.rendering.textures.tiling_layouts import Pieces, bevel, boards, rim
 
 
 def fibre(canvas: Canvas, x: np.ndarray, y: np.ndarray, salt: int) -> np.ndarray:

@@ -11,11 +11,11 @@ from starlette.staticfiles import StaticFiles
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.sceneforge.annotation.store import AnnotationStore
-from world2minecraft.sceneforge.server.failures import EXCEPTION_HANDLERS
+from world2minecraft.sceneforge.server.error_messages import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.guard import Guard
 from world2minecraft.sceneforge.server.limits import BodyLimit
-from world2minecraft.sceneforge.server.requests import read_json_object
-from world2minecraft.sceneforge.server.serve import PageServer
+from world2minecraft.sceneforge.server.request_parsing import read_json_object
+from world2minecraft.sceneforge.server.server_process import PageServer
 
 PAGE = Path(__file__).parent / "page"
 MAX_BODY = 64 << 10

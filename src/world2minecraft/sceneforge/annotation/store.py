@@ -11,14 +11,14 @@ from typing import Any
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_text
-from world2minecraft.navigation.language.checking import (
+from world2minecraft.navigation.language.human_instructions import read_annotations
+from world2minecraft.navigation.language.instruction_checking import (
     check_instruction,
     goal_name,
     landmark_names_of,
 )
-from world2minecraft.navigation.language.human_instructions import read_annotations
 from world2minecraft.navigation.records import read_trajectories
-from world2minecraft.navigation.values import Trajectory
+from world2minecraft.navigation.types import Trajectory
 
 ANNOTATIONS = "annotations.jsonl"
 MAX_IMAGE_BYTES = 32 << 20

@@ -25,14 +25,14 @@ from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import SceneHistory
 from world2minecraft.editing.scene.journal import DO, UNDO
 from world2minecraft.sceneforge.document import saving
-from world2minecraft.sceneforge.document.effort_log import EffortLog
-from world2minecraft.sceneforge.document.identity import (
+from world2minecraft.sceneforge.document.document_metadata import (
     document_folder,
     is_document,
     read_identity,
     retire_outdated,
     write_identity,
 )
+from world2minecraft.sceneforge.document.effort_log import EffortLog
 from world2minecraft.sceneforge.document.memory_document import MemoryDocument
 from world2minecraft.sceneforge.document.recovery import (
     JOURNAL_FILE,
@@ -47,7 +47,7 @@ from world2minecraft.sceneforge.document.snapshots import (
     snapshot_paths,
     write_state,
 )
-from world2minecraft.sceneforge.sources import OpenedScene, read_source
+from world2minecraft.sceneforge.scene_sources import OpenedScene, read_source
 
 SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0
 HISTORY_BYTES = 256 << 20  # What undo reaches takes at most so much of the disk, packed.
@@ -95,7 +95,7 @@ class Document(MemoryDocument):
         only, and ``read_only`` says why.
 
         Args:
-            source: what ``sources.py`` reads, or a document's folder; None for the demo room.
+            source: what ``scene_sources.py`` reads, or a document's folder; None for the demo room.
             out: where it is saved, and what its folder lies beside, where not the source.
             clock: gives the time in seconds since 1970.
 

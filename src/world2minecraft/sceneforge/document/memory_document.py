@@ -8,7 +8,7 @@ from world2minecraft.core.types import Operation
 from world2minecraft.editing.scene import MemoryLog, SceneDraft, SceneHistory
 from world2minecraft.sceneforge.document.saving import write_scene_files
 from world2minecraft.sceneforge.document.snapshots import State
-from world2minecraft.sceneforge.sources import OpenedScene
+from world2minecraft.sceneforge.scene_sources import OpenedScene
 
 
 class MemoryDocument:

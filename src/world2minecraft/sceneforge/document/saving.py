@@ -15,7 +15,7 @@ from typing import Any
 from world2minecraft.core.errors import ConflictError, InputError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.editing.scene import instances_of, placements_of
-from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.document.snapshots import State

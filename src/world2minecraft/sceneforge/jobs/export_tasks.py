@@ -15,13 +15,13 @@ from world2minecraft.construction import WORLD_NAME, write_build
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.editing.relocation import place_volume
-from world2minecraft.editing.world_build import affected_mask, build_into_world
+from world2minecraft.editing.build_into_world import affected_mask, build_into_world
+from world2minecraft.editing.volume_relocation import place_volume
 from world2minecraft.formats.volume_formats import format_by_name, read_run_templates, write_volume
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
-from world2minecraft.minecraft.server.building import LiveBuilder, plan_build
 from world2minecraft.minecraft.server.rcon import RconClient, build_note_path, parse_address
+from world2minecraft.minecraft.server.server_build import LiveBuilder, plan_build
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game

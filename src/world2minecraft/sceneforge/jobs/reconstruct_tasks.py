@@ -9,7 +9,7 @@ from typing import Any
 
 from world2minecraft.capture import describe_capture
 from world2minecraft.capture.poster import poster_png
-from world2minecraft.capture.readers.roomplan_only import find_lone_roomplan
+from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
 from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json

@@ -16,11 +16,11 @@ from world2minecraft.sceneforge.queries import QUERIES
 from world2minecraft.sceneforge.server import compare_routes, export_routes, photo_routes
 from world2minecraft.sceneforge.server import start_routes as start
 from world2minecraft.sceneforge.server.build_routes import build_routes
-from world2minecraft.sceneforge.server.failures import EXCEPTION_HANDLERS
+from world2minecraft.sceneforge.server.error_messages import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.guard import Guard
 from world2minecraft.sceneforge.server.limits import BodyLimit
-from world2minecraft.sceneforge.server.requests import read_json_object
-from world2minecraft.sceneforge.server.socket import live
+from world2minecraft.sceneforge.server.request_parsing import read_json_object
+from world2minecraft.sceneforge.server.websocket import live
 from world2minecraft.sceneforge.session import NO_ROOM, Session
 from world2minecraft.sceneforge.workspace import Workspace
 

@@ -26,7 +26,7 @@ from world2minecraft.sceneforge.comparison import (
     read_file_labels,
     read_truth_labels,
 )
-from world2minecraft.sceneforge.server.requests import get_workspace
+from world2minecraft.sceneforge.server.request_parsing import get_workspace
 from world2minecraft.sceneforge.workspace import Comparison, Workspace
 
 

@@ -21,13 +21,13 @@ from starlette.routing import BaseRoute, Route
 
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import UsageError
-from world2minecraft.editing.world_build import check_air
+from world2minecraft.editing.build_into_world import check_air
 from world2minecraft.minecraft.server.rcon import parse_address
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_versions
-from world2minecraft.sceneforge import exports
+from world2minecraft.sceneforge import export_options as exports
 from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
-from world2minecraft.sceneforge.server.requests import get_workspace, read_json_object
+from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.server.start_routes import DEFAULT_SCALE, SCALES, check_choice
 from world2minecraft.sceneforge.workspace import Workspace
 

@@ -14,9 +14,9 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.sceneforge.photos import RunPhotos
-from world2minecraft.sceneforge.server.failures import explain_error
-from world2minecraft.sceneforge.server.requests import get_workspace
+from world2minecraft.sceneforge.run_photos import RunPhotos
+from world2minecraft.sceneforge.server.error_messages import explain_error
+from world2minecraft.sceneforge.server.request_parsing import get_workspace
 
 
 def routes() -> list[BaseRoute]:

@@ -31,12 +31,12 @@ from world2minecraft.capture.scale.known_lengths import LENGTHS_M
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.procgen import BASE_KINDS
-from world2minecraft.sceneforge.document.identity import SUFFIX
+from world2minecraft.sceneforge.document.document_metadata import SUFFIX
 from world2minecraft.sceneforge.jobs.jobs import JobState
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
 from world2minecraft.sceneforge.jobs.time_left import demo_stage_seconds, reconstruct_stage_seconds
-from world2minecraft.sceneforge.server.requests import get_workspace, read_json_object
+from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.uploads import PICTURE, CaptureFolder
 from world2minecraft.sceneforge.workspace import Workspace
 

@@ -21,10 +21,10 @@ from app_writers import (
 from PIL import Image
 
 from world2minecraft.capture import describe_capture, open_scan
+from world2minecraft.capture.format_detection import SOURCES, find_capture
 from world2minecraft.capture.images import read_colour, read_header
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.apps.video_frames import VideoDecoder
-from world2minecraft.capture.sources import SOURCES, find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 

@@ -12,8 +12,8 @@ import pytest
 from app_writers import DEEP, FLIPPED, ROOM_TO_ARKIT, WIDE, millimetres, shots_of
 from PIL import Image
 
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError

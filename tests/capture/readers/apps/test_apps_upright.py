@@ -6,9 +6,9 @@ from app_writers import ROOM_TO_ARKIT, SIDEWAYS, WRITERS, shots_of
 from PIL import Image
 
 from world2minecraft.capture import open_scan
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 

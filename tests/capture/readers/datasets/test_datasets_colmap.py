@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from writing import save, save_text, zipped
 
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError
 

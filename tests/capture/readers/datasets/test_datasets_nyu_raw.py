@@ -6,9 +6,9 @@ from writing import save, zipped
 
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.depth_images import DepthEncoding, read_depth
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.nyu_raw import _depth_to_colour
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.errors import CaptureError
 

@@ -7,8 +7,8 @@ import pytest
 from writing import millimetres, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 
 

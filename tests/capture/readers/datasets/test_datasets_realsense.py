@@ -8,9 +8,9 @@ import pytest
 from writing import quaternion, zipped
 
 from world2minecraft.capture import open_scan
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.realsense import open_bag
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError

@@ -7,7 +7,7 @@ import pytest
 from writing import save, save_text, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 
 CAMERA = {"w": 160, "h": 120, "fx": 130.0, "fy": 130.0, "cx": 79.5, "cy": 59.5, "scale": 6553.5}
 

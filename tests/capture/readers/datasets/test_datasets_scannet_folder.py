@@ -6,7 +6,7 @@ from PIL import Image
 from writing import encoded, millimetres, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.errors import CaptureError
 
 

@@ -11,7 +11,7 @@ from lz4.block import compress
 from writing import save, zipped
 
 from world2minecraft.capture import open_scan
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera
 

@@ -9,7 +9,7 @@ import pytest
 from writing import encoded, millimetres, save, save_text, zipped
 
 from world2minecraft.capture import describe_capture, open_scan
-from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.core.errors import DamagedFileError
 
 COLOURS = {"plain": 0, "png": 1, "jpeg": 2}

@@ -5,9 +5,9 @@ import pytest
 from writing import millimetres, save, save_text, zipped
 
 from world2minecraft.capture import describe_capture, open_scan
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.images import read_raw
 from world2minecraft.capture.options import ScanOptions
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 
 

@@ -6,9 +6,9 @@ from scipy.spatial.transform import Rotation, Slerp
 from writing import quaternion, save, save_text, zipped
 
 from world2minecraft.capture import open_scan
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.datasets.time_sync import interpolate_pose, pair_times
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.capture.validation import validate_capture
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotations import rotation_from_quaternion

@@ -9,9 +9,9 @@ import pytest
 import trimesh
 from mesh_rooms import SIZE_M, room_quads
 
+from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.options import parse_options
 from world2minecraft.capture.readers.meshes.mesh_source import find_mesh_file, load_geometry
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import InputError
 
 MESHES = ("room.glb", "room.stl", "room.ply", "room.usdz", "export/room.obj", "room.zip")

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mesh_rooms import room_quads
 
-from world2minecraft.capture.readers.meshes.attributes import class_of_name
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_name
 from world2minecraft.capture.readers.meshes.mesh_source import load_geometry
-from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import CaptureError
 
 NYU40_OF = {1: 22, 2: 2, 3: 1, 8: 7, 10: 3}

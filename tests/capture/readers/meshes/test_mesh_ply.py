@@ -4,7 +4,7 @@ import mesh_writers as writers
 import numpy as np
 import pytest
 
-from world2minecraft.capture.readers.meshes.attributes import to_uint8_colours
+from world2minecraft.capture.readers.meshes.colours_and_classes import to_uint8_colours
 from world2minecraft.capture.readers.meshes.ply import load_ply, read_ply, triangulate_fans
 from world2minecraft.capture.readers.meshes.voxel_downsampling import MAX_POINTS, VoxelDownsampler
 from world2minecraft.core.errors import DamagedFileError

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import as_floats
+from world2minecraft.capture.source_types import as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import opengl_to_opencv_pose
 from world2minecraft.core.errors import CaptureError

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.apps.app_values import files_by_stem, parse_camera, read_text
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera

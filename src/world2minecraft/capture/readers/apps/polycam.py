@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
     arkit_pose,
@@ -19,6 +18,7 @@ from world2minecraft.capture.readers.apps.app_values import (
     parse_number,
     to_float,
 )
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_json

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, ImagePlace, NamedByFile
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
@@ -28,6 +27,7 @@ from world2minecraft.capture.readers.apps.app_values import (
     parse_numbers,
 )
 from world2minecraft.capture.readers.apps.exr import ExrImage
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import (
     CaptureError,

@@ -9,7 +9,6 @@ of the frames have a picture, ``frame_00000.jpg``: those are taken.
 import re
 from pathlib import Path
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import read_header
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
@@ -18,6 +17,7 @@ from world2minecraft.capture.readers.apps.app_values import (
     parse_numbers,
 )
 from world2minecraft.capture.readers.apps.exr import ExrImage
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_json

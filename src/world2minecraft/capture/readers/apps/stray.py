@@ -11,7 +11,6 @@ import io
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImagePlace, read_header
 from world2minecraft.capture.readers.apps.app_values import (
     ARKIT_UP,
@@ -20,6 +19,7 @@ from world2minecraft.capture.readers.apps.app_values import (
     read_text,
 )
 from world2minecraft.capture.readers.apps.video_frames import VideoFrame, open_video
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera

@@ -14,13 +14,13 @@ from pathlib import PurePosixPath
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.text_tables import (
     check_relative_path,
     read_rows,
     to_floats,
 )
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError

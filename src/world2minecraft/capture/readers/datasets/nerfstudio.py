@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES, read_header
+from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import opengl_to_opencv_pose
 from world2minecraft.core.errors import CaptureError, InputError, LimitError

@@ -11,9 +11,9 @@ import re
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.datasets.intrinsics import VGA, stated_camera
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 

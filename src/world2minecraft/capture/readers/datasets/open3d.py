@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES
 from world2minecraft.capture.readers.datasets.intrinsics import (
     PRIMESENSE,
@@ -23,6 +22,7 @@ from world2minecraft.capture.readers.datasets.text_tables import (
     read_rows,
     to_floats,
 )
+from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_json

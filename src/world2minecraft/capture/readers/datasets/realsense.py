@@ -20,11 +20,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import MAX_PIXELS, ImageHeader, NamedByFrame
 from world2minecraft.capture.readers.datasets.embedded_images import check_archive_member_size
 from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import (

@@ -7,9 +7,8 @@ were recorded; many people make the exported ones smaller. Depth is in millimetr
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import SUFFIXES
-from world2minecraft.capture.poses import read_pose
+from world2minecraft.capture.pose_validation import read_pose
 from world2minecraft.capture.readers.datasets.intrinsics import (
     VGA,
     first_image_size,
@@ -23,6 +22,7 @@ from world2minecraft.capture.readers.datasets.scannet_metadata import (
     up_vector,
 )
 from world2minecraft.capture.readers.datasets.text_tables import read_matrix
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera

@@ -18,7 +18,6 @@ from typing import IO
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImageSource
 from world2minecraft.capture.readers.datasets.embedded_images import (
     EncodedImage,
@@ -32,6 +31,7 @@ from world2minecraft.capture.readers.datasets.scannet_metadata import (
     stated_lens,
     up_vector,
 )
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles, as_floats
 from world2minecraft.capture.images import SUFFIXES, ImageHeader, ImagePlace
 from world2minecraft.capture.readers.apps.video_frames import VideoFrame
 from world2minecraft.capture.readers.datasets.embedded_images import FileSlice, open_seekable
 from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
+from world2minecraft.capture.source_types import Capture, FrameFiles, as_floats
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import read_json

@@ -10,9 +10,9 @@ import re
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import read_header
-from world2minecraft.capture.poses import read_pose
+from world2minecraft.capture.pose_validation import read_pose
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError
 from world2minecraft.core.files import read_bytes

@@ -9,7 +9,6 @@ import re
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import SUFFIXES
 from world2minecraft.capture.readers.datasets.intrinsics import first_image_size, matrix_camera
 from world2minecraft.capture.readers.datasets.text_tables import (
@@ -19,6 +18,7 @@ from world2minecraft.capture.readers.datasets.text_tables import (
     to_floats,
 )
 from world2minecraft.capture.readers.datasets.time_sync import pair_times
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 

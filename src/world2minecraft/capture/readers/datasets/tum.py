@@ -11,7 +11,6 @@ import re
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.readers.datasets.intrinsics import (
     PRIMESENSE,
     VGA,
@@ -25,6 +24,7 @@ from world2minecraft.capture.readers.datasets.text_tables import (
     to_floats,
 )
 from world2minecraft.capture.readers.datasets.time_sync import interpolate_pose, pair_times
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera

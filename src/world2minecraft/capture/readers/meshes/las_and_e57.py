@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.attributes import to_uint8_colours
+from world2minecraft.capture.readers.meshes.colours_and_classes import to_uint8_colours
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import MAX_POINTS, LoadedGeometry
 from world2minecraft.capture.readers.meshes.optional_libraries import import_optional
 from world2minecraft.capture.readers.meshes.voxel_downsampling import VoxelDownsampler

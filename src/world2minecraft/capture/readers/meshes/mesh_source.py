@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.capture.frames import Capture, FrameFiles
 from world2minecraft.capture.images import ImageHeader
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.meshes.cloud_splatting import Surfels, render_surfels
@@ -33,6 +32,7 @@ from world2minecraft.capture.readers.meshes.surface_sampling import sample_surfa
 from world2minecraft.capture.readers.meshes.surfels import estimate_surfels
 from world2minecraft.capture.readers.meshes.text_clouds import load_s3dis
 from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
+from world2minecraft.capture.source_types import Capture, FrameFiles
 from world2minecraft.core.archives import AnyPath, ArchivePath
 from world2minecraft.core.classes import CLASS_COLOURS
 from world2minecraft.core.coordinates import apply, invert_rigid

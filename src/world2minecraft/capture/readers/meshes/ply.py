@@ -13,7 +13,7 @@ from typing import NoReturn
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.capture.readers.meshes.attributes import (
+from world2minecraft.capture.readers.meshes.colours_and_classes import (
     classes_of_label_ids,
     colours_of_columns,
 )

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.attributes import (
+from world2minecraft.capture.readers.meshes.colours_and_classes import (
     class_of_name,
     classes_of_label_ids,
     colours_of_columns,

@@ -8,7 +8,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from world2minecraft.capture.readers.meshes.attributes import class_of_name
+from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_name
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import (
     MAX_FACES,
     MAX_VERTICES,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.capture.readers.meshes.attributes import class_of_name
+from world2minecraft.capture.readers.meshes.colours_and_classes import class_of_name
 from world2minecraft.capture.readers.meshes.las_and_e57 import file_on_disk
 from world2minecraft.capture.readers.meshes.mesh_and_cloud import LoadedGeometry
 from world2minecraft.capture.readers.meshes.mesh_assembly import MeshPart, check_sizes, join_parts

@@ -4,7 +4,7 @@
 truth is partial: what no camera saw through is 255 and not scored (docs/scan-benchmark.md).
 """
 
-from world2minecraft.evaluation.scoring.scannet.truth import (
+from world2minecraft.evaluation.scoring.scannet.scannet_truth import (
     TruthMade,
     scenes_in,
     write_scannet_truth,

@@ -12,8 +12,8 @@ from typing import Any
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.registry import Registry
-from world2minecraft.paper.layouts.importers.reading import READ_ERRORS, why
-from world2minecraft.paper.layouts.values import ComparedScene
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.importers.value_checks import READ_ERRORS, why
 
 MAX_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
 PX_M = 3.5 / 256  # See layoutgpt.py.

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from world2minecraft.core.types import LayoutObject
-from world2minecraft.paper.layouts.importers.reading import (
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.importers.value_checks import (
     MAX_OBJECTS,
     READ_ERRORS,
     Box,
@@ -22,7 +23,6 @@ from world2minecraft.paper.layouts.importers.reading import (
     rectangle,
     why,
 )
-from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts.importers import How

@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from world2minecraft.core.types import LayoutObject
-from world2minecraft.paper.layouts.importers.reading import (
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.importers.value_checks import (
     MAX_OBJECTS,
     MAX_SCENES,
     READ_ERRORS,
@@ -32,7 +33,6 @@ from world2minecraft.paper.layouts.importers.reading import (
     rectangle,
     why,
 )
-from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts.importers import How

@@ -20,7 +20,8 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Layout, LayoutObject
-from world2minecraft.paper.layouts.importers.reading import (
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.importers.value_checks import (
     FARTHEST_M,
     MAX_CORNERS,
     MAX_OBJECTS,
@@ -33,7 +34,6 @@ from world2minecraft.paper.layouts.importers.reading import (
     object_of,
     why,
 )
-from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts.importers import How

@@ -15,11 +15,11 @@ from world2minecraft.core.types import Layout
 from world2minecraft.evaluation.scoring.object_scores import in_room
 from world2minecraft.evaluation.scoring.used_frames import truth_of_run
 from world2minecraft.formats.layout import read_rooms
-from world2minecraft.formats.objects import read_placements
+from world2minecraft.formats.objects_and_placements import read_placements
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.furniture.layout_checks import collisions
-from world2minecraft.paper.layouts.importers.reading import MAX_OBJECTS
-from world2minecraft.paper.layouts.values import ComparedScene
+from world2minecraft.paper.layouts.compared_scene import ComparedScene
+from world2minecraft.paper.layouts.importers.value_checks import MAX_OBJECTS
 
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts.importers import How

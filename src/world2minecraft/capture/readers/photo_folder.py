@@ -1,0 +1,243 @@
+"""Reader of a folder of photos without poses, perhaps with depth.
+
+What is no photo of the room is left out with a reason: screenshots, thumbnails, panoramas,
+copies, edits next to their originals, and what operating systems and phones add.
+"""
+
+import hashlib
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.images import HEIF_SUFFIXES
+from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
+from world2minecraft.capture.poster_marker import is_saved_poster
+from world2minecraft.capture.readers.photo_exif import (
+    PhotoMetadata,
+    UprightPhoto,
+    read_photo_metadata,
+)
+from world2minecraft.capture.source_types import Capture, FrameFiles
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+
+PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".webp", *HEIF_SUFFIXES)
+DEPTH_SUFFIXES = (".png", ".tif", ".tiff", ".npy")
+COLOUR_FOLDERS = ("rgb", "color", "colour", "image", "images", "photos")
+MOVIE_SUFFIXES = (".mov", ".mp4", ".m4v")
+MAX_PHOTOS = 20_000
+MIN_SIDE_PX = 240  # The longer side; less is a thumbnail.
+THUMBNAIL_SHARE = 0.35  # Of the longer side that half of the photos have.
+MAX_ASPECT = 2.4  # Wider is a panorama, which no one lens has taken.
+_SCREENSHOT = re.compile(r"screen[ _-]?shot|bildschirmfoto|capture d.?.cran|screen recording", re.I)
+_NOT_COLOUR = re.compile(r"[._-](depth|mask|labels?|conf(idence)?|normals?|pose)$", re.I)
+_OF_AN_APP = re.compile(r"\.(depth|conf)$|[._-](depth|pose)\.[a-z]+$|^transforms.*\.json$", re.I)
+_EDITED = re.compile(r"(IMG_)E(\d+)")
+
+
+@dataclass(frozen=True)
+class _PhotoFile:
+    path: AnyPath
+    facts: PhotoMetadata | None
+    problem: str = ""
+
+
+class PhotoFolderSource:
+    """Reads a folder, or a zip, of photos."""
+
+    layout = "a folder of photos (.jpg, .png, .heic, .webp), with depth/NAME.png beside rgb/ or not"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether photos lie there, and not beside the files of a scanner app."""
+        if not folder.is_dir() or any(_is_app_file(path.name) for path in folder.iterdir()):
+            return False
+        return bool(_photos(_colour_folder(folder)))
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the photos. Raises CaptureError as ``Source.read`` does."""
+        return self.read_with(folder, ScanOptions())
+
+    def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
+        """List the photos, as many as are wanted."""
+        colour_folder = _colour_folder(folder)
+        paths = _photos(colour_folder)
+        if len(paths) > MAX_PHOTOS:
+            raise CaptureError(
+                folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
+            )
+        accepted, skipped = _select_photos(paths)
+        if len(accepted) < MIN_FRAMES:
+            why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
+            count = f"{len(accepted)} photo" + "s" * (len(accepted) != 1)
+            reason = f"holds {count} that can be used{why}; take 30 or more of the room"
+            raise CaptureError(folder, reason)
+        accepted = evenly_thinned(accepted, options.frames)
+        depths = _depth_files(folder, colour_folder)
+        frames = _frames(accepted, depths)
+        notes = [*_notes(colour_folder, paths), _lens_note(frames)]
+        if depths:
+            paired = sum(frame.depth_path is not None for frame in frames)
+            notes.append(f"{paired} of {len(frames)} photos have depth; no poses are stated")
+        return Capture(
+            folder, "photos", frames, notes=tuple(notes), lens="guess", scale="unknown",
+            skipped=tuple(skipped),
+        )  # fmt: skip
+
+
+def _is_app_file(name: str) -> bool:
+    """Whether a name is of a broken capture of another kind, which must not pass for photos."""
+    return bool(_OF_AN_APP.search(name))
+
+
+def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
+    """Return what sorts IMG_2 before IMG_10."""
+    parts = re.findall(r"[0-9]+|[^0-9]+", name.casefold())
+    return tuple((0, int(part[:18]), part) if part[0].isdigit() else (1, 0, part) for part in parts)
+
+
+def evenly_thinned(found: Sequence, wanted: int | None) -> list:
+    """Return at most ``wanted`` of what was found, evenly spread from the first to the last."""
+    if wanted is None or len(found) <= wanted:
+        return list(found)
+    return [found[n] for n in np.linspace(0, len(found) - 1, wanted).round().astype(int)]
+
+
+def _photos(folder: AnyPath) -> list[AnyPath]:
+    """Return the files of a folder that are named as photos, in the order of their numbers."""
+    found = [
+        path
+        for path in folder.iterdir()
+        if path.suffix.lower() in PHOTO_SUFFIXES
+        and not path.name.startswith((".", "._"))
+        and not _NOT_COLOUR.search(path.stem)
+        and path.is_file()
+        and not is_saved_poster(path)
+    ]
+    return sorted(found, key=lambda path: (natural_key(path.name), path.name))
+
+
+def _colour_folder(folder: AnyPath) -> AnyPath:
+    """Return where the photos lie: there, or in a folder named for them."""
+    if not _photos(folder):
+        for name in COLOUR_FOLDERS:
+            if (folder / name).is_dir() and _photos(folder / name):
+                return folder / name
+    return folder
+
+
+def _select_photos(paths: list[AnyPath]) -> tuple[list[_PhotoFile], list[tuple[str, str]]]:
+    """Return the photos of the room, and the names of the others with reasons."""
+    found = [_inspect(path) for path in paths]
+    sides = [max(item.facts.width_px, item.facts.height_px) for item in found if item.facts]
+    usual = float(np.median(sides)) if sides else 0.0
+    taken = [item.facts.by_camera for item in found if item.facts]
+    by_phone = sum(taken) * 2 > len(taken)
+    accepted: list[_PhotoFile] = []
+    skipped: list[tuple[str, str]] = []
+    seen: dict[str, str] = {}
+    sizes = Counter(path.stat().st_size for path in paths)
+    stems = {path.stem for path in paths}
+    for item in found:
+        reason = _reject_reason(item, usual, by_phone, stems) or _duplicate_reason(
+            item, sizes, seen
+        )
+        if reason:
+            skipped.append((item.path.name, reason))
+        else:
+            accepted.append(item)
+    return accepted, skipped
+
+
+def _inspect(path: AnyPath) -> _PhotoFile:
+    try:
+        return _PhotoFile(path, read_photo_metadata(path))
+    except InputError as error:
+        return _PhotoFile(path, None, error.reason)
+
+
+def _reject_reason(item: _PhotoFile, usual_px: float, by_phone: bool, stems: set[str]) -> str:
+    """Return why something is no photo of the room, or nothing."""
+    if item.facts is None:
+        return item.problem
+    sides = sorted((item.facts.width_px, item.facts.height_px))
+    edited = _EDITED.fullmatch(item.path.stem)
+    if edited and edited[1] + edited[2] in stems:
+        return f"is an edit of {edited[1]}{edited[2]}, which is read"
+    strange = item.path.suffix.lower() == ".png" and by_phone and not item.facts.by_camera
+    if _SCREENSHOT.search(item.path.stem) or strange:
+        return "is a screenshot"
+    if sides[1] < max(MIN_SIDE_PX, THUMBNAIL_SHARE * usual_px):
+        return f"is a thumbnail of {item.facts.width_px}x{item.facts.height_px}"
+    if sides[1] > MAX_ASPECT * sides[0]:
+        return f"is a panorama of {item.facts.width_px}x{item.facts.height_px}"
+    return ""
+
+
+def _duplicate_reason(item: _PhotoFile, sizes: Counter[int], seen: dict[str, str]) -> str:
+    """Return why a photo is there twice, or nothing; ``seen`` remembers those before it."""
+    keys = [f"stem {item.path.stem}"]
+    if sizes[item.path.stat().st_size] > 1:  # Files of different sizes need not be read.
+        keys.append(hashlib.sha256(item.path.read_bytes()).hexdigest())
+    for key in keys:
+        if key in seen:
+            return f"is {seen[key]} again"
+    seen.update(dict.fromkeys(keys, item.path.name))
+    return ""
+
+
+def _depth_files(folder: AnyPath, colour_folder: AnyPath) -> dict[str, AnyPath]:
+    """Return the depth images next to a folder of photos, by the photos' names without suffix."""
+    place = folder / "depth"
+    if colour_folder == folder or not place.is_dir():
+        return {}
+    return {
+        path.stem: path
+        for path in sorted(place.iterdir(), key=lambda path: path.name)
+        if path.suffix.lower() in DEPTH_SUFFIXES and not path.name.startswith(".")
+    }
+
+
+def _frames(accepted: Sequence[_PhotoFile], depths: dict[str, AnyPath]) -> tuple[FrameFiles, ...]:
+    frames, used = [], set()
+    for item in accepted:
+        plain = re.sub(r"[^A-Za-z0-9_.-]+", "_", item.path.stem).lstrip(".-")[:80] or "photo"
+        name, count = plain, 1
+        while name in used:
+            count += 1
+            name = f"{plain}.{count}"
+        used.add(name)
+        camera = item.facts.camera if item.facts else None
+        frames.append(
+            FrameFiles(
+                name,
+                None,
+                UprightPhoto(item.path),
+                camera,
+                depths.get(item.path.stem),
+                time_s=item.facts.time_s if item.facts else None,
+            )
+        )
+    return tuple(frames)
+
+
+def _lens_note(frames: tuple[FrameFiles, ...]) -> str:
+    focals = [frame.colour_camera.fx_px for frame in frames if frame.colour_camera]
+    if not focals:
+        return "the photos say nothing of their lens; it is found with their places"
+    return f"the lens of {len(focals)} of {len(frames)} photos is a first guess from their EXIF"
+
+
+def _notes(folder: AnyPath, photos: list[AnyPath]) -> list[str]:
+    """Return notes on live photos' videos and raw files."""
+    stems = {path.stem for path in photos}
+    names = [path for path in folder.iterdir() if not path.name.startswith(".")]
+    videos = [path for path in names if path.suffix.lower() in MOVIE_SUFFIXES]
+    live = sum(path.stem in stems for path in videos)
+    notes = [f"{live} live-photo videos beside their photos are not read"] if live else []
+    if len(videos) > live:
+        notes.append(f"{len(videos) - live} videos are not read; give one by its own name")
+    raw = sum(path.suffix.lower() in (".dng", ".cr2", ".cr3", ".nef", ".arw") for path in names)
+    return [*notes, f"{raw} raw photos are not read; export them as JPEG"] if raw else notes

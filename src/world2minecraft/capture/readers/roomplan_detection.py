@@ -1,0 +1,27 @@
+"""Detection of captures that are a RoomPlan file without frames."""
+
+from pathlib import Path
+
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.core.archives import AnyPath, is_zip
+from world2minecraft.core.errors import InputError
+from world2minecraft.formats import roomplan
+
+
+def find_lone_roomplan(capture: Path) -> AnyPath | None:
+    """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
+
+    A capture with frames and a plan is a capture; its plan is given by ``--plan``.
+    """
+    try:
+        if capture.suffix.lower() == ".json":
+            return roomplan.find_roomplan(capture)
+        if capture.is_file() and not is_zip(capture):  # A video is not looked through for this.
+            return None
+    except OSError:
+        return None  # ``find_capture`` says why it cannot be read.
+    try:
+        find_capture(capture)
+    except InputError:
+        return roomplan.find_roomplan(capture)
+    return None

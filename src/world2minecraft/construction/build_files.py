@@ -1,0 +1,62 @@
+"""The files of a build: the world, the schematic, the data pack and the scene's labels."""
+
+from pathlib import Path
+
+from world2minecraft.construction.spawn import find_spawn
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.formats.world_labels import scene_from_volume, write_scene
+from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
+from world2minecraft.minecraft.entities import check_displays
+from world2minecraft.minecraft.schematics.sponge import write_schem
+from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
+from world2minecraft.minecraft.worlds.world_writer import write_world
+
+WORLD_NAME = "World2Minecraft room"  # Where nothing says what the room is called.
+
+
+def write_build(
+    folder: str | Path,
+    volume: BlockVolume,
+    *,
+    mc_version: str = DEFAULT_VERSION,
+    name: str = WORLD_NAME,
+) -> None:
+    """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
+
+    The data pack is left out for games before 1.20.
+
+    Args:
+        folder: where to write; made when it is not there.
+        volume: the room.
+        mc_version: the game to write for, such as ``1.20.1``.
+        name: the world's name, as the game lists it.
+
+    Raises:
+        UnknownNameError: the version is not known. OutputError: the folder cannot be written.
+        UsageError: the game is older than what the build is made of.
+    """
+    target = Path(folder)
+    version = game_version(mc_version)
+    check_displays(volume, version)
+    spawn = find_spawn(volume)
+    write_world(
+        volume,
+        target / "world",
+        name=name,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        version=version,
+    )
+    write_schem(volume, target / "room.schem", version=version)
+    if has_packs(version):
+        write_datapack(volume, target / "datapack.zip", version=version, name="room")
+    else:
+        (target / "datapack.zip").unlink(missing_ok=True)
+    scene = scene_from_volume(
+        volume,
+        mc_version=version.name,
+        data_version=version.data_version,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+    )
+    write_scene(target, scene)

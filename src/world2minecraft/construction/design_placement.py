@@ -1,0 +1,404 @@
+"""Vanilla furniture designs on the canvas, in the real colours of their objects.
+
+The materials of a design state which roles take the object's colour. Roles of one material take one
+colour, the median of their cells, so that a chair's legs and seat are of one wood; each becomes the
+nearest block of its kind that has all the shapes it needs. Where a wood or stone is plainly wrong
+(red cupboards), the nearest of all blocks that have these shapes is used. Plain blocks are painted
+one by one. A template of another package without materials is recoloured by the names of its
+blocks: the room chooses the wood and the dye, and a full block of a distant colour becomes a plain
+one.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.block_lattice import Lattice
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.surface_painting import (
+    FADED,
+    BlockChoice,
+    colour_costs,
+    paint_surface,
+)
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import cells_to_block_axes
+from world2minecraft.core.types import Placement
+from world2minecraft.furniture import BlockDesign, DesignBlock, Material
+from world2minecraft.furniture.block_designs import block_size
+from world2minecraft.furniture.materials import (
+    FIXED,
+    PLAIN,
+    Swatch,
+    list_swatches,
+    shape_of,
+    with_swatch,
+)
+from world2minecraft.geometry.colour import srgb_to_oklab
+from world2minecraft.geometry.morphology import dilate_faces
+from world2minecraft.minecraft.block_colours import (
+    DYES,
+    WOODS,
+    colour_of,
+    colours_of,
+    nearest_oklab,
+)
+from world2minecraft.minecraft.collision_shapes import is_full_cube
+
+OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
+OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
+OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
+CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
+PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
+_KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
+LIFTED_UNDER, HIGH_M = (
+    1.5,
+    1.2,
+)  # Blocks per metre; what hangs so high over the floor has air below.
+TIE = 1e-6
+OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
+
+
+class CanvasWindow(NamedTuple):
+    """The part of a design that lies on the canvas, and what stands there."""
+
+    box: tuple[slice, ...]  # of the design
+    low: np.ndarray  # int [3], its first block on the canvas
+    free: np.ndarray  # bool [X, Y, Z], nothing stands there
+    wall: np.ndarray  # bool [X, Y, Z]
+    held: np.ndarray  # bool [X, Y, Z], something stands there or beside it
+
+    def is_flush(self, filled: np.ndarray) -> bool:
+        """Whether most of a thing's blocks, bool [X, Y, Z], lie in a wall: a picture, a socket."""
+        return bool((filled & self.wall).sum() > 0.5 * filled.sum())
+
+
+def canvas_window(
+    canvas: Canvas, within: np.ndarray, low: np.ndarray, shape: tuple[int, ...]
+) -> CanvasWindow:
+    """Return the window of a design of a shape that begins at ``low``.
+
+    Args:
+        canvas: what is built so far.
+        within: bool [X, Y, Z], where things may stand.
+        low: int [3], the design's first block.
+        shape: its blocks along each axis.
+    """
+    high = np.minimum(low + shape, np.array(canvas.lattice.shape) - 1)
+    start = np.maximum(low, [1, 1, canvas.lattice.ground])
+    stop = np.maximum(high, start)
+    box = tuple(slice(int(a), int(b)) for a, b in zip(start - low, stop - low, strict=True))
+    inside = tuple(slice(int(a), int(b)) for a, b in zip(start, stop, strict=True))
+    around = tuple(slice(int(a) - 1, int(b) + 1) for a, b in zip(start, stop, strict=True))
+    stands = canvas.states[around] > 0
+    free = ~stands[1:-1, 1:-1, 1:-1] & within[inside]
+    wall = canvas.semantic[inside] == SemanticClass.WALL
+    return CanvasWindow(box, start, free, wall, dilate_faces(stands)[1:-1, 1:-1, 1:-1])
+
+
+class ObjectColours(NamedTuple):
+    """What is known of an object's colours, in its own box of blocks."""
+
+    colours: np.ndarray  # float32 [X, Y, Z, 3], Oklab
+    known: np.ndarray  # bool [X, Y, Z]
+    paint: np.ndarray | None  # float32 [3], where all of it has one colour
+
+
+def recolour_design(
+    blocks: Sequence[DesignBlock],
+    cells: np.ndarray,
+    materials: Mapping[str, Material],
+    own_colours: ObjectColours,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> list[str]:
+    """Return the state of each block of a design in the object's colours.
+
+    Args:
+        blocks: N blocks.
+        cells: int [N, 3], where they stand in the box of ``own_colours``.
+        materials: what each role is made of; blocks of other roles stay.
+        own_colours: the object's colours.
+        class_id: the object's class.
+        palette: the blocks that plain roles may become.
+        parameters: how colours are weighed.
+    """
+    states = [block.state for block in blocks]
+    if own_colours.paint is None and not own_colours.known.any():
+        return states
+    groups: dict[Material, list[int]] = {}
+    for index, block in enumerate(blocks):
+        material = materials.get(block.role)
+        if material is not None and material.takes_colour:
+            groups.setdefault(material, []).append(index)
+    for material, indices in groups.items():
+        own, at = [states[index] for index in indices], cells[indices]
+        colour = _colour(at, own_colours)
+        if material.kind == "cloth" and all(map(is_full_cube, own)):
+            renewed = [_cube_of(colour, own[0], palette.blocks[class_id], parameters)] * len(own)
+        elif material.kind not in (PLAIN, FIXED):
+            renewed = _change_material(own, material.kind, colour, parameters)
+        elif material.kind == FIXED and not _is_far(material, colour, parameters.lightness_weight):
+            renewed = own
+        elif own_colours.paint is None and all(map(is_full_cube, own)):
+            renewed = _paint_blocks(at, own_colours, class_id, palette, parameters)
+        else:
+            renewed = (
+                own if material.kind == FIXED else _change_material(own, PLAIN, colour, parameters)
+            )
+        for index, state in zip(indices, renewed, strict=True):
+            states[index] = state
+    return states
+
+
+def _cube_of(
+    colour: np.ndarray, wool: str, choices: Sequence[str], parameters: BuildParameters
+) -> str:
+    """Return the full block nearest to the colour of a cloth: wool, or what is clearly nearer.
+
+    Cloth comes in sixteen colours, and no cube looks woven.
+    """
+    own = _change_material([wool], "cloth", colour, parameters)
+    offered = [*own, *choices]
+    handicaps = np.array([0.0] + [OTHER_CLOTH] * len(choices))
+    costs = colour_costs(colour[None], offered, parameters.lightness_weight, handicaps, FADED)
+    return offered[int(costs[0].argmin())]
+
+
+def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> bool:
+    """Whether a fixed material looks unlike an object: books in a red cupboard."""
+    own = srgb_to_oklab(np.array(colour_of(material.block("full") or ""), np.uint8))
+    return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
+
+
+def _colour(cells: np.ndarray, own_colours: ObjectColours) -> np.ndarray:
+    """Return the median colour, float32 [3], of cells; that of the whole object where none is."""
+    if own_colours.paint is not None:
+        return own_colours.paint
+    at = tuple(cells.T)
+    usable = own_colours.known[at]
+    chosen = (
+        own_colours.colours[at][usable] if usable.any() else own_colours.colours[own_colours.known]
+    )
+    clear = np.hypot(chosen[:, 1], chosen[:, 2]) >= CLEAR_CHROMA
+    if clear.mean() >= CLEAR_SHARE:  # Shade and what shines through take a colour's hue away.
+        chosen = chosen[clear]
+    return np.median(chosen, axis=0).astype(np.float32)
+
+
+def _paint_blocks(
+    cells: np.ndarray,
+    own_colours: ObjectColours,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> list[str]:
+    """Return full blocks of the palette for cells, each as its own colour asks, but calmly."""
+    mask = np.zeros(own_colours.known.shape, bool)
+    mask[tuple(cells.T)] = True
+    known = own_colours.known & mask if (own_colours.known & mask).any() else own_colours.known
+    limit = min(PLAIN_PAINTS, parameters.object_colours)
+    choice = BlockChoice(class_id, palette, parameters, limit)
+    renewed = np.empty(mask.shape, object)
+    within = mask | known
+    renewed[within] = paint_surface(within, own_colours.colours, known, choice)
+    return renewed[tuple(cells.T)].tolist()
+
+
+def _change_material(
+    states: list[str], kind: str, colour: np.ndarray, parameters: BuildParameters
+) -> list[str]:
+    """Return states in the material nearest to a colour; those of no known kind stay."""
+    found = {state: shape_of(state, kind) for state in states}
+    own = frozenset(shape for shape in found.values() if shape)
+    swatch = _nearest(kind, own, colour, parameters) if own else None
+    plain = {state: shape_of(state, PLAIN) for state, shape in found.items() if not shape}
+    shapes = frozenset(shape for shape in plain.values() if shape)
+    other = _nearest(PLAIN, shapes, colour, parameters) if shapes else None
+    renewed = []
+    for state in states:
+        shape, strange = found[state], plain.get(state)
+        if shape and swatch:
+            renewed.append(with_swatch(state, shape, swatch))
+        elif strange and other:
+            renewed.append(with_swatch(state, strange, other))
+        else:
+            renewed.append(state)
+    return renewed
+
+
+def _nearest(
+    kind: str, shapes: frozenset[str], colour: np.ndarray, parameters: BuildParameters
+) -> Swatch | None:
+    """Return the material nearest to a colour that has all the shapes; its own kind rather."""
+    own = list_swatches(kind, shapes)
+    others = list_swatches(PLAIN, shapes) if kind in ("wood", "stone") else ()
+    offered = [*own, *(one for one in others if one not in own)]
+    if not offered:
+        return None
+    handicaps = np.array([0.0] * len(own) + [OTHER_KIND] * (len(offered) - len(own)))
+    samples = [one.sample for one in offered]
+    costs = colour_costs(colour[None], samples, parameters.lightness_weight, handicaps, FADED)
+    return offered[int(costs[0].argmin())]
+
+
+class ObjectLabel(NamedTuple):
+    """Whose blocks are set."""
+
+    class_id: int
+    instance: int
+
+
+def design_box(
+    design: BlockDesign, placement: Placement, lattice: Lattice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first block and the size, int [3] each in room axes, of a design in its place.
+
+    Handles and the like that stand out to the front do not push the rest into the wall behind.
+    """
+    along, up, across = design.size
+    size = np.array([along, across, up])
+    middle = lattice.coordinates_of(placement.center_m)
+    bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
+    axis, out = placement.quarter_turns % 2, _protrusion(design, placement, lattice)
+    solid = size - np.where(np.arange(3) == axis, out, 0)
+    low = np.floor(np.array([*(middle[:2] - solid[:2] / 2), bottom]) + 0.5).astype(int)
+    if placement.quarter_turns >= 2:  # The front looks to where coordinates fall.
+        low[axis] -= out
+    ground = lattice.ground_under(float(bottom))
+    if (
+        lattice.blocks_per_metre < LIFTED_UNDER
+        and (bottom - ground) / lattice.blocks_per_metre >= HIGH_M
+    ):
+        low[2] = int(np.ceil(bottom - TIE))  # Else a wall unit would stand on the counter below.
+    most = np.maximum(np.array(lattice.shape) - size, 0)
+    least = [0, 0, ground]
+    return np.clip(low, least, np.maximum(most, least)), size
+
+
+def body_box(
+    design: BlockDesign, placement: Placement, lattice: Lattice, low: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first block and the size, int [3] each, of a design without what stands out.
+
+    An object's front colours the front of its body, not the handles before it.
+    """
+    axis, out = placement.quarter_turns % 2, _protrusion(design, placement, lattice)
+    along = np.arange(3) == axis
+    start = low + np.where(along & (placement.quarter_turns >= 2), out, 0)
+    return start, size - np.where(along, out, 0)
+
+
+def _protrusion(design: BlockDesign, placement: Placement, lattice: Lattice) -> int:
+    """Return by how many blocks a design stands out to its front alone."""
+    own = block_size(placement.size_m, lattice.blocks_per_metre)
+    along, _, across = design.size
+    depth, width = (across, along) if placement.quarter_turns % 2 else (along, across)
+    return max(depth - own.depth, 0) if width <= own.width else 0
+
+
+def filled_blocks(design: BlockDesign) -> np.ndarray:
+    """Return the blocks that a design fills, bool [X, Y, Z] in room axes."""
+    along, up, across = design.size
+    filled = np.zeros((along, across, up), bool)
+    filled[tuple(_cells_of(design).T)] = True
+    return filled
+
+
+def _cells_of(design: BlockDesign) -> np.ndarray:
+    """Return where the blocks of a design stand in its box, int [N, 3] in room axes."""
+    offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
+    # Offsets are in block axes already: their inverse map is the map itself.
+    return cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
+
+
+def place_design(
+    canvas: Canvas,
+    design: BlockDesign,
+    low: np.ndarray,
+    thing: ObjectLabel,
+    own_colours: ObjectColours,
+    palette: Palette,
+    within: np.ndarray,
+    parameters: BuildParameters | None = None,
+) -> None:
+    """Set a design, as far as nothing stands there, in the object's colours.
+
+    Args:
+        canvas: where to set it.
+        design: blocks with offsets in block axes.
+        low: int [3], its first block on the canvas, in room axes.
+        thing: the object's class and instance.
+        own_colours: the object's colours in its box of blocks.
+        palette: the blocks that may replace the design's own full ones.
+        within: bool [X, Y, Z], where things may stand.
+        parameters: how colours are weighed.
+    """
+    shape = canvas.states.shape
+    local = _cells_of(design)
+    states = _states(design, local, thing, own_colours, palette, parameters or BuildParameters())
+    for cell, state in zip(local.tolist(), states, strict=True):
+        at = tuple((low + cell).tolist())
+        if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
+            continue
+        if within[at]:
+            canvas.put(at, canvas.id_of(state), thing.class_id, thing.instance)
+
+
+def _states(
+    design: BlockDesign,
+    cells: np.ndarray,
+    thing: ObjectLabel,
+    own_colours: ObjectColours,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> list[str]:
+    if design.materials:
+        blocks, materials = design.blocks, design.materials
+        return recolour_design(
+            blocks, cells, materials, own_colours, thing.class_id, palette, parameters
+        )
+    median = (
+        np.median(own_colours.colours[own_colours.known], axis=0)
+        if own_colours.known.any()
+        else own_colours.paint
+    )
+    states = []
+    for cell, block in zip(cells.tolist(), design.blocks, strict=True):
+        colour = own_colours.colours[tuple(cell)] if own_colours.known[tuple(cell)] else median
+        states.append(
+            block.state if colour is None else _in_colour(block.state, colour, thing, palette)
+        )
+    return states
+
+
+def _in_colour(state: str, colour: np.ndarray, thing: ObjectLabel, palette: Palette) -> str:
+    own = recolour_state(state, colour)
+    distance = np.linalg.norm(srgb_to_oklab(np.array(colour_of(own), np.uint8)) - colour)
+    if distance <= OWN_COLOUR or not is_full_cube(own):
+        return own
+    choices = palette.blocks[thing.class_id]
+    return choices[int(nearest_oklab(colour[None], srgb_to_oklab(colours_of(choices)))[0])]
+
+
+def recolour_state(state: str, colour: np.ndarray) -> str:
+    """Return a state of the same kind in the wood or dye nearest to an Oklab colour."""
+    namespace, _, rest = state.partition(":")
+    name, bracket, properties = rest.partition("[")
+    for kinds, sample in ((WOODS, "_planks"), (DYES, "_wool")):
+        kind = _kind_of(name, kinds)
+        if kind is None or kind in _KEPT_DYES:
+            continue
+        offered = srgb_to_oklab(colours_of([each + sample for each in kinds]))
+        best = kinds[int(nearest_oklab(colour[None], offered)[0])]
+        return f"{namespace}:{best}{name.removeprefix(kind)}{bracket}{properties}"
+    return state
+
+
+def _kind_of(name: str, kinds: tuple[str, ...]) -> str | None:
+    fitting = [kind for kind in kinds if name.startswith(kind + "_")]
+    return max(fitting, key=len, default=None)

@@ -1,0 +1,203 @@
+"""Detection of the planes of a room in its cells: floors, ceilings and walls, each a flat sheet.
+
+A floor or a ceiling is a layer that holds a square metre of its class that is flat. A wall is a
+flat connected region of wall and window cells in one layer across x or y, with something else than
+structure before or behind. The crossing of another wall, a slope and a wall at an angle to the
+axes are not flat in any layer, and are none. What noise put one layer before or behind belongs to
+the sheet. Rooms on one level share a floor; what a doorway parts is one wall, what a wider passage
+parts is two.
+
+Planes are named ``floor``, ``floor:2`` (the largest first), ``ceiling`` and ``wall:1`` to
+``wall:N`` (by axis, layer and place, so that mending one leaves the names of the others).
+"""
+
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
+from world2minecraft.editing.scene.scene_draft import SceneDraft
+from world2minecraft.geometry.connected_components import label_components
+
+FLOOR_M2 = 1.0  # Less is a step or a landing's edge.
+WALL_M2 = 0.5  # As the smallest wall that stage 4 calls one.
+# A cell is flat where most of so large a square around it, in cells, is of the sheet.
+FLAT_WALL, FLAT_LEVEL = 9, 13  # A pillar is a wall; a strip of a sloped ceiling is no ceiling.
+DOORWAY_M = 1.2  # No wider gap lies within one wall, or between it and the wall that it meets.
+REACH_M = 2.2  # A wall that ends this near to a floor or a ceiling goes on: behind a wardrobe.
+WALL_CLASSES = (SemanticClass.WALL, SemanticClass.WINDOW)
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """One sheet. ``axis`` is across it; 2D arrays are over the other two axes in order.
+
+    ``low`` and ``high`` bound it there, ``high`` not included; ``meets`` tells whether a floor, a
+    ceiling or another wall stands at each of the two ends of each of them.
+    """
+
+    name: str
+    class_id: int
+    axis: int
+    layer: int
+    low: tuple[int, int]
+    high: tuple[int, int]
+    area_cells: int
+    meets: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
+
+    @property
+    def window(self) -> tuple[slice, slice]:
+        """The part of a layer in which it lies."""
+        return slice(self.low[0], self.high[0]), slice(self.low[1], self.high[1])
+
+    def near(self, labels: np.ndarray) -> np.ndarray:
+        """Return labels [X, Y, Z] of its layer and the one before and behind, [3, A, B].
+
+        Beyond the grid they are unknown.
+        """
+        layers = np.full((3, *np.delete(labels.shape, self.axis)), UNKNOWN, labels.dtype)
+        for number, layer in enumerate(range(self.layer - 1, self.layer + 2)):
+            if 0 <= layer < labels.shape[self.axis]:
+                layers[number] = np.take(labels, layer, self.axis)
+        return layers
+
+    def cells(self, flat: np.ndarray, layers: np.ndarray) -> np.ndarray:
+        """Return the cells int [N, 3] at places int [N, 2], each in its layer int [N]."""
+        return np.insert(flat, self.axis, layers, axis=1)
+
+
+def find_planes(draft: SceneDraft) -> list[Plane]:
+    """Return all planes: floors and ceilings, the largest first, then walls by their place."""
+    level = [*_levels(draft, SemanticClass.FLOOR), *_levels(draft, SemanticClass.CEILING)]
+    return [*level, *_walls(draft, level)]
+
+
+def _levels(draft: SceneDraft, class_id: SemanticClass) -> list[Plane]:
+    """The floors or the ceilings."""
+    mask = np.moveaxis(draft.labels == class_id, 2, 0)
+    # Its face to the room alone: what is solid above a slope is no stack of ceilings.
+    inward = -1 if class_id == SemanticClass.FLOOR else 1
+    mask &= ~np.roll(mask, inward, axis=0)
+    counts = (mask & _is_flat(mask, FLAT_LEVEL)).sum(axis=(1, 2))
+    least = FLOOR_M2 / draft.voxel_m**2
+    found: list[Plane] = []
+    while counts.size and counts.max() >= least:
+        layer = int(counts.argmax())
+        name = class_id.name.lower() + (f":{len(found) + 1}" if found else "")
+        whole = (draft.shape[0], draft.shape[1])
+        found.append(Plane(name, int(class_id), 2, layer, (0, 0), whole, int(counts[layer])))
+        counts[max(layer - 1, 0) : layer + 2] = 0
+    return found
+
+
+def _walls(draft: SceneDraft, levels: list[Plane]) -> list[Plane]:
+    found: list[Plane] = []
+    least = WALL_M2 / draft.voxel_m**2
+    for axis in (0, 1):
+        mask = np.moveaxis(np.isin(draft.labels, WALL_CLASSES), axis, 0)
+        flat = mask & _is_flat(mask, FLAT_WALL) & _is_face(np.moveaxis(draft.labels, axis, 0))
+        sizes = flat.sum(axis=(1, 2))
+        while sizes.size and sizes.max() >= least:
+            layer = int(sizes.argmax())
+            regions = _merge_regions(_regions(mask[layer], flat[layer], least), draft.voxel_m)
+            for low, high, area in regions:
+                flat[max(layer - 1, 0) : layer + 2, low[0] : high[0], low[1] : high[1]] = False
+                found.append(Plane("", int(SemanticClass.WALL), axis, layer, low, high, area))
+            flat[layer] = False
+            near = slice(max(layer - 1, 0), layer + 2)
+            sizes[near] = flat[near].sum(axis=(1, 2))
+    found.sort(key=lambda one: (one.axis, one.layer, one.low))
+    return [
+        replace(_meeting(one, [*levels, *found], draft.voxel_m), name=f"wall:{number}")
+        for number, one in enumerate(found, 1)
+    ]
+
+
+def _is_flat(mask: np.ndarray, side: int) -> np.ndarray:
+    """Where most of the square around a cell, in its layer (the first axis), is of the mask."""
+    count = mask.astype(np.uint8)
+    for axis in (1, 2):
+        count = ndimage.convolve1d(count, np.ones(side, np.uint8), axis=axis, mode="constant")
+    return cast(np.ndarray, count) > side**2 // 2
+
+
+def _is_face(labels: np.ndarray) -> np.ndarray:
+    """Where one of the two cells before and behind, along the first axis, is no structure."""
+    other = np.ones((labels.shape[0] + 2, *labels.shape[1:]), bool)
+    other[1:-1] = ~np.isin(labels, STRUCTURE_CLASSES)
+    return other[:-2] | other[2:]
+
+
+Region = tuple[tuple[int, int], tuple[int, int], int]
+
+
+def _regions(mask: np.ndarray, flat: np.ndarray, least: float) -> list[Region]:
+    """The corners and the area of each large flat region of a layer, bool [A, B]."""
+    parts, count = label_components(flat)
+    found = []
+    for number, box in enumerate(ndimage.find_objects(parts, count), 1):
+        if (parts[box] == number).sum() < least:
+            continue
+        # Its rim is not flat: it goes on to the last cell of the sheet nearby.
+        margin = FLAT_WALL // 2
+        start = [max(side.start - margin, 0) for side in box]
+        near = mask[start[0] : box[0].stop + margin, start[1] : box[1].stop + margin]
+        at = np.argwhere(near) + start
+        low, high = at.min(axis=0), at.max(axis=0) + 1
+        found.append(((int(low[0]), int(low[1])), (int(high[0]), int(high[1])), len(at)))
+    return found
+
+
+def _merge_regions(regions: list[Region], voxel_m: float) -> list[Region]:
+    """Join what a doorway parts: regions side by side that share heights."""
+    joined: list[Region] = []
+    for low, high, area in sorted(regions):
+        if joined:
+            before, end, size = joined[-1]
+            shared = min(end[1], high[1]) - max(before[1], low[1])
+            if low[0] - end[0] <= DOORWAY_M / voxel_m and shared > 0:
+                low = (before[0], min(before[1], low[1]))  # noqa: PLW2901
+                high = (max(end[0], high[0]), max(end[1], high[1]))  # noqa: PLW2901
+                joined.pop()
+                area += size  # noqa: PLW2901
+        joined.append((low, high, area))
+    return joined
+
+
+def _meeting(wall: Plane, planes: list[Plane], voxel_m: float) -> Plane:
+    """Let a wall meet the floor, the ceiling and the walls that it ends near, and note where."""
+    beside = wall.layer, wall.layer + 1
+    reach = round(DOORWAY_M / voxel_m)
+    across = [one for one in planes if one.axis == 1 - wall.axis and _near(beside, one, reach)]
+    floors = [one for one in planes if one.class_id == SemanticClass.FLOOR]
+    ceilings = [one for one in planes if one.class_id == SemanticClass.CEILING]
+    level = round(REACH_M / voxel_m)
+    ends = [
+        (_nearest(wall.low[0] - 1, across, -reach), _nearest(wall.high[0], across, reach)),
+        (_nearest(wall.low[1] - 1, floors, -level), _nearest(wall.high[1], ceilings, level)),
+    ]
+    (left, right), (bottom, top) = ends
+    low = [
+        wall.low[0] if left is None else min(wall.low[0], left + 1),
+        wall.low[1] if bottom is None else bottom + 1,
+    ]
+    high = [
+        wall.high[0] if right is None else max(wall.high[0], right),
+        wall.high[1] if top is None else top,
+    ]
+    meets = [(end[0] is not None, end[1] is not None) for end in ends]
+    return replace(wall, low=(low[0], low[1]), high=(high[0], high[1]), meets=(meets[0], meets[1]))
+
+
+def _nearest(end: int, planes: list[Plane], reach: int) -> int | None:
+    """The layer nearest to the cell after the end of a wall, up to ``reach`` farther on."""
+    side = 1 if reach > 0 else -1
+    near = [one.layer for one in planes if -2 <= (one.layer - end) * side <= abs(reach)]
+    return min(near, key=lambda layer: abs(layer - end), default=None)
+
+
+def _near(span: tuple[int, int], other: Plane, reach: int) -> bool:
+    """Whether a span lies within the extent of a wall, grown by the reach."""
+    return span[1] > other.low[0] - reach and span[0] < other.high[0] + reach

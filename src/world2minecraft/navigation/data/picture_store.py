@@ -1,0 +1,136 @@
+"""The pictures of a set: encoded as JPEG, compared by hashes, each written once."""
+
+import hashlib
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import Camera
+from world2minecraft.navigation.types import Stance
+from world2minecraft.navigation.walk_stream import wrap_deg
+from world2minecraft.rendering.views.cameras import camera_of
+
+SIZE, FOV_DEG = (640, 360), 70.0  # The game's view; 299 tokens of Qwen2.5-VL.
+QUALITY = 90
+COARSE_PX = (32, 18)  # So small, textures are even and only things vary.
+NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
+MIN_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
+DUPLICATE_HASH_BITS = 4  # Bits of 64 by which two pictures are told apart at all.
+MIN_HASH_BITS = 6  # Bits of 64 by which a wrong choice differs from the right one.
+
+
+def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
+    """Return the camera of a set: the game's vertical FOV of 70 degrees."""
+    return camera_of(width_px, height_px, vertical_fov_deg=FOV_DEG)
+
+
+@dataclass(frozen=True, eq=False)
+class EncodedPicture:
+    """A picture in memory with what tells it from others."""
+
+    jpeg: bytes
+    sha256: str
+    mean: float  # of its grey, 0 to 255
+    dhash: int  # 64 bits
+    detail: float  # how much its grey varies over the picture, a standard deviation
+    small: bytes  # its grey, uint8, ``COARSE_PX``
+
+
+def encode_picture(colour: np.ndarray) -> EncodedPicture:
+    """Return a picture, uint8 [H, W, 3], as JPEG with its sum, mean and hash."""
+    image = Image.fromarray(colour)
+    buffer = io.BytesIO()
+    image.save(buffer, "JPEG", quality=QUALITY)
+    data = buffer.getvalue()
+    grey = image.convert("L")
+    mean = float(np.asarray(grey, np.float64).mean())
+    small = np.asarray(grey.resize(COARSE_PX, Image.Resampling.BOX))
+    sum_ = hashlib.sha256(data).hexdigest()
+    return EncodedPicture(data, sum_, mean, dhash(grey), float(small.std()), small.tobytes())
+
+
+def dhash(image: Image.Image) -> int:
+    """Return the difference hash of a picture, 64 bits: where it grows brighter to the right.
+
+    Example:
+        >>> ramp = Image.fromarray(np.tile(np.arange(90, dtype=np.uint8), (80, 1)))
+        >>> dhash(ramp) == 2**64 - 1
+        True
+    """
+    small = np.asarray(image.convert("L").resize((9, 8), Image.Resampling.BOX), np.int16)
+    bits = (small[:, 1:] > small[:, :-1]).ravel()
+    return int("".join("1" if bit else "0" for bit in bits), 2)
+
+
+def hash_distance(one: int, other: int) -> int:
+    """Return by how many of 64 bits two hashes differ."""
+    return (one ^ other).bit_count()
+
+
+RenderViews = Callable[[Sequence[Stance]], list[EncodedPicture]]
+
+
+@dataclass(frozen=True)
+class StoredPicture:
+    """A picture of a set: where it lies, where it was taken and what tells it from others."""
+
+    image: str  # beside the records, POSIX
+    stance: Stance
+    sha256: str
+    dhash: int
+    detail: float
+    small: bytes  # 32x18 of its grey
+
+
+class PictureStore:
+    """Takes pictures and writes them under a folder.
+
+    ``take`` takes them as they are kept; ``look`` as small as will do to tell how like they are.
+    """
+
+    def __init__(self, folder: Path, take: RenderViews, look: RenderViews):
+        self._folder, self.take, self.look = folder, take, look
+
+    def write(self, name: str, stance: Stance, shot: EncodedPicture) -> StoredPicture:
+        """Write a picture. Raises OutputError."""
+        write_bytes(self._folder / name, shot.jpeg)
+        return StoredPicture(name, stance, shot.sha256, shot.dhash, shot.detail, shot.small)
+
+
+def show_different_views(one: Stance, other: Stance, metres_per_block: float) -> bool:
+    """Return whether two stances of a scene show different things."""
+    away_m = ((one.x - other.x) ** 2 + (one.y - other.y) ** 2 + (one.z - other.z) ** 2) ** 0.5
+    turn_deg = abs(float(wrap_deg(one.yaw_deg - other.yaw_deg)))
+    return away_m * metres_per_block >= NEAR_M or turn_deg >= NEAR_DEG
+
+
+def are_distinguishable(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> bool:
+    """Return whether two pictures differ enough to choose between them."""
+    return hash_distance(one.dhash, other.dhash) >= MIN_HASH_BITS
+
+
+def is_near_duplicate(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> bool:
+    """Return whether two pictures are nearly the same."""
+    return hash_distance(one.dhash, other.dhash) < DUPLICATE_HASH_BITS
+
+
+def picture_difference(
+    one: StoredPicture | EncodedPicture, other: StoredPicture | EncodedPicture
+) -> float:
+    """Return how far two pictures are apart, seen so small that only things count."""
+    pair = [np.frombuffer(picture.small, np.uint8).astype(np.float32) for picture in (one, other)]
+    return float(((pair[0] - pair[1]) ** 2).mean())
+
+
+def has_detail(one: StoredPicture | EncodedPicture) -> bool:
+    """Return whether a picture is more than a bare wall."""
+    return one.detail >= MIN_DETAIL

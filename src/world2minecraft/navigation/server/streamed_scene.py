@@ -1,0 +1,185 @@
+"""The blocks that a server has streamed, as a scene to walk in and to look at.
+
+The walker is the game's own player, whatever the scale of the build: at 4 blocks a metre a robot of
+0.45 m. Doors stand as they stand. The eyes see blocks change; floor, paths and things with names
+are those of the moment in which the scene was made. ``ServerSimulator`` walks episodes there.
+"""
+
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import BlockVolume, Camera, Layout
+from world2minecraft.formats.build_source import BuildSource, PlayerStart
+from world2minecraft.formats.volume_crop import trim_air
+from world2minecraft.formats.volume_formats import with_scene_labels
+from world2minecraft.formats.world_labels import read_scene
+from world2minecraft.minecraftocc.scene_sources import open_scene_source, source_of_blocks
+from world2minecraft.navigation.running.simulator import SceneSimulator, Simulator
+from world2minecraft.navigation.scene import VlnScene, layouts_beside
+from world2minecraft.navigation.server.actions import ServerDiscreteActions
+from world2minecraft.navigation.server.player import ServerPlayer
+from world2minecraft.navigation.server.streamed_blocks import Box, checked_box
+from world2minecraft.navigation.types import Move, MoveSet, Stance
+from world2minecraft.rendering.editable_scene import EditableScene
+from world2minecraft.rendering.scene import BlockScene
+
+AROUND, UNDER, ABOVE = 32, 8, 24  # Blocks around the player that are read where no box is named.
+EDGE = 2  # Around a scene.
+
+
+class ServerScene(VlnScene):
+    """A scene whose blocks stand on a server. Make it by ``open_server_scene``."""
+
+    def __init__(self, source: BuildSource, scene_id: str, server: ServerPlayer):
+        scale = source.volume.blocks_per_metre
+        self.server, self._labels = server, source.folder
+        super().__init__(source_of_blocks(source, scene_id), 1 / scale, opens_doors=False)
+
+    @cached_property
+    def live(self) -> EditableScene:
+        """The pictures' scene, which follows the server's blocks."""
+        return EditableScene(self.volume)
+
+    @property
+    def render_scene(self) -> BlockScene:  # type: ignore[override]
+        """What pictures are taken of, with all changes that the server has told of."""
+        self._follow()
+        return self.live.scene
+
+    @cached_property
+    def layouts(self) -> tuple[Layout, ...]:
+        """The floor plans that lie beside the labels."""
+        return layouts_beside(self._labels) if self._labels else ()
+
+    def _follow(self) -> None:
+        """Set the blocks that changed; read all again where the server told of too many."""
+        if self.server.has_many_changes:
+            self.server.take_changes()
+            low, shape = np.array(self.volume.corner), np.array(self.volume.states.shape)
+            volume = self.server.read([*low.tolist(), *(low + shape).tolist()])
+            names = np.array(volume.palette)[volume.states]
+            old_states, old_palette = self.live.volume_states
+            cells = np.argwhere(names != np.array(old_palette)[old_states])
+            changes = [(cell, str(names[tuple(cell)])) for cell in cells]
+        else:
+            taken = self.server.take_changes()
+            corner = np.array(self.volume.corner)
+            changes = [(np.array(one.place) - corner, one.state) for one in taken]
+        shape = self.volume.states.shape
+        inside = [(cell, state) for cell, state in changes if _is_in(cell, shape)]
+        if inside:
+            cells = np.array([cell for cell, _ in inside])
+            self.live.set_blocks(cells, [state for _, state in inside])
+
+
+def open_server_scene(
+    server: ServerPlayer,
+    *,
+    labels: str | Path | None = None,
+    box: Box | None = None,
+    blocks_per_metre: float | None = None,
+) -> ServerScene:
+    """Read the blocks around a player, or of a box, and make a scene of them.
+
+    Args:
+        server: the player.
+        labels: the run, house or build that stands there, at its own coordinates: it says what
+            blocks are, what things are called, the scale, and the box.
+        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included.
+        blocks_per_metre: the scale, where no labels say it; 1 where nobody does.
+
+    Raises:
+        UsageError: an option cannot be. InputError: the labels cannot be read, are of other blocks,
+            or nobody can stand there. ServerError: the blocks have not been streamed.
+    """
+    if labels is not None and blocks_per_metre is not None:
+        raise UsageError("labels have their scale; leave blocks_per_metre out")
+    if blocks_per_metre is not None and not 0 < blocks_per_metre <= 64:
+        raise UsageError(f"blocks per metre must be above 0 and up to 64, not {blocks_per_metre}")
+    folder = None if labels is None else _scene_folder(Path(labels))
+    wanted = checked_box(box) if box else _box_of(folder) if folder else _around(server)
+    volume = server.read(wanted)
+    where = f"server {server.address}"
+    if not volume.states.any():
+        raise InputError(where, "nothing but air is in the box; choose another")
+    if folder is None:
+        source = BuildSource(
+            _scaled(trim_air(volume), blocks_per_metre or 1.0), "server", Path(where)
+        )
+    else:
+        path = Path(str(labels))  # What is walked here can be walked there again, without a server.
+        scene = read_scene(folder)
+        start = PlayerStart(*scene.spawn, scene.spawn_yaw_deg)
+        source = BuildSource(_labelled(volume, folder, where), "server", path, start, folder)
+    return ServerScene(source, _scene_id(server, labels), server)
+
+
+def _labelled(volume: BlockVolume, folder: Path, where: str) -> BlockVolume:
+    known = with_scene_labels(volume, folder)
+    if not known.semantic.any():
+        raise InputError(where, f"the blocks of {folder} do not stand there; build them first")
+    return trim_air(known)
+
+
+def _scene_folder(path: Path) -> Path:
+    for folder in (path, path / "build", path.parent):
+        if (folder / "scene.npz").is_file() and (folder / "scene.json").is_file():
+            return folder
+    raise InputError(path, "holds no scene.json with a scene.npz; name a run or a generated house")
+
+
+def _box_of(folder: Path) -> Box:
+    scene = read_scene(folder)
+    low = np.array(scene.corner) - EDGE
+    high = np.add(scene.corner, scene.semantic.shape) + EDGE
+    return checked_box([*low.tolist(), *high.tolist()])
+
+
+def _around(server: ServerPlayer) -> Box:
+    x, y, z = (int(np.floor(value)) for value in server.body.position)
+    return x - AROUND, y - UNDER, z - AROUND, x + AROUND, y + ABOVE, z + AROUND
+
+
+def _scaled(volume: BlockVolume, blocks_per_metre: float) -> BlockVolume:
+    to_room = block_to_room(np.zeros(2), blocks_per_metre)
+    return BlockVolume(
+        volume.states, volume.palette, volume.semantic, volume.instance, volume.corner, to_room
+    )
+
+
+def _scene_id(server: ServerPlayer, labels: str | Path | None) -> str:
+    if labels is not None:
+        return open_scene_source(labels).scene_id
+    return "server_" + "".join(c if c.isalnum() else "_" for c in server.address)
+
+
+def _is_in(cell: np.ndarray, shape: tuple[int, ...]) -> bool:
+    return bool(((cell >= 0) & (cell < shape)).all())
+
+
+class ServerSimulator(SceneSimulator):
+    """A scene whose player stands on a server; see ``offline`` for moves that it does not make."""
+
+    def __init__(
+        self, scene: ServerScene, move_set: str | MoveSet = "vlnce", camera: Camera | None = None
+    ):
+        super().__init__(scene, move_set, camera)
+        self._controller = ServerDiscreteActions(scene, self.move_set, scene.server)
+
+    def step(self, stance: Stance, move: Move) -> tuple[Stance, bool]:
+        """Make a move; the player is put where it begins, if it stands elsewhere."""
+        if stance != self._controller.stance:
+            self._controller.begin(stance)
+        if move == Move.STOP:
+            return stance, False
+        self._controller.stance, collided = self._controller.apply(move)
+        return self._controller.stance, collided
+
+    @property
+    def offline(self) -> Simulator:
+        """The scene alone: what the oracle thinks of moves no player."""
+        return SceneSimulator(self.scene, self.move_set, self.camera)

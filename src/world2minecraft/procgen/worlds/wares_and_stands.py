@@ -1,0 +1,395 @@
+"""Wares and the racks, plinths, planters and basins that show them.
+
+A ware is any block of the game as something to look at. ``data/wares.json`` lists the blocks that
+do not simply stand on a board: what grows needs soil, what hangs a block above, what is two blocks
+high its other half. ``home`` names those that also lie about in homes.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
+from world2minecraft.procgen.worlds.house_layout import BlockRoom
+from world2minecraft.procgen.worlds.shell import FACINGS
+
+MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
+HOME = "home"
+FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
+WALL = int(SemanticClass.WALL)
+Corner = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Ware:
+    """Blocks in a column from its foot up, those of a bed one before the other.
+
+    ``{facing}`` in a state is where its front looks.
+    """
+
+    name: str
+    mount: str
+    states: tuple[str, ...]
+
+    def turned(self, facing: str) -> list[str]:
+        """Return its states with its front to a side."""
+        return [f"minecraft:{state.replace('{facing}', facing)}" for state in self.states]
+
+
+@cache
+def mount_table() -> dict[str, Any]:
+    """Return the table of blocks that stand otherwise than on a board."""
+    source = files("world2minecraft.procgen.worlds") / "data" / "wares.json"
+    return json.loads(source.read_text("utf-8"))
+
+
+@cache
+def load_wares() -> tuple[Ware, ...]:
+    """Return all wares, sorted by name."""
+    raw = mount_table()
+    by_name: dict[str, Ware] = {}
+    for mount in MOUNTS[1:]:
+        for states in raw[mount]:
+            column = [states] if isinstance(states, str) else states
+            name = next((s for s in column if s.startswith("*")), column[-1]).removeprefix("*")
+            name = name.partition("[")[0]
+            by_name[name] = Ware(name, mount, tuple(s.removeprefix("*") for s in column))
+    skipped = {name for names in raw["skipped"].values() for name in names}
+    for block in known_blocks():
+        name = block.removeprefix("minecraft:")
+        if name not in by_name and name not in skipped:
+            by_name[name] = Ware(name, "board", (name + raw["states"].get(name, ""),))
+    return tuple(by_name[name] for name in sorted(by_name))
+
+
+@cache
+def _pile(mount: str) -> list[Ware]:
+    if mount != HOME:
+        return [ware for ware in load_wares() if ware.mount == mount]
+    likes = mount_table()[HOME]
+    return [ware for ware in _pile("board") if any(fnmatch(ware.name, like) for like in likes)]
+
+
+class WareDeck:
+    """Wares in a shuffled order, dealt one after another, so that a series shows them all.
+
+    Args:
+        seed: of the order; one for a whole series.
+        start: how many of each mount were dealt before, about.
+    """
+
+    def __init__(self, seed: int, start: int):
+        rng = np.random.default_rng([seed, 17])
+        self._piles: dict[str, list[Ware]] = {}
+        self._next: dict[str, int] = {}
+        for mount in (*MOUNTS, HOME):
+            pile = _pile(mount)
+            self._piles[mount] = [pile[int(n)] for n in rng.permutation(len(pile))]
+            every = sum(ware.mount == "board" for ware in load_wares())
+            self._next[mount] = round(start * len(pile) / every) if len(pile) < every else start
+
+    def deal(self, mount: str) -> Ware:
+        """Return the next ware of a mount."""
+        pile = self._piles[mount]
+        self._next[mount] += 1
+        return pile[(self._next[mount] - 1) % len(pile)]
+
+
+class StandBuilder:
+    """Sets wares, and what they stand on, in the rooms of one house."""
+
+    def __init__(self, furnisher: Furnisher, deck: WareDeck, rng: np.random.Generator):
+        self.furnisher, self.deck, self.rng = furnisher, deck, rng
+        self.canvas = furnisher.canvas
+
+    def put_ware(self, ware: Ware, at: Corner, facing: str) -> bool:
+        """Set a ware with its foot at a free place of the house; say whether it fits."""
+        states = ware.turned(facing)
+        cells = [self.canvas.at(at[0], at[1], at[2] + n) for n in range(len(states))]
+        if any(self.canvas.states[cell] or self.furnisher.reserved[cell] for cell in cells):
+            return False
+        instance = self.furnisher.next_instance()
+        for cell, state in zip(cells, states, strict=True):
+            self.canvas.set(cell, state, OBJS, instance)
+        return True
+
+    def put_rack(
+        self, room: BlockRoom, boards: Sequence[int], board: str, *, least: int = 4, most: int = 99
+    ) -> int:
+        """Stand a rack along the longest bare piece of wall, with wares on boards.
+
+        Args:
+            room: where.
+            boards: the layers of the boards over the floor.
+            board: the material of boards, a block that has a slab, such as ``oak``.
+            least: blocks that it is long at least.
+            most: blocks that it is long at most.
+
+        Returns:
+            How many wares it holds; 0 where there is no room.
+        """
+        if not boards:  # At two blocks a metre a room is too low for some.
+            return 0
+        found = self._longest_wall(room, (boards[0], boards[-1] + 2), least)
+        if found is None:
+            return 0
+        cells, turns = found
+        start = int(self.rng.integers(max(len(cells) - most, 0) + 1))
+        columns = np.array(cells[start : start + most])
+        if boards[0] < self.furnisher.ways.head:
+            if not self.furnisher.ways.stay(room, columns):
+                columns = columns[: max(least, len(columns) // 2)]
+                if not self.furnisher.ways.stay(room, columns):
+                    return 0
+            self.furnisher.ways.take(room, columns)
+        instance = self.furnisher.next_instance()
+        held, last = 0, len(columns) - 1
+        for n, (x, y) in enumerate(columns.tolist()):
+            for level in boards:
+                state = f"minecraft:{board}_slab[type=top]"
+                self._set((x, y, room.ground + level), state, FURN, instance)
+            if n not in (0, last) and n % 3:  # Pairs, with air between.
+                held += self._fill((x, y), room, boards, turns)
+        return held
+
+    def put_plinth(self, room: BlockRoom, pillar: str, height: int = 3) -> int:
+        """Stand a pillar somewhere in a room with a ware on it; 1 where it fits."""
+        furnisher = self.furnisher
+        for _ in range(12):
+            x = int(self.rng.integers(room.low[0] + 1, max(room.high[0] - 1, room.low[0] + 2)))
+            y = int(self.rng.integers(room.low[1] + 1, max(room.high[1] - 1, room.low[1] + 2)))
+            box = self.canvas.box(
+                (x - 1, y - 1, room.ground), (x + 2, y + 2, room.ground + height + 3)
+            )
+            column = np.array([[x, y]])
+            if self.canvas.states[box].any() or not furnisher.ways.free(room)[x, y]:
+                continue
+            if furnisher.ways.stay(room, column):
+                furnisher.ways.take(room, column)
+                instance = furnisher.next_instance()
+                for z in range(height):
+                    self._set((x, y, room.ground + z), f"minecraft:{pillar}", FURN, instance)
+                self.put_ware(self.deck.deal("board"), (x, y, room.ground + height), "south")
+                return 1
+        return 0
+
+    def put_bed(self, room: BlockRoom) -> int:
+        """Stand a bed of two blocks, a doll's, with its head to a wall; 1 where it fits."""
+        furnisher = self.furnisher
+        for _ in range(12):
+            turns = int(self.rng.integers(4))  # Where its foot looks.
+            axis, step = turns % 2, 1 if turns < 2 else -1
+            head = [0, 0]
+            head[1 - axis] = int(self.rng.integers(room.low[1 - axis], room.high[1 - axis]))
+            head[axis] = room.low[axis] if turns < 2 else room.high[axis] - 1
+            foot = list(head)
+            foot[axis] += step
+            columns = np.array([foot, head])
+            cells = [self.canvas.at(x, y, room.ground) for x, y in columns.tolist()]
+            free = not any(self.canvas.states[at] or furnisher.reserved[at] for at in cells)
+            if free and self._is_bare((head[0], head[1]), room, turns, (0, 2)):
+                if not furnisher.ways.stay(room, columns):
+                    continue
+                furnisher.ways.take(room, columns)
+                instance = furnisher.next_instance()
+                states = self.deck.deal("bed").turned(FACINGS[(turns + 2) % 4])
+                for cell, state in zip(cells, states, strict=True):
+                    self.canvas.set(cell, state, OBJS, instance)
+                return 1
+        return 0
+
+    def put_on(
+        self, thing: PlacedFurniture, mounts: Sequence[str] = ("board",), most: int = 3
+    ) -> int:
+        """Set wares on top of a thing, with air between; return how many."""
+        held = 0
+        spots = [
+            (x, y)
+            for x in range(thing.low[0], thing.high[0])
+            for y in range(thing.low[1], thing.high[1])
+            if (x + y) % 2 == 0
+        ]
+        for n in self.rng.permutation(len(spots)).tolist():
+            if held == most:
+                break
+            x, y = spots[n]
+            under = self.canvas.at(x, y, thing.high[2] - 1)
+            if self.canvas.instance[under] != thing.instance or not self._is_top(under):
+                continue
+            ware = self.deck.deal(mounts[int(self.rng.integers(len(mounts)))])
+            held += self.put_ware(ware, (x, y, thing.high[2]), FACINGS[thing.quarter_turns])
+        return held
+
+    def hang_on_walls(self, room: BlockRoom, count: int, level: int) -> int:
+        """Hang wall wares on bare walls at a layer over the floor; return how many."""
+        hung = 0
+        for _ in range(count * 4):
+            if hung >= count:
+                break
+            turns = int(self.rng.integers(4))
+            axis = turns % 2
+            at = [0, 0]
+            at[1 - axis] = int(self.rng.integers(room.low[1 - axis], room.high[1 - axis]))
+            at[axis] = room.low[axis] if turns < 2 else room.high[axis] - 1
+            behind = list(at)
+            behind[axis] += -1 if turns < 2 else 1
+            z = room.ground + level
+            here = self.canvas.at(at[0], at[1], z)
+            wall = self.canvas.at(behind[0], behind[1], z)
+            near = self.canvas.states[here[0] - 1 : here[0] + 2, here[1] - 1 : here[1] + 2, here[2]]
+            if self.canvas.semantic[wall] != WALL or (near > 0).sum() > 3:
+                continue
+            below = self.canvas.at(at[0], at[1], z - 1)
+            if self.canvas.states[below] == 0 and self._takes(room, at, level):
+                ware = self.deck.deal("wall")
+                hung += self.put_ware(ware, (at[0], at[1], z), FACINGS[turns])
+        return hung
+
+    def hang_from_ceiling(self, room: BlockRoom, count: int) -> int:
+        """Hang hanging wares under the ceiling; return how many."""
+        hung = 0
+        for _ in range(count * 3):
+            if hung >= count:
+                break
+            x = int(self.rng.integers(room.low[0] + 1, room.high[0] - 1))
+            y = int(self.rng.integers(room.low[1] + 1, room.high[1] - 1))
+            ware = self.deck.deal("hanging")
+            top = room.ground + room.height - 1
+            cells = [self.canvas.at(x, y, top - n) for n in range(len(ware.states))]
+            near = self.canvas.states[
+                cells[0][0] - 1 : cells[0][0] + 2, cells[0][1] - 1 : cells[0][1] + 2, cells[0][2]
+            ]
+            free = not near.any() and not any(self.canvas.states[cell] for cell in cells)
+            free = free and bool(room.floor(self.furnisher.house.size)[x, y])
+            if free and self._takes(room, [x, y], room.height - len(ware.states)):
+                # Of two blocks the first is the lower.
+                low = (x, y, top - len(ware.states) + 1)
+                hung += self.put_ware(ware, low, "south")
+        return hung
+
+    def put_trough(self, room: BlockRoom, rim: str, mount: str, size: tuple[int, int]) -> int:
+        """Stand a trough of soil, or a basin of water, with what grows in it; return how many.
+
+        ``size`` counts the inner blocks along x and y.
+        """
+        deep, wide = size[0] + 2, size[1] + 2
+        spots = [
+            (x, y)
+            for x in range(room.low[0], room.high[0] - deep + 1)
+            for y in range(room.low[1], room.high[1] - wide + 1)
+        ]
+        for n in self.rng.permutation(len(spots)).tolist()[:24]:
+            low = spots[n]
+            if grown := self._trough_at(room, low, (deep, wide), rim, mount):
+                return grown
+        return 0
+
+    def _trough_at(
+        self, room: BlockRoom, low: tuple[int, int], size: tuple[int, int], rim: str, mount: str
+    ) -> int:
+        ground = room.ground
+        box = self.canvas.box((*low, ground), (low[0] + size[0], low[1] + size[1], ground + 4))
+        columns = np.argwhere(np.ones(size, bool)) + low
+        inside = room.floor(self.furnisher.house.size)[tuple(columns.T)].all()
+        if self.canvas.states[box].any() or self.furnisher.reserved[box].any() or not inside:
+            return 0
+        if not self.furnisher.ways.stay(room, columns):
+            return 0
+        self.furnisher.ways.take(room, columns)
+        instance, grown = self.furnisher.next_instance(), 0
+        for x, y in columns.tolist():
+            edge = x in (low[0], low[0] + size[0] - 1) or y in (low[1], low[1] + size[1] - 1)
+            if edge:
+                self._set((x, y, ground), f"minecraft:{rim}", FURN, instance)
+            else:
+                grown += self._grow((x, y, ground), mount, instance)
+        return grown
+
+    def _grow(self, at: Corner, mount: str, instance: int) -> int:
+        ware = self.deck.deal(mount)
+        if mount == "soil" or len(ware.states) == 1 or ware.states[0].startswith("water"):
+            return int(self.put_ware(ware, at, "south"))
+        self._set(at, "minecraft:water[level=0]", FURN, instance)
+        return 0
+
+    def _fill(
+        self, column: tuple[int, int], room: BlockRoom, boards: Sequence[int], turns: int
+    ) -> int:
+        """Set wares into one column of a rack, as high as there is room between its boards."""
+        held = 0
+        tops = (*boards[1:], min(boards[-1] + 3, room.height))
+        for level, top in zip(boards, tops, strict=True):
+            free = top - level - 1
+            mount = "board"
+            if free >= 2 and self.rng.random() < 0.35:
+                mount = ("soil", "tall")[int(self.rng.random() < 0.3)]
+            ware = self.deck.deal(mount)
+            if len(ware.states) > free:
+                ware = self.deck.deal("board")
+            if free >= 1:
+                at = (*column, room.ground + level + 1)
+                held += self.put_ware(ware, at, FACINGS[turns])
+        return held
+
+    def _longest_wall(
+        self, room: BlockRoom, layers: tuple[int, int], least: int
+    ) -> tuple[list[tuple[int, int]], int] | None:
+        """Return the columns of the longest free stretch along a bare wall, and its front."""
+        best: tuple[list[tuple[int, int]], int] | None = None
+        for turns in range(4):
+            run: list[tuple[int, int]] = []
+            for column in [*self._at_wall(room, turns), None]:
+                if column is not None and self._is_bare(column, room, turns, layers):
+                    run.append(column)
+                    continue
+                if len(run) >= least and (best is None or len(run) > len(best[0])):
+                    best = (run, turns)
+                run = []
+        return best
+
+    def _at_wall(self, room: BlockRoom, turns: int) -> list[tuple[int, int]]:
+        axis = turns % 2
+        at = room.low[axis] if turns < 2 else room.high[axis] - 1
+        along = range(room.low[1 - axis], room.high[1 - axis])
+        return [(at, one) if axis == 0 else (one, at) for one in along]
+
+    def _is_bare(
+        self, column: tuple[int, int], room: BlockRoom, turns: int, layers: tuple[int, int]
+    ) -> bool:
+        axis, behind = turns % 2, list(column)
+        behind[axis] += -1 if turns < 2 else 1
+        low, high = (room.ground + min(layer, room.height) for layer in layers)
+        wall = self.canvas.box((behind[0], behind[1], low), (behind[0] + 1, behind[1] + 1, high))
+        here = self.canvas.box((*column, low), (column[0] + 1, column[1] + 1, high))
+        bare = (self.canvas.semantic[wall] == WALL).all() and not self.canvas.states[here].any()
+        bare &= not self.furnisher.reserved[here].any()
+        return bool(bare and room.floor(self.furnisher.house.size)[column])
+
+    def _takes(self, room: BlockRoom, column: Sequence[int], level: int) -> bool:
+        """Take a column for what hangs at a layer over the floor; say whether ways allow it."""
+        ways, columns = self.furnisher.ways, np.array([column])
+        if level >= ways.head:
+            return True
+        if not ways.stay(room, columns):
+            return False
+        ways.take(room, columns)
+        return True
+
+    def _is_top(self, cell: Corner) -> bool:
+        """Whether a block has a whole top that things stand on."""
+        from world2minecraft.minecraft.collision_shapes import boxes_of  # noqa: PLC0415
+
+        boxes = boxes_of(self.canvas.palette[int(self.canvas.states[cell])])
+        whole = (boxes[:, 3] - boxes[:, 0] > 0.99) & (boxes[:, 5] - boxes[:, 2] > 0.99)
+        return bool((whole & (boxes[:, 4] > 0.99)).any())
+
+    def _set(self, at: Corner, state: str, class_id: int, instance: int) -> None:
+        self.canvas.set(self.canvas.at(*at), state, class_id, instance)

@@ -1,0 +1,231 @@
+"""Open any capture as an aligned scan; poses, depth and scale that it lacks are computed first.
+
+What is computed lies in ``OUT/capture`` and is taken from there the next time.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.capture import open_scan
+from world2minecraft.capture.format_detection import find_capture
+from world2minecraft.capture.images import read_header
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.photo_stream import CapturePhotos, photos_of_capture
+from world2minecraft.capture.readers.capture_json import write_plain
+from world2minecraft.capture.sfm import check_poses, find_poses
+from world2minecraft.capture.source_types import Capture
+from world2minecraft.capture.stereo import compute_depth_maps, load_depth_model, network_maps
+from world2minecraft.capture.validation import ValidatedCapture, validate
+from world2minecraft.core.errors import (
+    CaptureError,
+    DamagedFileError,
+    InputError,
+    UnknownNameError,
+    UsageError,
+)
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.core.types import Scan, SparseScene, View
+from world2minecraft.reconstruction.opening.metric_scale import (
+    normalise_scale,
+    scale_by_depth,
+    scale_capture,
+)
+from world2minecraft.reconstruction.opening.one_photo import is_one_photo, prepare_photo
+from world2minecraft.reconstruction.opening.photo_views import depth_views, stereo_views
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.run_folder import check_writable, hash_capture
+
+FOLDER = "capture"
+STAMP = "prepared.json"
+UNNAMED_CAPTURE = "photos"  # What steps that know no path call the capture.
+UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
+MIN_PHOTOS = 3
+Told = dict[str, Any]
+
+# Names of folders that say nothing of their scene.
+GENERIC_NAMES = ("capture", "frames", "scan", "data", "input")
+
+
+def prepare_capture(
+    capture: Path, out: Path, chosen: Parameters, progress: Progress = no_progress
+) -> Path:
+    """Return the place of a capture with poses and depth.
+
+    Args:
+        capture: what the user named.
+        out: the folder of the run; what must be computed is written to ``out / FOLDER``, and
+            taken from there when it was made from the same pictures with the same parameters.
+        chosen: how.
+        progress: called with the stages ``photos``, ``poses`` and ``stereo``.
+
+    Raises:
+        CaptureError: nothing can be made of the pictures; the message says what would help.
+        MissingExtraError: pycolmap is not installed. OutputError: ``out`` cannot be written.
+        UsageError: ``out`` would be written into the capture's own images.
+    """
+    options = parse_options(chosen.capture)
+    found = find_capture(capture, options)
+    if has_poses_and_depth(found):
+        if chosen.known is not None or chosen.known_points is not None:
+            raise UsageError(
+                f"{capture} has poses and depth, which are taken as they are; leave out --known "
+                "and --known-points"
+            )
+        return capture
+    if capture.resolve() == (out / FOLDER).resolve():
+        raise UsageError(
+            f"{capture} is where --out {out} keeps what is computed; name another --out"
+        )
+    fresh = not out.exists()
+    check_writable(out)
+    folder, stamp = out / FOLDER, stamp_of(capture, chosen, out)
+    if is_one_photo(found.source):
+        stamp["predictor"] = chosen.predictor.partition(":")[0]
+    if not _made_before(folder, stamp):
+        (folder / STAMP).unlink(missing_ok=True)
+        try:
+            _prepare(found, folder, chosen, progress)
+        except CaptureError as error:
+            if fresh and not any(out.iterdir()):
+                out.rmdir()
+            if error.path != UNNAMED_CAPTURE:
+                raise
+            posed = any(frame.camera_to_world is not None for frame in found.frames)
+            lead = "" if posed else "states no poses, and its pictures do not tell them: "
+            raise CaptureError(found.folder, lead + error.reason) from error
+        write_json(folder / STAMP, stamp)
+    return folder
+
+
+def has_poses_and_depth(found: Capture) -> bool:
+    """Return whether a capture has frames with poses, and frames with depth."""
+    return any(frame.depth_path is not None for frame in found.frames) and any(
+        frame.camera_to_world is not None for frame in found.frames
+    )
+
+
+def stamp_of(capture: Path, chosen: Parameters, out: Path) -> dict[str, Any]:
+    """Return what decides the computed capture in ``out``."""
+    parameters = chosen.as_json()
+    keys = ("capture", "posing", "stereo", "known", "known_points", "depth_model")
+    return {
+        "capture": hash_capture(capture, without=out),
+        "parameters": {key: parameters[key] for key in keys},
+        "versions": {name: _version(name) for name in ("numpy", "numba", "pycolmap", "pillow")},
+    }
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except ImportError:
+        return "none"
+
+
+def _made_before(folder: Path, stamp: dict[str, Any]) -> bool:
+    try:
+        return (folder / "capture.json").is_file() and read_json(folder / STAMP) == stamp
+    except (InputError, DamagedFileError):
+        return False
+
+
+def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progress) -> None:
+    judged = validate(
+        found,
+        parse_options(chosen.capture),
+        None,
+        lambda done, total: progress("photos", done, total),
+    )
+    if is_one_photo(found.source):
+        return prepare_photo(judged, folder, chosen, UNIT)
+    photos = photos_of_capture(judged)
+    if len(photos) < MIN_PHOTOS:
+        raise CaptureError(
+            found.folder,
+            f"has {len(photos)} usable photos and no depth; at least {MIN_PHOTOS} that overlap "
+            "are needed, 40 or more from all sides show a room",
+        )
+    finder = check_poses if judged.posed else find_poses
+    scene = finder(photos, chosen.posing, progress)
+    scale = found.scale if judged.posed else "unknown"
+    if scale == "unknown":
+        scene = normalise_scale(scene)
+    if judged.has_depth:
+        views, told = _with_own_depth(judged, photos, scene)
+        kind = found.depth_kind
+    else:
+        views, told = _with_stereo(photos, scene, chosen, progress), {}
+        kind = "network" if chosen.stereo.network_alone else "stereo"
+    up = found.world_up
+    stated = {
+        "made_from": found.source,
+        "depth_kind": kind,
+        "world_up": up.tolist() if up is not None and judged.posed else None,
+        "scale": scale,
+        "notes": [*judged.notes, *scene.notes],
+        "skipped": [[*row] for row in (*judged.skipped, *photos.damaged.items(), *scene.left_out)],
+    } | told
+    extra = {"posing": dict(scene.facts)}
+    write_plain(folder, views, depth_unit=UNIT, extra=extra, stated=stated, jpeg=True)
+    scale_capture(folder, chosen, lambda name: _size_of(judged, name))
+
+
+def _size_of(judged: ValidatedCapture, name: str) -> tuple[int, int]:
+    """Return the size in pixels of a photo as the user has it."""
+    places = {frame.name: frame.colour_path for frame in judged.frames}
+    place = places.get(name)
+    if place is None:
+        raise UnknownNameError("photo", name, places)
+    return read_header(place).size
+
+
+def _with_own_depth(
+    judged: ValidatedCapture, photos: CapturePhotos, scene: SparseScene
+) -> tuple[Iterator[View], Told]:
+    """The views of a capture whose depth is a sensor's; only its poses were found."""
+    scaled, sigma = scale_by_depth(judged, scene)
+    told = {"scale": "metric", "scale_sigma": sigma}
+    return depth_views(judged, photos, scaled), told
+
+
+def _with_stereo(
+    photos: CapturePhotos, scene: SparseScene, chosen: Parameters, progress: Progress
+) -> Iterator[View]:
+    guide = load_depth_model(chosen.depth_model) if chosen.depth_model else None
+    if not chosen.stereo.network_alone:
+        maps = compute_depth_maps(photos, scene, chosen.stereo, progress, guide)
+    elif guide is None:
+        raise UsageError("stereo.network_alone=true needs the network: add --depth hf:ORG/NAME")
+    else:
+        maps = network_maps(photos, scene, guide, chosen.stereo, progress)
+    return stereo_views(photos, scene, maps)
+
+
+def prepare_and_open(
+    capture: Path,
+    out: Path,
+    chosen: Parameters,
+    labels: Path | None = None,
+    progress: Progress = no_progress,
+) -> Scan:
+    """Open a capture; poses and depth that it lacks are computed and kept in ``out`` first.
+
+    Raises what ``prepare_capture`` and ``open_scan`` raise.
+    """
+    complete = prepare_capture(capture, out, chosen, progress)
+    options = chosen.capture if complete == capture else {}  # Else they were heeded already.
+    scan = open_scan(
+        complete, voxel_m=chosen.voxel_m, labels=labels, progress=progress, options=options
+    )
+    return replace(scan, name=scene_name(capture))
+
+
+def scene_name(capture: Path) -> str:
+    """Return what a capture's scene is called: its folder's name, where that says anything."""
+    capture = capture.resolve()
+    name = (capture.name if capture.is_dir() else capture.stem).replace("_", " ")
+    return name if name.isprintable() and name not in GENERIC_NAMES else ""

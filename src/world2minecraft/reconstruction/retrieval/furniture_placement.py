@@ -1,0 +1,308 @@
+"""Stage 6: each object becomes furniture of the library, in its place, or stays its own cells.
+
+Of an object that was cut into runs, crumbs are left over: those that a template's surface hides are
+dropped, and those that belong together become one.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.furniture import template, templates_of_class
+from world2minecraft.furniture.chair_fitting import direction_to_table, fit_seat, without_open_top
+from world2minecraft.furniture.front_estimation import (
+    Surroundings,
+    estimate_facing,
+    read_surroundings,
+)
+from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
+from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
+from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.placement_settling import (
+    floor_under_m,
+    settle_placements,
+)
+from world2minecraft.reconstruction.retrieval.template_matching import (
+    NO_SHIFT,
+    Bias,
+    Cells,
+    Scored,
+    Trial,
+    best_matches,
+    reach_of,
+    score_shifts,
+)
+from world2minecraft.reconstruction.retrieval.variants import (
+    Choice,
+    choose,
+    colour_of_cells,
+    offers_of,
+)
+
+FEWEST = 4  # Cells; a smaller crumb is noise of the run beside it.
+Box = tuple[np.ndarray, np.ndarray]
+
+OWN_CELLS = "cells"
+HALF = 0.5
+SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
+
+
+def merge_crumbs(
+    crumbs: list[np.ndarray], matched: list[np.ndarray], boxes: list[Box]
+) -> list[np.ndarray]:
+    """Return the crumbs, int [N, 3] each, that are worth a placement of their own.
+
+    A crumb within one cell of a placed template's box is left out where it is small: build/ sets
+    what no block shows. Crumbs that touch become one, unless their common box would take in cells
+    of a run that is placed.
+
+    Args:
+        crumbs: the cells of each, in the grid.
+        matched: the cells of each run that has a template.
+        boxes: the first cell and the one past the last of each of these templates.
+    """
+    retained = [one for one in crumbs if len(one) >= FEWEST and not _is_hidden(one, boxes)]
+    placed = np.concatenate(matched) if matched else np.zeros((0, 3), np.int32)
+    joined = True
+    while joined:
+        joined = False
+        for m in range(len(retained)):
+            for n in range(m + 1, len(retained)):
+                if _belong(retained[m], retained[n], placed):
+                    retained[m] = np.concatenate([retained[m], retained.pop(n)])
+                    joined = True
+                    break
+            if joined:
+                break
+    return retained
+
+
+def _is_hidden(cells: np.ndarray, boxes: list[Box]) -> bool:
+    return any(((cells >= low - 1) & (cells <= high)).all() for low, high in boxes)
+
+
+def _belong(one: np.ndarray, other: np.ndarray, placed: np.ndarray) -> bool:
+    first, second = _box(one), _box(other)
+    if (np.maximum(first[0], second[0]) > np.minimum(first[1], second[1])).any():
+        return False
+    both = np.minimum(first[0], second[0]), np.maximum(first[1], second[1])
+    taken = _within(placed, first) | _within(placed, second)
+    return bool((_within(placed, both) == taken).all())
+
+
+def _within(cells: np.ndarray, box: Box) -> np.ndarray:
+    return np.asarray(((cells >= box[0]) & (cells < box[1])).all(axis=1))
+
+
+def _box(cells: np.ndarray) -> Box:
+    return cells.min(axis=0), cells.max(axis=0) + 1
+
+
+class Matched(NamedTuple):
+    """Some cells of an object, the way they look, and what matches them, best first."""
+
+    evidence: Evidence
+    quarter_turns: int
+    matches: tuple[Scored, ...]
+    whole: bool = False  # Its first match stands whatever its IoU.
+
+    @property
+    def iou(self) -> float:
+        """The IoU of the best match, 0 without one."""
+        return self.matches[0].iou if self.matches else 0.0
+
+    def unmatched(self) -> "Matched":
+        """The same cells, to be built as they are."""
+        return self._replace(matches=())
+
+
+def place_templates(
+    grid: OccupancyGrid,
+    instances: Sequence[ObjectInstance],
+    parameters: FurnishParameters | None = None,
+    rooms: Sequence[Layout] = (),
+) -> tuple[Placement, ...]:
+    """Return the furniture that stands for each object, in the objects' order.
+
+    An object that was cut has several placements with its id. Where no template reaches
+    ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused. Placements
+    stay within ``rooms``, where any are given, stand on the floors of these, and no two are solid
+    in the same place.
+    """
+    chosen = parameters or FurnishParameters()
+    around = read_surroundings(grid.labels)
+    placed: list[Choice] = []
+    for instance in instances:
+        if len(instance.cells):
+            floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
+            placed += _furnish_one(grid, instance, around, chosen, floor_m)
+    if chosen.paper_compat:
+        return tuple(one.placement for one in placed)
+    return settle_placements(choose(placed), grid, rooms)
+
+
+def _furnish_one(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    around: Surroundings,
+    chosen: FurnishParameters,
+    floor_m: float,
+) -> list[Choice]:
+    turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+    whole = _match(grid, instance, instance.cells, turns, chosen, floor_m)
+    if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
+        seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
+        if seated is not None:
+            return [_choice(grid, instance, seated, chosen)]
+    if not _may_be_cut(whole, grid.voxel_m, chosen):
+        return [_choice(grid, instance, whole, chosen)]
+    parts = []
+    for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
+        cells = (run + whole.evidence.corner).astype(np.int32)
+        front = estimate_facing(cells, instance.class_id, around).quarter_turns
+        parts.append(_match(grid, instance, cells, front, chosen, floor_m))
+    least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
+    parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
+    if _is_better_cut(parts, whole.iou, chosen):
+        parts = _with_tidy_crumbs(grid, instance, parts, chosen)
+        return [_choice(grid, instance, part, chosen) for part in parts]
+    return [_choice(grid, instance, whole, chosen)]
+
+
+def _with_tidy_crumbs(
+    grid: OccupancyGrid, instance: ObjectInstance, parts: list[Matched], chosen: FurnishParameters
+) -> list[Matched]:
+    """Return the runs, and of what the cut left over only what has to be placed by itself."""
+    runs = [part for part in parts if part.matches]
+    placed = [part for part in runs if part.iou >= chosen.min_iou]
+    boxes = []
+    for part in placed:
+        trial = part.matches[0].trial
+        low = part.evidence.corner + trial.corner
+        boxes.append((low, low + np.array(trial.turned_counts)))
+    crumbs = [_cells_of(part) for part in parts if not part.matches]
+    reach = reach_of(templates_of_class(instance.class_id), grid.voxel_m)
+    front = parts[0].quarter_turns
+    retained = merge_crumbs(crumbs, [_cells_of(part) for part in placed], boxes)
+    return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in retained]
+
+
+def _cells_of(part: Matched) -> np.ndarray:
+    return (np.argwhere(part.evidence.code == OWN) + part.evidence.corner).astype(np.int32)
+
+
+def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> Matched | None:
+    """Return a whole chair for cells that match none, where it agrees with what was seen.
+
+    A chair across the grid meets few cells exactly, and of one at a table only the back is seen.
+    A chair reads as a chair all the same, and a heap of its cells does not.
+    """
+    evidence = found.evidence
+    cells = _cells_of(found)
+    tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
+    look = direction_to_table(cells, tables, int(chosen.seat_look_m / grid.voxel_m))
+    fit = fit_seat(template("chair"), evidence.code, evidence.floor, grid.voxel_m, look)
+    if (
+        fit is None
+        or fit.opposed > chosen.seat_opposed
+        or fit.met.mean() < (chosen.seat_met if found.iou < chosen.min_iou else SURELY_MET)
+    ):
+        return None
+    fit = without_open_top(fit, template("chair"), evidence.code, grid.voxel_m)
+    trial = Trial(template("chair"), fit.quarter_turns, fit.counts, fit.values, fit.corner)
+    scored = score_shifts(evidence, trial, NO_SHIFT, _bias(found.quarter_turns, grid, chosen))
+    return found._replace(matches=(scored, *found.matches), whole=True)
+
+
+def _match(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    cells: np.ndarray,
+    quarter_turns: int,
+    chosen: FurnishParameters,
+    floor_m: float,
+) -> Matched:
+    templates = templates_of_class(instance.class_id)
+    reach = reach_of(templates, grid.voxel_m)
+    evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
+    matches = best_matches(templates, evidence, _bias(quarter_turns, grid, chosen), chosen)
+    return Matched(evidence, quarter_turns, tuple(matches))
+
+
+def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: FurnishParameters) -> Bias:
+    if chosen.paper_compat:
+        return Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
+    return Bias(
+        quarter_turns, grid.voxel_m, chosen.size_weight, chosen.front_weight, chosen.beyond_weight
+    )
+
+
+def _may_be_cut(whole: Matched, voxel_m: float, chosen: FurnishParameters) -> bool:
+    if chosen.paper_compat or whole.iou >= chosen.cut_below:
+        return False
+    low, high = whole.evidence.low, whole.evidence.high
+    return max(high[0] - low[0], high[1] - low[1]) * voxel_m >= chosen.cut_from_m
+
+
+def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameters) -> bool:
+    """Whether the runs that are large enough to be furniture match better than the whole.
+
+    Where nothing explains the whole, runs that explain half of it are better than none.
+    """
+    every = sum(part.evidence.own for part in parts)
+    large = [part for part in parts if part.matches]
+    if single < chosen.min_iou:
+        explained = [part.evidence.own for part in large if part.iou >= chosen.min_iou]
+        return sum(explained) >= HALF * every
+    together = sum(part.evidence.own * part.iou for part in large) / every
+    return len(large) > 1 and together >= single + chosen.cut_gain * (len(large) - 1)
+
+
+def _choice(
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
+) -> Choice:
+    """Return the placement of a match and the designs that may stand in its place."""
+    placement = _placement(grid, instance, found, chosen)
+    if placement.template == OWN_CELLS or not chosen.variants or chosen.paper_compat:
+        return Choice(placement, (), None)
+    bias = _bias(found.quarter_turns, grid, chosen)
+    offers = offers_of(found.evidence, found.matches[0], bias)
+    return Choice(placement, offers, colour_of_cells(grid, found.evidence))
+
+
+def _placement(
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
+) -> Placement:
+    least = 0.0 if chosen.paper_compat else chosen.min_iou
+    explained = bool(found.matches) and (found.whole or found.iou >= least)
+    low, counts, turns = _own_box(found)
+    if explained:
+        trial = found.matches[0].trial
+        low, counts, turns = trial.corner, trial.counts, trial.quarter_turns
+    turned = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
+    middle = (found.evidence.corner + low + turned / 2) * grid.voxel_m + grid.origin_m
+    others = found.matches[1 if explained else 0 :][: chosen.alternatives]
+    return Placement(
+        object_id=instance.id,
+        class_id=instance.class_id,
+        template=found.matches[0].trial.template.name if explained else OWN_CELLS,
+        center_m=np.round(middle, 4),
+        size_m=np.round(np.array(counts) * grid.voxel_m, 4),
+        quarter_turns=turns,
+        iou=round(found.iou, 4),
+        parameters=dict(found.matches[0].trial.values) if explained else {},
+        alternatives=tuple(
+            Alternative(one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
+            for one in others
+        ),
+    )
+
+
+def _own_box(found: Matched) -> tuple[Cells, Cells, int]:
+    """Return the first cell, the size along its own axes and the turn of an object's own box."""
+    low, high = found.evidence.low, found.evidence.high
+    x, y, z = (high[axis] - low[axis] for axis in range(3))
+    return low, (y, x, z) if found.quarter_turns % 2 else (x, y, z), found.quarter_turns

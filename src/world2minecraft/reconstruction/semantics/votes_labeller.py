@@ -1,0 +1,59 @@
+"""Labels from 2D label images: each cell takes the class that most of its pixels voted for.
+
+Where nothing voted, the geometric label stands; where votes are divided it decides. Label images
+err in patches, at edges and far away; planes know floor, ceiling and walls better than they.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
+from world2minecraft.reconstruction.layout.parameters import GeometricParameters
+from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
+from world2minecraft.reconstruction.semantics.smoothing import smooth_labels
+
+# What the geometric label counts beside shares of the votes, of structure and of objects. mIoU of
+# eight tuning scans: 0.879 without, 0.885, 0.889, 0.891 and 0.887 at 0.2, 0.4, 0.6 and 1.0.
+STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
+
+
+class VotesLabeller:
+    """Argmax of the votes over classes 1 to 11, and the geometric label where there are none."""
+
+    def __init__(self, parameters: GeometricParameters | None = None, *, small_cells: int = 3):
+        self.geometric = GeometricLabeller(parameters)
+        self.small_cells = small_cells  # A part with fewer cells is noise: a guess.
+
+    def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
+        """Return the grid with a class for each occupied cell.
+
+        Confidence is the winner's share of the votes times the cell's probability.
+
+        Raises:
+            ValueError: grid and evidence do not lie on the same cells.
+        """
+        base, origin = self.geometric.traced(grid, evidence)
+        occupied = np.argwhere(base.occupied)
+        seen_at = origin[tuple(occupied.T)]
+        votes = evidence.votes.reshape(-1, CLASS_COUNT)[seen_at].astype(np.float32)[:, 1:]
+        total = votes.sum(axis=1)
+        voted = total > 0
+        at = tuple(occupied[voted].T)
+        labels, confidence = np.array(base.labels), np.array(base.confidence, np.float32)
+        shares = votes[voted] / total[voted][:, None]
+        kinds = (shares + geometric_prior(base.labels[at])).argmax(axis=1)
+        labels[at] = kinds + 1
+        share = shares[np.arange(len(kinds)), kinds]
+        confidence[at] = share * grid.confidence.reshape(-1)[seen_at[voted]].astype(np.float32)
+        labels = smooth_labels(labels, self.small_cells)
+        return replace(base, labels=labels, confidence=confidence.astype(np.float16))
+
+
+def geometric_prior(labels: np.ndarray) -> np.ndarray:
+    """Return what geometric labels [N] of classes 1 to 11 add to each class, float32 [N, 11]."""
+    weight = np.where(labels <= SemanticClass.WINDOW, STRUCTURE_PRIOR, OBJECT_PRIOR)
+    prior = np.zeros((len(labels), CLASS_COUNT - 1), np.float32)
+    prior[np.arange(len(labels)), labels.astype(int) - 1] = weight
+    return prior

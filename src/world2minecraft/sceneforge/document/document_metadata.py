@@ -1,0 +1,164 @@
+"""Where a document lies, what it was opened from and where it is saved: ``document.json``.
+
+``{"format": "world2minecraft/sceneforge", "version": 1, "name", "source", "target", "inputs":
+{path: SHA-256}, "is_demo"}``; paths are relative to the folder that holds the document.
+"""
+
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.sceneforge.document import saving
+from world2minecraft.sceneforge.document.recovery import BASE_FILE, recover
+from world2minecraft.sceneforge.document.snapshots import State, write_state
+from world2minecraft.sceneforge.scene_sources import (
+    DEMO_FOLDER,
+    OpenedScene,
+    read_source_rooms,
+    resolve_source,
+)
+
+FORMAT, VERSION = "world2minecraft/sceneforge", 1
+SUFFIX = ".forge"
+DOCUMENT_FILE = "document.json"
+_MAX_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What ``document.json`` tells, with whole paths."""
+
+    name: str
+    source: Path
+    target: Path
+    inputs: Mapping[Path, str]
+    is_demo: bool = False
+
+    def opened(self, base: State) -> OpenedScene:
+        """Return the scene as it was opened first, with what stands beside its source now."""
+        source = DEMO_FOLDER if self.is_demo else self.source
+        fields = (self.name, self.target, tuple(self.inputs), base.grid, base.scan_to_room)
+        rooms = read_source_rooms(source, base.grid)
+        return OpenedScene(*fields, base.objects, rooms, source, is_demo=self.is_demo)
+
+
+def document_folder(source: Path | None, out: Path | None = None) -> Path:
+    """Return the document's folder of a source: beside it, or beside where it is saved."""
+    if source is not None and is_document(source):
+        return source
+    place = (out or resolve_source(source)).absolute()
+    place = Path(os.path.normpath(place))
+    return place.with_name(place.name + SUFFIX)
+
+
+def is_document(path: Path) -> bool:
+    """Whether a document lies at a path."""
+    return (path / DOCUMENT_FILE).is_file()
+
+
+def write_identity(folder: Path, opened: OpenedScene, generation: str) -> None:
+    """Make a document of a scene that was read. Raises OutputError."""
+    outputs = [opened.folder / name for name in saving.SAVED_FILES] if opened.is_run else []
+    held = {path: saving.sha256(path) for path in (*opened.inputs, *outputs)}
+    state = State(opened.grid, opened.objects, opened.scan_to_room, generation=generation)
+    write_state(folder / BASE_FILE, state)
+    write_json(
+        folder / DOCUMENT_FILE,
+        {
+            "format": FORMAT,
+            "version": VERSION,
+            "name": opened.name,
+            "source": _relative(opened.source, folder),
+            "target": _relative(opened.folder, folder),
+            "inputs": {_relative(path, folder): value for path, value in held.items() if value},
+            "is_demo": opened.is_demo,
+        },
+    )
+
+
+def read_identity(folder: Path) -> Identity:
+    """Read what a document is of.
+
+    Raises:
+        InputError: there is none. DamagedFileError: its ``document.json`` is none.
+    """
+    path = folder / DOCUMENT_FILE
+    data = read_json(path, _MAX_BYTES)
+    try:
+        if (data["format"], data["version"]) != (FORMAT, VERSION):
+            raise ValueError(f"it is {data['format']} {data['version']}, not {FORMAT} {VERSION}")
+        return Identity(
+            str(data["name"]),
+            _place(data["source"], folder),
+            _place(data["target"], folder),
+            {_place(name, folder): str(value) for name, value in data["inputs"].items()},
+            bool(data["is_demo"]),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DamagedFileError(path, f"is no document of this program ({error})") from error
+
+
+def retire_outdated(folder: Path) -> str:
+    """Set a document aside whose source was written anew by another program; tell so.
+
+    Returns:
+        A sentence for the user, empty where the source is what it was.
+
+    Raises:
+        ConflictError: the document has edits that were not saved; nothing is changed.
+    """
+    changed = changed_inputs(folder)
+    if not changed:
+        return ""
+    unsaved = recover(folder).rev - saving.saved_rev(folder)
+    if unsaved > 0:
+        raise ConflictError(
+            changed[0],
+            f"changed since it was edited, and {folder.name} holds {unsaved} edits that were not "
+            f"saved; open {folder} to go on with them, or move it away to begin anew",
+        )
+    aside = _retire(folder)
+    return f"{changed[0].name} was written anew since; its old edits are in {aside.name}."
+
+
+def changed_inputs(folder: Path) -> list[Path]:
+    """Return the files a document was opened from that hold something else now."""
+    saved = saving.saved_hashes(folder)
+    identity = read_identity(folder)
+    return [
+        path
+        for path, value in identity.inputs.items()
+        if saving.sha256(path) not in ("", value, *saved)
+    ]
+
+
+def _retire(folder: Path) -> Path:
+    """Move everything of a document but its lock into a folder within it."""
+    names = (folder / f"old-{number}" for number in count(1))
+    aside = next(path for path in names if not path.exists())
+    try:
+        aside.mkdir()
+        held = [path for path in sorted(folder.iterdir()) if not path.name.startswith("old-")]
+        # The name of the document goes first: without it the rest is no document.
+        for path in sorted(held, key=lambda path: path.name != DOCUMENT_FILE):
+            if path.name != "lock":
+                shutil.move(path, aside / path.name)
+    except OSError as error:
+        raise OutputError(folder, f"cannot be written: {error.strerror or error}") from error
+    return aside
+
+
+def _relative(path: Path, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(path.absolute(), folder.absolute().parent)).as_posix()
+    except ValueError:  # Another drive of Windows.
+        return path.absolute().as_posix()
+
+
+def _place(data: str, folder: Path) -> Path:
+    return Path(os.path.normpath(folder.absolute().parent / str(data)))

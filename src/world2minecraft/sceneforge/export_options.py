@@ -1,0 +1,142 @@
+"""The scene as it is edited, for other programs: what can be made of it, and where it can go.
+
+Data (``occ.json``, ``room.npz`` ...) is written here at once. What needs blocks is built by a
+worker from a ``write_snapshot`` of the scene, while the scene is edited further.
+"""
+
+import csv
+import hashlib
+import io
+import os
+import shutil
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.files import write_text
+from world2minecraft.editing.scene import instances_of, placements_of
+from world2minecraft.formats.objects_and_placements import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.run_arrays import write_room
+from world2minecraft.formats.volume_formats import writable_format_names
+from world2minecraft.minecraft.worlds.launchers import Game, find_games
+from world2minecraft.sceneforge.editor import Editor
+
+DATA_FILES = {
+    "npz": "room.npz",
+    "occ": "occ.json",
+    "centers": "centers.json",
+    "objects": "objects.json",
+    "placements": "placements.json",
+    "stats": "stats.csv",
+}
+BUILT_FIRST, MODELS = ("world", "schem"), ("glb", "habitat", "png")
+COPIED = ("scan.json", "layout.json")  # The scene's name, and where its inner corner stands.
+
+
+@dataclass(frozen=True)
+class ExportForm:
+    """One thing to download; ``built`` says that it is made of blocks, at a scale."""
+
+    id: str
+    group: str  # game, 3d, data
+    built: bool
+
+
+def export_forms() -> tuple[ExportForm, ...]:
+    """Return all forms that a scene can be downloaded in."""
+    others = [name for name in writable_format_names() if name not in (*BUILT_FIRST, *MODELS)]
+    game = [ExportForm(name, "game", True) for name in (*BUILT_FIRST, *others)]
+    models = [ExportForm(name, "3d", True) for name in MODELS]
+    return (*game, *models, *(ExportForm(name, "data", False) for name in DATA_FILES))
+
+
+def get_export_form(name: str) -> ExportForm:
+    """Return a form by its id. Raises UnknownNameError."""
+    known = {one.id: one for one in export_forms()}
+    if name not in known:
+        raise UnknownNameError("export", name, known)
+    return known[name]
+
+
+def write_snapshot(editor: Editor, folder: Path) -> None:
+    """Write the scene as it is now to a folder, as ``Editor.save`` would to its own.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
+    folder.mkdir(parents=True, exist_ok=True)
+    instances = instances_of(objects, grid.instance)
+    write_room(folder / "room.npz", grid, editor.opened.scan_to_room)
+    write_objects(folder / "objects.json", instances)
+    write_placements(folder / "placements.json", placements_of(objects))
+    for name in COPIED:
+        if (editor.opened.folder / name).is_file():
+            shutil.copyfile(editor.opened.folder / name, folder / name)
+
+
+def write_data(editor: Editor, form: str, folder: Path) -> Path:
+    """Write one of ``DATA_FILES`` of the scene as it is now; return the file.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    path = folder / DATA_FILES[form]
+    grid, objects = editor.read(lambda: (editor.draft.grid(), tuple(editor.draft.objects.values())))
+    instances = instances_of(objects, grid.instance)
+    if form == "npz":
+        write_room(path, grid, editor.opened.scan_to_room)
+    elif form == "occ":
+        write_occ_json(path, grid)
+    elif form == "centers":
+        write_centers_json(path, instances)
+    elif form == "objects":
+        write_objects(path, instances)
+    elif form == "placements":
+        write_placements(path, placements_of(objects))
+    else:
+        write_text(path, stats_csv(editor))
+    return path
+
+
+def stats_csv(editor: Editor) -> str:
+    """Return what the scene holds by class: cells, objects, and the cubic metres of the cells."""
+    counts, objects = editor.read(
+        lambda: (editor.draft.counts.copy(), tuple(editor.draft.objects.values()))
+    )
+    stream = io.StringIO()
+    rows = csv.writer(stream, lineterminator="\n")
+    rows.writerow(["class_id", "class", "cells", "objects", "cells_m3"])
+    owned = np.bincount([one.class_id for one in objects] or [0], minlength=len(CLASS_NAMES))
+    owned = owned if objects else owned * 0
+    cell_m3 = editor.draft.voxel_m**3
+    for number, name in enumerate(CLASS_NAMES):
+        cells = int(counts[number])
+        rows.writerow([number, name, cells, int(owned[number]), f"{cells * cell_m3:.3f}"])
+    return stream.getvalue()
+
+
+def games_here() -> dict[str, Game]:
+    """Return the games of this machine by an id that says nothing of their paths."""
+    found = find_games(sys.platform, Path.home(), os.environ)
+    return {_id_of(game.saves): game for game in found}
+
+
+def worlds_here() -> dict[str, tuple[Game, Path]]:
+    """Return the worlds of the games of this machine, each by an id, with its game."""
+    found = {}
+    for game in games_here().values():
+        folders = sorted(game.saves.iterdir()) if game.saves.is_dir() else []
+        for folder in folders:
+            if (folder / "level.dat").is_file() and not folder.is_symlink():
+                found[_id_of(folder)] = (game, folder)
+    return found
+
+
+def _id_of(path: Path) -> str:
+    return hashlib.sha256(str(path).encode("utf-8", "surrogateescape")).hexdigest()[:12]

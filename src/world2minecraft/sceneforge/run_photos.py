@@ -1,0 +1,185 @@
+"""The photos of a run: where each was taken in the room, and the picture as an ideal camera has it.
+
+What goes to the page is a camera without distortion, with square pixels and its axis through the
+middle of the picture, so that a view of the room with the same place and vertical field of view
+lies on the photo line for line. Pictures are decoded when they are asked for.
+"""
+
+import io
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.depth_images import DepthEncoding, read_depth
+from world2minecraft.capture.images import read_colour, read_small
+from world2minecraft.capture.source_types import FrameFiles
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.types import Camera
+from world2minecraft.evaluation.report.placed_frames import judge_capture_of, placed_frames, used_by
+from world2minecraft.evaluation.scoring.used_frames import computed
+from world2minecraft.geometry.undistort import undistort_image
+
+MAX_SIDE_PX, SMALL_PX = 1280, 200
+CACHE_BYTES = 48 << 20  # Of pictures that were made: some hundred.
+QUALITY = 84
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPhoto:
+    """One photo: ``camera_to_room`` float64 [4, 4] with OpenCV axes, and its ideal camera."""
+
+    frame: FrameFiles
+    camera_to_room: np.ndarray
+    camera: Camera
+    ideal: Camera
+
+    def as_json(self, number: int) -> dict[str, Any]:
+        """Return what the page is told of it."""
+        height = self.ideal.height_px
+        return {
+            "n": number,
+            "name": self.frame.name,
+            "camera_to_room": self.camera_to_room.tolist(),
+            "vertical_fov_deg": float(np.degrees(2 * np.arctan(height / 2 / self.ideal.fy_px))),
+            "aspect": self.ideal.width_px / height,
+            "is_depth": self.frame.colour_path is None,
+        }
+
+
+@dataclass(eq=False)
+class RunPhotos:
+    """The photos of one run. Pictures may be asked for from any thread; one is made at a time."""
+
+    photos: tuple[PlacedPhoto, ...]
+    encoding: DepthEncoding
+    _made: "OrderedDict[tuple[int, bool], bytes]" = field(default_factory=OrderedDict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """Return what the page is told of all photos, in their order."""
+        return [photo.as_json(number) for number, photo in enumerate(self.photos)]
+
+    def jpeg(self, number: int, small: bool) -> bytes:
+        """Return a photo as its ideal camera has it, or a small picture of it for the strip.
+
+        Raises:
+            UnknownNameError: there is no such photo. InputError: it cannot be decoded.
+        """
+        if not 0 <= number < len(self.photos):
+            raise UnknownNameError("photo", str(number), map(str, range(min(3, len(self.photos)))))
+        with self._lock:
+            key = (number, small)
+            if key not in self._made:
+                self._keep(key, _jpeg(self._pixels(self.photos[number], small)))
+            self._made.move_to_end(key)
+            return self._made[key]
+
+    def _pixels(self, photo: PlacedPhoto, small: bool) -> np.ndarray:
+        place = photo.frame.colour_path
+        if place is None:
+            return _depth_picture(photo.frame, self.encoding, SMALL_PX if small else MAX_SIDE_PX)
+        if small:
+            return read_small(place, SMALL_PX)
+        return undistort_image(read_colour(place), photo.camera, photo.ideal)
+
+    def _keep(self, key: tuple[int, bool], data: bytes) -> None:
+        self._made[key] = data
+        while len(self._made) > 1 and sum(map(len, self._made.values())) > CACHE_BYTES:
+            self._made.popitem(last=False)
+
+
+def read_photos(run: Path, capture: Path, scan_to_room: np.ndarray) -> RunPhotos:
+    """Return the photos of a run that it used, in the room's frame.
+
+    Args:
+        run: the run's folder; its ``poses.npz`` says how poses were corrected.
+        capture: what was reconstructed.
+        scan_to_room: float64 [4, 4].
+
+    Raises:
+        CaptureError: the capture cannot be read. UsageError: none of its frames is of this run.
+    """
+    judged = judge_capture_of(run, capture)
+    photos = tuple(
+        PlacedPhoto(one.frame, one.camera_to_room, one.camera, ideal_camera(one.camera))
+        for one in placed_frames(run, judged, scan_to_room)
+    )
+    if not photos:
+        raise UsageError(f"{capture.name} holds no photo that this room was made of")
+    return RunPhotos(photos, judged.encoding)
+
+
+def find_capture_of(run: Path, given: Path | None) -> Path:
+    """Return where the photos of a run lie.
+
+    Args:
+        run: the run's folder.
+        given: where the user says that they lie.
+
+    Raises:
+        UsageError: nobody says so.
+    """
+    own = computed(run)
+    if own is not None:
+        return own
+    if given is not None:
+        return given
+    raise UsageError(
+        f"{run.name} does not say where its photos lie; start w2m forge {run.name} "
+        "--capture PATH_OF_THE_CAPTURE"
+    )
+
+
+def count_photos(run: Path, capture: Path | None) -> int:
+    """Return how many photos a run says it was made of; 0 where they lie nowhere.
+
+    The pictures themselves are not looked at, so this takes no time.
+    """
+    try:
+        find_capture_of(run, capture)
+    except UsageError:
+        return 0
+    return len(used_by(run))
+
+
+def ideal_camera(camera: Camera, longest_px: int = MAX_SIDE_PX) -> Camera:
+    """Return a camera that sees the largest part of a picture around its principal point.
+
+    Args:
+        camera: of the picture, with any distortion.
+        longest_px: of the result's longer side; a smaller picture stays as large as it is.
+
+    Returns:
+        No distortion, one focal length, the principal point in the middle.
+    """
+    half_x = max(min(camera.cx_px, camera.width_px - camera.cx_px), 1.0)
+    half_y = max(min(camera.cy_px, camera.height_px - camera.cy_px), 1.0)
+    tall = half_y * camera.fx_px / camera.fy_px  # In pixels as wide as the picture's.
+    scale = min(1.0, longest_px / (2 * max(half_x, tall)))
+    width, height = max(round(2 * half_x * scale), 2), max(round(2 * tall * scale), 2)
+    focal = camera.fx_px * scale
+    return Camera(width, height, focal, focal, width / 2, height / 2)
+
+
+def _depth_picture(frame: FrameFiles, encoding: DepthEncoding, longest_px: int) -> np.ndarray:
+    """Near is light, far is dark, holes are black; for captures without colour."""
+    if frame.depth_path is None:
+        raise InputError(frame.name, "has neither colour nor depth")
+    depth = read_depth(frame.depth_path, encoding)
+    seen = depth > 0
+    far = float(np.percentile(depth[seen], 98)) if seen.any() else 1.0
+    grey = np.where(seen, 255 - 215 * np.clip(depth / max(far, 1e-6), 0, 1), 0).astype(np.uint8)
+    image = Image.fromarray(grey).convert("RGB")
+    image.thumbnail((longest_px, longest_px))
+    return np.array(image, np.uint8)
+
+
+def _jpeg(pixels: np.ndarray) -> bytes:
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, "JPEG", quality=QUALITY)
+    return stream.getvalue()

@@ -1,0 +1,225 @@
+"""What SceneForge opens, as a scene with objects; nothing is written.
+
+==============================  ================================================================
+a run's folder, its room.npz    its grid, objects and placements as they stand
+``occ.json``                    in any of the forms of ``formats/occupancy_files.py``, its objects
+                                from ``centers.json`` beside it, where there is one
+any other occupancy file        objects are found and matched first, as ``w2m build`` does
+nothing                         the demo room that comes with the program
+==============================  ================================================================
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import InputError, LimitError
+from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
+from world2minecraft.editing.scene import objects_of
+from world2minecraft.formats.layout import read_rooms
+from world2minecraft.formats.objects_and_placements import read_objects, read_placements
+from world2minecraft.formats.occupancy_files import (
+    Center,
+    read_any_centers,
+    read_any_occ,
+    read_occupancy,
+)
+from world2minecraft.formats.run_arrays import read_room
+from world2minecraft.furniture.front_estimation import (
+    Surroundings,
+    estimate_facing,
+    read_surroundings,
+)
+from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.retrieval import place_templates
+
+MAX_CENTERS = 65535
+RUN_FILES = ("room.npz", "objects.json", "placements.json")
+DEMO_FOLDER = Path(__file__).parent / "demo_room"
+DEMO_OUT = Path("demo-room")
+
+
+def instances_from_centers(
+    grid: OccupancyGrid, centers: Sequence[Center]
+) -> tuple[OccupancyGrid, tuple[ObjectInstance, ...]]:
+    """Return the grid with instances, and one object for each centre of an object class.
+
+    Each cell belongs to the nearest centre of its class; cells of a class without a centre belong
+    to no object. A centre without cells is an object of one cell's size.
+
+    Raises:
+        LimitError: there are more centres than ids.
+    """
+    wanted = [one for one in centers if one.class_id in OBJECT_CLASSES]
+    if len(wanted) > MAX_CENTERS:
+        raise LimitError("centers", f"are {len(wanted):,}; at most {MAX_CENTERS:,} are read")
+    instance = np.zeros(grid.shape, np.uint16)
+    around = read_surroundings(grid.labels)
+    objects: list[ObjectInstance] = []
+    for class_id in OBJECT_CLASSES:
+        places = np.array([one.position_m for one in wanted if one.class_id == class_id])
+        if not len(places):
+            continue
+        cells = np.argwhere(grid.labels == class_id).astype(np.int32)
+        owners = _nearest(cell_centers_m(cells, grid.origin_m, grid.voxel_m), places)
+        for number, place in enumerate(places):
+            own = cells[owners == number]
+            objects.append(_object(len(objects) + 1, class_id, place, own, grid, around))
+            instance[tuple(own.T)] = len(objects)
+    return replace(grid, instance=instance), tuple(objects)
+
+
+def _nearest(points_m: np.ndarray, places_m: np.ndarray) -> np.ndarray:
+    """Return for each point, float64 [N, 3], the number of the nearest place."""
+    found = KDTree(places_m).query(points_m)[1] if len(points_m) else []
+    return np.asarray(found, np.int64)
+
+
+def _object(
+    number: int,
+    class_id: int,
+    place_m: np.ndarray,
+    cells: np.ndarray,
+    grid: OccupancyGrid,
+    around: Surroundings,
+) -> ObjectInstance:
+    if not len(cells):
+        side = np.full(3, grid.voxel_m)
+        return ObjectInstance(number, class_id, place_m, side, 0.0, cells, 0.0)
+    front = estimate_facing(cells, class_id, around)
+    first, last = cells.min(axis=0), cells.max(axis=0) + 1
+    size = (last - first) * grid.voxel_m
+    center = grid.origin_m + (first + last) * grid.voxel_m / 2
+    own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
+    yaw = 90.0 * front.quarter_turns
+    return ObjectInstance(number, class_id, center, own_axes, yaw, cells, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedScene:
+    """A scene as it was found.
+
+    ``folder`` is where it is saved; ``is_run`` tells that the files that stand there may be
+    written over. ``inputs`` are the files that were read; ``source`` is their folder or file.
+    Furniture stays within ``rooms``.
+    """
+
+    name: str
+    folder: Path
+    inputs: tuple[Path, ...]
+    grid: OccupancyGrid
+    scan_to_room: np.ndarray  # float64 [4, 4]
+    objects: tuple[SceneObject, ...]
+    rooms: tuple[Layout, ...] = ()
+    source: Path = Path()
+    is_run: bool = False
+    is_demo: bool = False
+
+
+def resolve_source(source: Path | None) -> Path:
+    """Return what a path means: a run for its ``room.npz``, the demo's folder for None."""
+    if source is None:
+        return DEMO_OUT.absolute()
+    if source.name == "room.npz" and (source.parent / "objects.json").is_file():
+        return source.absolute().parent
+    return source.absolute()
+
+
+def read_source(source: Path | None, out: Path | None = None) -> OpenedScene:
+    """Read a scene from where it lies.
+
+    Args:
+        source: a run's folder or an occupancy file; None for the demo room.
+        out: where it is saved, where not with the source.
+
+    Raises:
+        InputError: there is nothing, or nothing that can be read. DamagedFileError: a file is not
+        what its format says. LimitError: it is too large.
+    """
+    place = resolve_source(source)
+    if source is None:
+        opened = replace(
+            _read_run(DEMO_FOLDER),
+            name="Demo room", folder=place, inputs=(), is_run=False, is_demo=True,
+        )  # fmt: skip
+    elif place.is_dir():
+        opened = _read_run(place)
+    elif place.suffix == ".json":
+        opened = _read_paper(place)
+    else:
+        opened = _read_file(place)
+    return opened if out is None else replace(opened, folder=out.absolute(), is_run=False)
+
+
+def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
+    """Return the rooms that furniture stays within; none where nothing tells of them."""
+    try:
+        return read_rooms(source, grid) if source.is_dir() else ()
+    except InputError:
+        return ()
+
+
+def _read_run(folder: Path) -> OpenedScene:
+    if not (folder / "room.npz").is_file():
+        raise InputError(folder, "is no run of w2m: room.npz is missing; w2m reconstruct makes one")
+    grid, scan_to_room = read_room(folder / "room.npz")
+    rooms = read_source_rooms(folder, grid)
+    inputs = tuple(folder / name for name in RUN_FILES if (folder / name).is_file())
+    if (folder / "objects.json").is_file():
+        instances = read_objects(folder / "objects.json", grid)
+        is_furnished = (folder / "placements.json").is_file()
+        placed = read_placements(folder / "placements.json") if is_furnished else ()
+        objects = objects_of(instances, placed)
+    else:
+        grid, objects = detect_objects(grid, rooms)
+    fields = (folder.name, folder, inputs, grid, scan_to_room, objects, rooms)
+    return OpenedScene(*fields, source=folder, is_run=True)
+
+
+def _read_file(source: Path) -> OpenedScene:
+    grid = read_occupancy(source)
+    scan_to_room = read_room(source)[1] if source.name == "room.npz" else np.eye(4)
+    grid, objects = detect_objects(grid)
+    is_run = source.name == "room.npz"
+    folder = source.parent if is_run else source.parent / source.stem
+    fields = (source.name, folder, (source,), grid, scan_to_room, objects)
+    return OpenedScene(*fields, source=source, is_run=is_run)
+
+
+def _read_paper(source: Path) -> OpenedScene:
+    grid, unit = read_any_occ(source)
+    beside = source.with_name(source.name.replace("occ", "centers"))
+    inputs, centers = (source,), None
+    if beside != source and beside.is_file():
+        centers, inputs = read_any_centers(beside, grid, unit), (source, beside)
+    grid, objects = detect_objects(grid, (), centers)
+    is_run = source.name == "occ.json" and not (source.parent / "room.npz").exists()
+    folder = source.parent if is_run else source.parent / source.stem
+    fields = (source.name, folder, inputs, grid, np.eye(4), objects)
+    return OpenedScene(*fields, source=source, is_run=is_run)
+
+
+def detect_objects(
+    grid: OccupancyGrid,
+    rooms: Sequence[Layout] = (),
+    centers: Sequence[Center] | None = None,
+) -> tuple[OccupancyGrid, tuple[SceneObject, ...]]:
+    """Return a grid with its instances, and the objects with the furniture that is matched.
+
+    Args:
+        grid: the occupancy.
+        rooms: that the furniture stays within.
+        centers: of the objects; None to find them.
+    """
+    instances: tuple[ObjectInstance, ...]
+    if centers is None:
+        found = find_objects(grid)
+        grid, instances = found.grid, found.instances
+    else:
+        grid, instances = instances_from_centers(grid, centers)
+    return grid, objects_of(instances, place_templates(grid, instances, None, rooms))
