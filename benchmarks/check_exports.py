@@ -28,9 +28,9 @@ from world2minecraft.minecraftocc.building import build_dataset
 from world2minecraft.minecraftocc.engine import open_engine
 from world2minecraft.minecraftocc.exporters import export_samples
 from world2minecraft.minecraftocc.plan import house_scenes, plan_dataset
+from world2minecraft.minecraftocc.sample_figure import cells_behind_depth
 from world2minecraft.minecraftocc.store import open_store
 from world2minecraft.minecraftocc.types import OccSample
-from world2minecraft.minecraftocc.visualization import cells_behind_depth
 
 HOUSES, IMAGES = 4, 40
 NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind_depth`` looks.

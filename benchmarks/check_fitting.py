@@ -66,7 +66,7 @@ class Score(NamedTuple):
 
     iou: float
     thin: float
-    find_unstable: int
+    unstable: int
     loose: int
     seconds: float
 

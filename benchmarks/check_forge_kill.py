@@ -26,7 +26,7 @@ import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.editing.scene import SceneDraft
-from world2minecraft.editing.scene.scene_objects import object_key
+from world2minecraft.editing.scene.object_conversion import object_key
 from world2minecraft.sceneforge.demo_room_source import demo_room
 from world2minecraft.sceneforge.document import document as document_module
 from world2minecraft.sceneforge.editor import Editor

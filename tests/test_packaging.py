@@ -70,13 +70,13 @@ def test_the_wheel_holds_the_built_page_and_not_its_sources(tmp_path, monkeypatc
     monkeypatch.chdir(ROOT)
     with ZipFile(tmp_path / building.build_wheel(str(tmp_path))) as wheel:
         every = set(wheel.namelist())
-    names = {name for name in every if "/forge/" in name}
+    names = {name for name in every if "/sceneforge/" in name}
     body = ("body.mjs", "game_rules.mjs", "package.json", "package-lock.json")
     assert {f"world2minecraft/navigation/server/{name}" for name in body} <= every
     assert "world2minecraft/sceneforge/annotation/page/annotate.js" in every
     page = {name.partition("/static/")[2] for name in names if "/static/" in name}
     assert {"index.html", "index.js"} <= page
-    static = ROOT / "src" / "world2minecraft" / "forge" / "static"
+    static = ROOT / "src" / "world2minecraft" / "sceneforge" / "static"
     assert page == {str(one.relative_to(static)) for one in static.rglob("*") if one.is_file()}
     assert "world2minecraft/sceneforge/server/app.py" in names
     assert not [name for name in names if "/web/" in name or "node_modules" in name]

@@ -25,7 +25,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs_of_cells
 from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
-from world2minecraft.editing.scene.scene_objects import connected_component
+from world2minecraft.editing.scene.object_conversion import connected_component
 
 TARGET = Path(__file__).parents[1] / "tests" / "forge" / "vectors"
 SHAPES = ((1, 1, 1), (4, 3, 2), (2, 5, 3), (1, 7, 1))

@@ -92,7 +92,7 @@ def test_a_sheet_shows_pictures_with_their_labels_beside(store, tmp_path, capsys
 def test_wrong_axes_are_seen_in_the_figure(made):
     from dataclasses import replace
 
-    from world2minecraft.minecraftocc.visualization import share_of_depth_in_cells
+    from world2minecraft.minecraftocc.sample_figure import share_of_depth_in_cells
 
     turned = np.ascontiguousarray(made.occ.labels.transpose(1, 0, 2))
     wrong = replace(made, occ=replace(made.occ, labels=turned))
@@ -103,7 +103,7 @@ def test_wrong_axes_are_seen_in_the_figure(made):
 def test_samples_without_pictures_are_shown_too(made):
     from dataclasses import replace
 
-    from world2minecraft.minecraftocc.visualization import draw_sample
+    from world2minecraft.minecraftocc.sample_figure import draw_sample
 
     assert draw_sample(replace(made, colour=None, depth_m=None)).shape[2] == 3
 

@@ -17,7 +17,7 @@ from world2minecraft.minecraft.bit_packing import (
     straddled_word_count,
     word_count,
 )
-from world2minecraft.minecraft.block_names import (
+from world2minecraft.minecraft.block_renames import (
     count_mod_blocks,
     count_unknown_blocks,
     is_unknown,

@@ -20,8 +20,8 @@ from world2minecraft.minecraftocc.labels.image_labels import (
     unknown_cells,
 )
 from world2minecraft.minecraftocc.labels.voxelization import voxelize_scene
+from world2minecraft.minecraftocc.sample_figure import project_labels
 from world2minecraft.minecraftocc.types import OccSample
-from world2minecraft.minecraftocc.visualization import project_labels
 from world2minecraft.rendering import prepare_scene, render_volume
 
 RULE = RegionRule(shape=(24, 22, 20))

@@ -8,8 +8,8 @@ from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
 from world2minecraft.minecraftocc import photo_rooms
 from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples, voxelize_room
+from world2minecraft.minecraftocc.sample_figure import share_of_depth_in_cells
 from world2minecraft.minecraftocc.store import open_store
-from world2minecraft.minecraftocc.visualization import share_of_depth_in_cells
 from world2minecraft.procgen import generate_room
 
 CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)

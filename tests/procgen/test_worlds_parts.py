@@ -10,9 +10,9 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
 from world2minecraft.minecraft.physics.walk_graph import walk_graph
+from world2minecraft.procgen.worlds.block_house import person_size_blocks, plan_block_house
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
 from world2minecraft.procgen.worlds.furniture_choice import DESIGNS
-from world2minecraft.procgen.worlds.house_layout import person_size_blocks, plan_block_house
 from world2minecraft.procgen.worlds.recipes import BLOCK_RECIPES, BOARDS, PILLARS, RIMS
 from world2minecraft.procgen.worlds.shell import rails
 from world2minecraft.procgen.worlds.styles import draw_look, styles

@@ -142,7 +142,7 @@ def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_p
 
 
 def test_a_run_that_was_cut_off_goes_on(out, capture, monkeypatch, tmp_path):
-    from world2minecraft.reconstruction import stages as steps
+    from world2minecraft.reconstruction import file_stages as steps
 
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "cut")]
     real = steps.FILE_STAGES["furnish"]

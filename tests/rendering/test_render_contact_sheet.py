@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scenes import volume_of
 
-from world2minecraft.rendering.contact_sheet import (
+from world2minecraft.rendering.furniture_sheet import (
     CARD,
     TILE_PX,
     Card,

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
-from world2minecraft.editing.scene.scene_objects import object_key
+from world2minecraft.editing.scene.object_conversion import object_key
 from world2minecraft.formats.objects_and_placements import write_objects, write_placements
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.sceneforge.editor import Editor

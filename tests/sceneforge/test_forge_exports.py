@@ -16,7 +16,7 @@ from world2minecraft.formats.paper_json import read_occ_json
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.formats.volume_formats import read_volume, writable_format_names
 from world2minecraft.minecraft.worlds.world_writer import read_world
-from world2minecraft.reconstruction.stages import built_volume
+from world2minecraft.reconstruction.file_stages import built_volume
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.export_options import (
     export_forms,

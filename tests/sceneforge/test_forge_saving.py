@@ -11,8 +11,8 @@ from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.formats.occupancy_files import read_occupancy
 from world2minecraft.formats.world_labels import read_scene
+from world2minecraft.reconstruction.file_stages import build_stage
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.stages import build_stage
 from world2minecraft.sceneforge.document import saving
 from world2minecraft.sceneforge.editor import Editor
 

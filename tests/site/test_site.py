@@ -60,6 +60,6 @@ def test_a_site_without_a_warning_holds_all_of_it(tmp_path):
     assert sentence in front and "<!-- README" not in front
     verbs = (tmp_path / "verbs.html").read_text()
     assert all(f'id="{verb.replace(" ", "-")}"' in verbs for verb in VERBS)
-    api = (tmp_path / "api" / "fuse.html").read_text()
+    api = (tmp_path / "api" / "reconstruction.fusion.html").read_text()
     assert 'id="world2minecraft.reconstruction.fusion.extract_grid.extract_grid"' in api
-    assert (tmp_path / "api" / "vln.environment.html").is_file()
+    assert (tmp_path / "api" / "navigation.environment.html").is_file()

@@ -67,9 +67,9 @@ def test_shapes_are_no_links():
 
 
 def test_a_page_of_a_package_names_its_public_modules():
-    page = modules._page("fuse", modules.SOURCE / "fuse")
+    page = modules._page("reconstruction.fusion", modules.SOURCE / "reconstruction" / "fusion")
     assert "::: world2minecraft.reconstruction.fusion.extract_grid\n" in page
-    assert "fuse.__init__" not in page
+    assert "fusion.__init__" not in page
 
 
 def test_a_benchmark_stands_with_its_command():

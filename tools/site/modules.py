@@ -12,15 +12,15 @@ from typing import Any
 from mkdocs.structure.files import File
 
 SOURCE = Path(__file__).parents[2] / "src" / "world2minecraft"
-LEFT_OUT = {"cli", "forge"}
+LEFT_OUT = {"cli", "sceneforge"}
 # What ``nav`` says where these pages belong.
 PLACE = "API"
 
 
 def on_files(files: Any, config: Any) -> Any:
     """Add the pages, and put them into the navigation."""
-    entries: list[Any] = [{"Foundation": "api/foundation.md"}]
-    files.append(File.generated(config, "api/foundation.md", content=_foundation()))
+    entries: list[Any] = [{"world2minecraft": "api/root.md"}]
+    files.append(File.generated(config, "api/root.md", content=_root()))
     for folder in _packages(SOURCE):
         name = _dotted(folder)
         page = f"api/{name}.md"
@@ -39,9 +39,9 @@ def _packages(folder: Path) -> Iterator[Path]:
             yield from _packages(one)
 
 
-def _foundation() -> str:
+def _root() -> str:
     modules = "\n".join(_entry(f"world2minecraft.{name}", 2) for name in _modules(SOURCE))
-    return f"# Foundation\n\n`world2minecraft`: what stands beside the packages.\n\n{modules}"
+    return f"# world2minecraft\n\nThe modules beside the packages.\n\n{modules}"
 
 
 def _page(name: str, folder: Path) -> str:

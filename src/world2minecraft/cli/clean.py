@@ -170,8 +170,8 @@ def rewrite_build(build: Path, history: "History") -> None:
     from world2minecraft.core.files import read_json
     from world2minecraft.formats.world_labels import read_scene
     from world2minecraft.minecraft.worlds.world_reader import read_level
+    from world2minecraft.reconstruction.file_stages import write_further_forms
     from world2minecraft.reconstruction.parameters import Parameters
-    from world2minecraft.reconstruction.stages import write_further_forms
 
     name, version = read_level(build / "world").get("LevelName"), read_scene(build).mc_version
     write_build(build, history.volume, mc_version=version, name=str(name or WORLD_NAME))

@@ -97,7 +97,7 @@ def convert(
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
     from world2minecraft.formats.volume_formats import write_volume
-    from world2minecraft.minecraft.block_names import count_mod_blocks
+    from world2minecraft.minecraft.block_renames import count_mod_blocks
     from world2minecraft.minecraft.commands.datapack import to_namespace
     from world2minecraft.minecraft.file_format import Losses
 

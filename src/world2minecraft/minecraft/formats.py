@@ -181,7 +181,7 @@ class WorldFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write a world whose player starts at ``spawn``, or on top of the middle."""
-        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
         from world2minecraft.minecraft.worlds.world_writer import write_world  # noqa: PLC0415  # numba.
 
@@ -209,7 +209,7 @@ class SchemFormat(FileFormat):
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 1 or 3 where the options say so."""
-        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.sponge import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
@@ -252,7 +252,7 @@ class DatapackFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace that the options' name makes."""
-        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
             to_namespace,
             write_datapack,

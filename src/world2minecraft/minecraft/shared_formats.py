@@ -26,7 +26,7 @@ class LitematicFormat(FileFormat):
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
         """Write one region under the options' name."""
-        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.litematic import write_litematic  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
@@ -50,7 +50,7 @@ class StructureFormat(FileFormat):
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
         """Write one structure; one too large for a structure block gets a pack of pieces too."""
-        from world2minecraft.minecraft.block_names import count_unknown_blocks  # noqa: PLC0415
+        from world2minecraft.minecraft.block_renames import count_unknown_blocks  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure import write_structure  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure_pack import (  # noqa: PLC0415
             PACK_SUFFIX,

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
-from world2minecraft.minecraft.block_names import read_state, write_state
+from world2minecraft.minecraft.block_renames import read_state, write_state
 from world2minecraft.minecraft.block_states import MAX_TEXT, BlockState, parse_state
 
 

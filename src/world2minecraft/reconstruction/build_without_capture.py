@@ -15,9 +15,9 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.formats.occupancy_files import read_occupancy
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
+from world2minecraft.reconstruction.file_stages import built_volume, run_stage
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import BUILT_FROM, check_finished, check_writable
-from world2minecraft.reconstruction.stages import built_volume, run_stage
 
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")

@@ -30,6 +30,7 @@ from world2minecraft.formats.scan_record import (
     write_scan,
 )
 from world2minecraft.furniture.user_library import user_design_files, user_design_folder
+from world2minecraft.reconstruction.file_stages import FILE_STAGES, run_stage
 from world2minecraft.reconstruction.floorplans import add_plan_openings, add_plan_votes
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import Predictor, notes_of, predictor
@@ -42,7 +43,6 @@ from world2minecraft.reconstruction.registration import (
 )
 from world2minecraft.reconstruction.resume import resume_manifest, resume_parameters
 from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture
-from world2minecraft.reconstruction.stages import FILE_STAGES, run_stage
 
 STAGES = ("scan", "register", "fuse", *FILE_STAGES)
 

@@ -18,7 +18,7 @@ from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
 from world2minecraft.editing.cleanup.passes import repair_volume
 from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.minecraft.physics import BlockWorld, find_standing_place
-from world2minecraft.reconstruction.stages import corner_m
+from world2minecraft.reconstruction.file_stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
 from world2minecraft.sceneforge.array_messages import pack_arrays
 from world2minecraft.sceneforge.editor import Editor

@@ -22,6 +22,7 @@ from world2minecraft.editing.scene.diagnostics import Diagnostic, find_diagnosti
 from world2minecraft.editing.scene.difference import compare_labels
 from world2minecraft.editing.scene.furniture_commands import ObjectClass
 from world2minecraft.editing.scene.object_boxes import object_by_id
+from world2minecraft.editing.scene.object_conversion import instance_of, placements_of
 from world2minecraft.editing.scene.object_transforms import Id
 from world2minecraft.editing.scene.plane_detection import find_planes
 from world2minecraft.editing.scene.repair import (
@@ -31,7 +32,6 @@ from world2minecraft.editing.scene.repair import (
     hole_cells,
     plane_gaps,
 )
-from world2minecraft.editing.scene.scene_objects import instance_of, placements_of
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 from world2minecraft.reconstruction.instances import FindParameters

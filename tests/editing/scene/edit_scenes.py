@@ -81,7 +81,7 @@ def random_operation(draft: SceneDraft, rng: np.random.Generator) -> Operation:
 
 def state(draft: SceneDraft) -> tuple:
     """Everything that a scene holds, in a form that compares."""
-    from world2minecraft.editing.scene.scene_objects import object_key
+    from world2minecraft.editing.scene.object_conversion import object_key
 
     arrays = (draft.labels, draft.confidence, draft.colour, draft.source, draft.instance)
     held = tuple(array.tobytes() for array in arrays)

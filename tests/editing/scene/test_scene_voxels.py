@@ -8,7 +8,7 @@ from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, se
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.editing.scene import SceneDraft, parse_command, runs_of_cells
-from world2minecraft.editing.scene.scene_objects import connected_component, connected_parts
+from world2minecraft.editing.scene.object_conversion import connected_component, connected_parts
 from world2minecraft.editing.scene.voxel_commands import infer_colours
 
 STEPS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.types import OccupancyGrid, Placement, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools
-from world2minecraft.editing.scene.scene_objects import object_key
+from world2minecraft.editing.scene.object_conversion import object_key
 
 VOXEL_M = 0.08
 seeds = st.integers(0, 10_000)

@@ -58,7 +58,7 @@ def run(
     """
     from world2minecraft.core.errors import InputError, UsageError
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.minecraftocc.contact_sheet import make_contact_sheet
+    from world2minecraft.minecraftocc.picture_sheet import make_contact_sheet
     from world2minecraft.rendering.output.images import colour_bytes
 
     if min(most, columns) < 1 or not 16 <= width <= 2000:
@@ -78,7 +78,7 @@ def run(
 
 
 def _chosen(count: int, most: int, first: bool) -> list[int]:
-    from world2minecraft.minecraftocc.contact_sheet import spread_indices
+    from world2minecraft.minecraftocc.picture_sheet import spread_indices
 
     return list(range(min(count, most))) if first else spread_indices(count, most)
 
@@ -87,8 +87,8 @@ def _of_data(
     folder: Path, most: int, first: bool, split: str, labels: bool
 ) -> "Iterable[tuple[np.ndarray, str]]":
     from world2minecraft.core.errors import InputError
+    from world2minecraft.minecraftocc.sample_figure import overlay_labels
     from world2minecraft.minecraftocc.store import open_store
-    from world2minecraft.minecraftocc.visualization import overlay_labels
 
     store = open_store(folder)
     keys = store.keys(split or None)
@@ -105,7 +105,7 @@ def _of_data(
 def _of_tour(
     tour: Path, world: Path, most: int, first: bool, width: int, hour: float | None
 ) -> "Iterable[tuple[np.ndarray, str]]":
-    from world2minecraft.minecraftocc.contact_sheet import draw_views
+    from world2minecraft.minecraftocc.picture_sheet import draw_views
     from world2minecraft.minecraftocc.scene_sources import open_scene_source
     from world2minecraft.minecraftocc.tours import read_views
     from world2minecraft.rendering.light import LightSettings

@@ -33,7 +33,7 @@ def run(
     """
     from world2minecraft.core.files import write_bytes
     from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.minecraftocc.visualization import draw_sample, share_of_depth_in_cells
+    from world2minecraft.minecraftocc.sample_figure import draw_sample, share_of_depth_in_cells
     from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)

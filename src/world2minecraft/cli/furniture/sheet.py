@@ -8,7 +8,7 @@ import typer
 
 if TYPE_CHECKING:
     from world2minecraft.furniture import Template
-    from world2minecraft.rendering.contact_sheet import Card
+    from world2minecraft.rendering.furniture_sheet import Card
 
 EXAMPLES = """\
 w2m furniture sheet --out furniture.png
@@ -60,7 +60,7 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
     from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_bytes
     from world2minecraft.furniture.library import group_by_class
-    from world2minecraft.rendering.contact_sheet import contact_sheet, sheet_png
+    from world2minecraft.rendering.furniture_sheet import contact_sheet, sheet_png
 
     found = group_by_class(templates).items()
     groups = {
@@ -73,7 +73,7 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
 
 def _card(one: "Template") -> list["Card"]:
     from world2minecraft.furniture.preview_scene import preview_volume
-    from world2minecraft.rendering.contact_sheet import Card
+    from world2minecraft.rendering.furniture_sheet import Card
 
     volumes = {f"{scale:g} a metre": preview_volume(one, scale, room=False) for scale in SCALES}
     drawn = {label: volume for label, volume in volumes.items() if volume is not None}

@@ -8,7 +8,7 @@ from world2minecraft.core.types.capture import Camera, Corrections, Scan, View, 
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
 from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
 from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
-from world2minecraft.core.types.occupancy import (
+from world2minecraft.core.types.occupancy_and_evidence import (
     COMPLETED,
     OBSERVED,
     UNSEEN,

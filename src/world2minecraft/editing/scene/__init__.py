@@ -4,8 +4,8 @@ from world2minecraft.editing.scene.cell_patch import cells_of_runs, runs_of_cell
 from world2minecraft.editing.scene.command import Command, Tools
 from world2minecraft.editing.scene.command_registry import COMMANDS, parse_command
 from world2minecraft.editing.scene.history import MemoryLog, SceneHistory, Timeline
+from world2minecraft.editing.scene.object_conversion import instances_of, objects_of, placements_of
 from world2minecraft.editing.scene.scene_draft import SceneDraft
-from world2minecraft.editing.scene.scene_objects import instances_of, objects_of, placements_of
 
 __all__ = [
     "COMMANDS",

@@ -17,10 +17,10 @@ from world2minecraft.editing.scene.object_boxes import (
     objects_by_ids,
     with_placement,
 )
+from world2minecraft.editing.scene.object_conversion import instance_of, object_of
 from world2minecraft.editing.scene.object_placement import standing_box
 from world2minecraft.editing.scene.object_transforms import Id, Ids, Point, QuarterTurns, is_free
 from world2minecraft.editing.scene.scene_draft import SceneDraft
-from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 from world2minecraft.furniture import Template, template, template_cells, templates_of_class
 
 ObjectClass = Annotated[int, Field(ge=5, le=11)]

@@ -19,13 +19,13 @@ from world2minecraft.editing.scene.object_boxes import (
     object_by_id,
     objects_by_ids,
 )
+from world2minecraft.editing.scene.object_conversion import instance_of, object_of
 from world2minecraft.editing.scene.object_transforms import (
     Id,
     Ids,
     Metre,
 )
 from world2minecraft.editing.scene.scene_draft import SceneDraft
-from world2minecraft.editing.scene.scene_objects import instance_of, object_of
 
 ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
 

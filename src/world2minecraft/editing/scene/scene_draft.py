@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.errors import ConflictError
 from world2minecraft.core.types import GridCells, OccupancyGrid, Operation, SceneObject
-from world2minecraft.editing.scene.scene_objects import same_object
+from world2minecraft.editing.scene.object_conversion import same_object
 
 ARRAYS = ("labels", "confidence", "colour", "source", "instance")
 

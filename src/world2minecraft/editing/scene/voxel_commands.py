@@ -22,14 +22,14 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, GridCells, Operation, SceneObject
 from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
 from world2minecraft.editing.scene.command import MAX_RUNS, Command, Tools
-from world2minecraft.editing.scene.scene_draft import SceneDraft
-from world2minecraft.editing.scene.scene_objects import (
+from world2minecraft.editing.scene.object_conversion import (
     box_of,
     connected_component,
     connected_parts,
     instance_of,
     shift_cells,
 )
+from world2minecraft.editing.scene.scene_draft import SceneDraft
 
 MAX_IDS = 1 << 16
 FEW = 16

@@ -32,10 +32,10 @@ from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_fr
 from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.run_arrays import read_room, write_evidence
 from world2minecraft.formats.scan_record import write_scan
+from world2minecraft.reconstruction.file_stages import FILE_STAGES
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.stages import FILE_STAGES
 
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from world2minecraft.core.files import write_text
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_entities import convert_volume
-from world2minecraft.minecraft.block_names import count_unknown_blocks
+from world2minecraft.minecraft.block_renames import count_unknown_blocks
 from world2minecraft.minecraft.commands.parser import read_command_list
 from world2minecraft.minecraft.commands.writer import (
     block_commands,

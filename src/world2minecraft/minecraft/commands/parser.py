@@ -20,7 +20,7 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import UNREADABLE, read_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
-from world2minecraft.minecraft.block_names import read_state
+from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.commands.snbt import SnbtReader
 from world2minecraft.minecraft.file_format import Losses

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_names import write_state
+from world2minecraft.minecraft.block_renames import write_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, cover_with_boxes

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.types import BlockEntity, Entity
-from world2minecraft.minecraft.block_names import read_state
+from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.attached_entities import move_attachment
 from world2minecraft.minecraft.signs import upgrade_sign

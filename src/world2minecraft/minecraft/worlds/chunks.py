@@ -21,7 +21,7 @@ from world2minecraft.minecraft.bit_packing import (
     skip_text_compounds,
     straddle_section_words,
 )
-from world2minecraft.minecraft.block_names import read_state
+from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.nbt import (
     BYTE,
     COMPOUND,

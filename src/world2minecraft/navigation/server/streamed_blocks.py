@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import ServerError, UnknownNameError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.block_names import read_state
+from world2minecraft.minecraft.block_renames import read_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.versions import game_version, game_versions
 

@@ -9,7 +9,7 @@ from world2minecraft.construction.block_updates import apply_block_updates
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.procgen.worlds.house_layout import BlockHouse
+from world2minecraft.procgen.worlds.block_house import BlockHouse
 
 MARGIN = 1  # The wall; what lies before it comes on top.
 UNDER = 2  # Layers under the lowest rooms: their floor, and the ground.

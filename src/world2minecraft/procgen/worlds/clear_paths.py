@@ -7,7 +7,7 @@ the floor, is not put.
 import numpy as np
 
 from world2minecraft.geometry.connected_components import label_components
-from world2minecraft.procgen.worlds.house_layout import (
+from world2minecraft.procgen.worlds.block_house import (
     BlockGap,
     BlockHouse,
     BlockRoom,

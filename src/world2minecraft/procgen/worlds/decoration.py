@@ -3,8 +3,8 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.procgen.worlds.block_house import BlockGap, BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher
-from world2minecraft.procgen.worlds.house_layout import BlockGap, BlockRoom
 
 OBJS = int(SemanticClass.OBJS)
 LEAF_SHARE = 0.6  # Of doors between rooms that have a leaf; the others are open frames.

@@ -13,10 +13,10 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture import BlockDesign, template
 from world2minecraft.furniture.block_designs import block_size, lay_template
 from world2minecraft.procgen.rooms.placement import Item
+from world2minecraft.procgen.worlds.block_house import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
 from world2minecraft.procgen.worlds.furniture_choice import designs_for, recolour_design
-from world2minecraft.procgen.worlds.house_layout import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.styles import RoomLook
 
 AT_WALL_M = 0.12  # What stands nearer to a wall than this stands at it.

@@ -10,8 +10,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.procgen.worlds.block_house import BlockHouse
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.house_layout import BlockHouse
 from world2minecraft.procgen.worlds.wares_and_stands import WareDeck
 
 DEEP_M = 2.5  # From the outer wall to the hedge.

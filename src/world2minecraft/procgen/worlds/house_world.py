@@ -17,6 +17,7 @@ from world2minecraft.procgen.houses.house import check_house
 from world2minecraft.procgen.houses.room_furnishing import furnish_cells
 from world2minecraft.procgen.rooms.colour_scheme import choose_style
 from world2minecraft.procgen.rooms.placement import Item
+from world2minecraft.procgen.worlds.block_house import BlockHouse, BlockRoom, plan_block_house
 from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.clear_paths import ClearPaths
 from world2minecraft.procgen.worlds.decoration import (
@@ -27,7 +28,6 @@ from world2minecraft.procgen.worlds.decoration import (
 )
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
 from world2minecraft.procgen.worlds.garden import garden_blocks, put_garden
-from world2minecraft.procgen.worlds.house_layout import BlockHouse, BlockRoom, plan_block_house
 from world2minecraft.procgen.worlds.recipes import (
     BLOCK_RECIPES,
     RecipeContext,

@@ -10,9 +10,9 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.procgen.rooms.recipes import KINDS
+from world2minecraft.procgen.worlds.block_house import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.decoration import hang_one
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
-from world2minecraft.procgen.worlds.house_layout import BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.wares_and_stands import HOME, StandBuilder
 
 BOARDS = (  # Blocks with a slab that racks are made of, light and dark.

@@ -4,14 +4,14 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.procgen.worlds.canvas import WorldCanvas
-from world2minecraft.procgen.worlds.house_layout import (
+from world2minecraft.procgen.worlds.block_house import (
     RAIL,
     BlockGap,
     BlockHouse,
     BlockRoom,
     person_size_blocks,
 )
+from world2minecraft.procgen.worlds.canvas import WorldCanvas
 from world2minecraft.procgen.worlds.styles import RoomLook
 
 FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)

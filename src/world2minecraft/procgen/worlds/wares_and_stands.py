@@ -17,8 +17,8 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.procgen.worlds.block_house import BlockRoom
 from world2minecraft.procgen.worlds.furnishing import Furnisher, PlacedFurniture
-from world2minecraft.procgen.worlds.house_layout import BlockRoom
 from world2minecraft.procgen.worlds.shell import FACINGS
 
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")

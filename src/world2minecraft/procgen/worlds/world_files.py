@@ -13,8 +13,8 @@ from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.world_labels import scene_from_volume, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
+from world2minecraft.procgen.worlds.block_house import BlockGap, BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.furnishing import PlacedFurniture
-from world2minecraft.procgen.worlds.house_layout import BlockGap, BlockHouse, BlockRoom
 from world2minecraft.procgen.worlds.house_world import HouseWorld, generate_world
 
 ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.

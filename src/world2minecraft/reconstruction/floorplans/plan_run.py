@@ -19,6 +19,7 @@ from world2minecraft.formats.paper_json import write_centers_json, write_occ_jso
 from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.formats.scan_record import write_scan
+from world2minecraft.reconstruction.file_stages import run_stage
 from world2minecraft.reconstruction.floorplans.plan_grid import PlanCells, rasterize_plan
 from world2minecraft.reconstruction.floorplans.room_outlines import (
     layouts_of,
@@ -28,7 +29,6 @@ from world2minecraft.reconstruction.floorplans.room_outlines import (
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.retrieval.placement_settling import settle_placements
 from world2minecraft.reconstruction.run_folder import check_writable
-from world2minecraft.reconstruction.stages import run_stage
 
 
 @dataclass(frozen=True, eq=False)

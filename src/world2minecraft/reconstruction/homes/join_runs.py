@@ -20,6 +20,7 @@ from world2minecraft.formats.objects_and_placements import (
 from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
 from world2minecraft.formats.run_arrays import read_room, write_room
 from world2minecraft.formats.scan_record import write_scan
+from world2minecraft.reconstruction.file_stages import run_stage
 from world2minecraft.reconstruction.homes.merged_run import Home, merge_runs
 from world2minecraft.reconstruction.homes.moved_run import Run
 from world2minecraft.reconstruction.homes.room_placement import (
@@ -30,7 +31,6 @@ from world2minecraft.reconstruction.homes.room_placement import (
 )
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.run_folder import check_finished, check_writable
-from world2minecraft.reconstruction.stages import run_stage
 
 MAX_RUNS = 50
 

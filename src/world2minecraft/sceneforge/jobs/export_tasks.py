@@ -25,8 +25,8 @@ from world2minecraft.minecraft.server.server_build import LiveBuilder, plan_buil
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
+from world2minecraft.reconstruction.file_stages import built_volume, scene_name
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.reconstruction.stages import built_volume, scene_name
 from world2minecraft.rendering.preview import preview
 from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of_choice
 
