@@ -4,8 +4,8 @@ In: the files of ``data/``. Out: the rule of a block state. The first rule that 
 name counts, else that of what it is cut from, else one of the last file. Keys of a rule:
 
 - ``blocks``: patterns of names without namespace; ``needs``: properties that must be there.
-- ``skin``: words of a recipe (``texture_recipes.py``) or one of ``skins``, or a table of faces: all, side,
-  end, up, down, north, south, west, east; null leaves the face away.
+- ``skin``: words of a recipe (``texture_recipes.py``) or one of ``skins``, or a table of faces:
+  all, side, end, up, down, north, south, west, east; null leaves the face away.
 - ``turn``, ``point``, ``axis``, ``rotation``, ``head``: the property that turns the model, which is
   written for north, for up, along y, for a sign's front to north, for a head's. With none of
   ``parts`` it is a full cube; ``uv`` and ``spin`` are then those of that part.
