@@ -82,7 +82,7 @@ def normal_text(text: str, side: File, prints: bool = False) -> str:
     for place, name in side.places.items():
         text = text.replace(place, name)
     if prints:
-        kept = [one for one in text.splitlines() if not declared.VARYING_LINES.match(one)]
+        kept = [one for one in text.splitlines() if not declared.VARYING_LINES.search(one)]
         text = "\n".join(kept) + "\n"
     for pattern, stand_in in (*declared.VARYING_TEXTS, *(declared.VARYING_PRINTS * prints)):
         text = pattern.sub(stand_in, text)

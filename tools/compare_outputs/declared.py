@@ -31,7 +31,10 @@ KEYS: dict[str, str] = {}
 TEXTS: dict[str, str] = {}
 
 # Pictures that are drawn in another way now, and looked at by a person: only that they are there.
-REDRAWN: tuple[str, ...] = ()
+REDRAWN: tuple[str, ...] = (
+    r"(.*/)?PLOTS/(classes|fine_classes|scenes)\.png",  # Drawn by matplotlib now.
+    r"(.*/)?lengths\.png",
+)
 
 
 def forget() -> None:
@@ -56,7 +59,7 @@ VARYING_PRINTS: tuple[tuple[re.Pattern[str], str], ...] = (
 )
 # Lines of what commands print that tell of speed alone.
 VARYING_LINES = re.compile(
-    r"^\s*made   .* images in .*CPU each|^\s*(Total time|Automated process|Manual refinement)\b"
+    r"^\s*made   .* images in .*CPU each|Total time|Automated process|Manual refinement"
 )
 
 # Keys of JSON whose values differ by nature, by a pattern of the file's path: ".*" stands for all.

@@ -1,6 +1,6 @@
 """Where a document lies, what it was opened from and where it is saved: ``document.json``.
 
-``{"format": "world2minecraft/sceneforge", "version": 1, "name", "source", "target", "inputs":
+``{"format": "world2minecraft/forge", "version": 1, "name", "source", "target", "inputs":
 {path: SHA-256}, "is_demo"}``; paths are relative to the folder that holds the document.
 """
 
@@ -23,7 +23,7 @@ from world2minecraft.sceneforge.scene_sources import (
     resolve_source,
 )
 
-FORMAT, VERSION = "world2minecraft/sceneforge", 1
+FORMAT, VERSION = "world2minecraft/forge", 1
 SUFFIX = ".forge"
 DOCUMENT_FILE = "document.json"
 _MAX_BYTES = 1 << 20

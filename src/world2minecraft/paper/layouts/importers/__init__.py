@@ -21,7 +21,7 @@ HOME = "world2minecraft.paper.layouts.importers"
 FORMATS = Registry(
     "layout_format",
     {
-        "stored": f"{HOME}.stored:FORMAT",
+        "stored": f"{HOME}.built_scenes:FORMAT",
         "run": f"{HOME}.runs:FORMAT",
         "layoutgpt": f"{HOME}.layoutgpt:FORMAT",
         "idesign": f"{HOME}.idesign:FORMAT",
