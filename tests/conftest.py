@@ -18,6 +18,12 @@ settings.register_profile(
 settings.load_profile("project")
 
 
+@pytest.fixture(scope="session", autouse=True)
+def sceneforge_home(tmp_path_factory) -> None:
+    """Keep every test away from the SceneForge documents of the developer who runs it."""
+    os.environ["W2M_FORGE_HOME"] = str(tmp_path_factory.mktemp("sceneforge_home"))
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real inputs made by others, which is never part of the project."""

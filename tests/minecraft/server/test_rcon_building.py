@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from console import Console
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rcon_console import Console
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity

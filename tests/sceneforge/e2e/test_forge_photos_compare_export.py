@@ -6,9 +6,9 @@ import shutil
 import time
 
 import pytest
-from console import Console
 from forge_driving import Driver, opened_page
 
+from rcon_console import Console
 from world2minecraft.sceneforge.editor import Editor
 from world2minecraft.sceneforge.server.server_process import ForgeServer
 
