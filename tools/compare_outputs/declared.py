@@ -18,6 +18,8 @@ WORDS: dict[tuple[str, str], str] = {}
 MODULES: dict[str, str] = {
     "world2minecraft.coordinates": "world2minecraft.core.coordinates",
     "world2minecraft.exchange.source": "world2minecraft.formats.build_source",
+    "read_source": "read_build",
+    "LookLight": "LightSettings",
     "world2minecraft.render": "world2minecraft.rendering",
     "world2minecraft.types": "world2minecraft.core.types",
     "world2minecraft.vln.environment": "world2minecraft.navigation.environment",
@@ -28,7 +30,11 @@ FILES: dict[str, str] = {}
 # Keys of JSON and YAML, names of arrays in .npz, columns of tables.
 KEYS: dict[str, str] = {}
 # Pieces of text: in reports, READMEs, instructions, string values, and what commands print.
-TEXTS: dict[str, str] = {}
+TEXTS: dict[str, str] = {
+    "or all, anew by other figures": "or all, again by other parameters",
+    "furniture of objects anew": "furniture of objects again",
+    "and matched anew": "and matched again",
+}
 
 # Pictures that are drawn in another way now, and looked at by a person: only that they are there.
 REDRAWN: tuple[str, ...] = (
