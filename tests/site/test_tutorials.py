@@ -7,9 +7,9 @@ import shlex
 from pathlib import Path
 
 import pytest
-from tests.minecraft.server.console import Console
 from tests.site.pages import Step, steps_of
 
+from rcon_console import Console
 from world2minecraft import cli
 from world2minecraft.capture.readers.capture_json import write_plain
 
