@@ -83,14 +83,14 @@ def furnished_grid() -> OccupancyGrid:
 
 def building() -> Row:
     """From a fused grid to a finished world and schematic: find, furnish, build and write."""
-    from world2minecraft.reconstruction.instances import FindParameters, find_objects
-    from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+    from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
+    from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 
     grid = furnished_grid()
 
     def work() -> None:
-        found = find_objects(grid, FindParameters())
-        placements = place_templates(found.grid, found.instances, FurnishParameters())
+        found = find_objects(grid, InstanceParameters())
+        placements = place_templates(found.grid, found.instances, RetrievalParameters())
         volume = build_volume(
             found.grid, placements, found.instances, corner_m=np.array([0.08, 5.92])
         )

@@ -29,7 +29,7 @@ from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, list_trials, write_trial
 from world2minecraft.reconstruction.fusion import (
-    CleanParameters,
+    CleaningParameters,
     close_structure,
     extract_grid,
     remove_floaters,
@@ -97,8 +97,8 @@ def gather(each: int, base: Path) -> dict[str, list[Example]]:
 
 def named(name: str, evidence: FusedEvidence) -> OccupancyGrid:
     """Return what a labeller says, with its own confidence."""
-    grid = remove_floaters(extract_grid(evidence), CleanParameters())
-    return close_structure(labeller(name).label(grid, evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleaningParameters())
+    return close_structure(labeller(name).label(grid, evidence), CleaningParameters())
 
 
 def fit(examples: list[Example], uses_votes: bool, uses_said: bool = False) -> ConfidenceTable:

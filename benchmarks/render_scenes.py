@@ -19,8 +19,8 @@ from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
 from world2minecraft.procgen import generate_room
-from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
+from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 from world2minecraft.rendering.block_elements import (
     BlockModel,
     Element,
@@ -218,8 +218,8 @@ def room(scale: float, seed: int = 1, kind: str = "living", style: str = "blocks
         voxel_m=made.voxel_m * VOXEL_STEP,
         origin_m=made.origin_m,
     )
-    found = find_objects(grid, FindParameters())
-    placements = place_templates(found.grid, found.instances, FurnishParameters())
+    found = find_objects(grid, InstanceParameters())
+    placements = place_templates(found.grid, found.instances, RetrievalParameters())
     return build_volume(
         found.grid,
         placements,

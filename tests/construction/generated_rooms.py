@@ -7,8 +7,8 @@ import numpy as np
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.procgen import Room, generate_room
 from world2minecraft.reconstruction.instances import find_objects
-from world2minecraft.reconstruction.instances.parameters import FindParameters
-from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
+from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 
 STEP = 4  # Fine cells of 2 cm a cell.
 FILLED = 0.125  # Of a cell, to count as occupied.
@@ -20,8 +20,8 @@ def furnished_room(
     seed: int, kind: str | None = None
 ) -> tuple[OccupancyGrid, tuple[Placement, ...]]:
     """The grid of a generated room and the placements that stage 6 finds in it."""
-    found = find_objects(true_grid(generate_room(seed, kind=kind)), FindParameters())
-    return found.grid, tuple(place_templates(found.grid, found.instances, FurnishParameters()))
+    found = find_objects(true_grid(generate_room(seed, kind=kind)), InstanceParameters())
+    return found.grid, tuple(place_templates(found.grid, found.instances, RetrievalParameters()))
 
 
 @cache

@@ -18,7 +18,7 @@ from world2minecraft.core.types.checks import transform
 from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, decode_depth
 from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
 from world2minecraft.reconstruction.fusion import (
-    CleanParameters,
+    CleaningParameters,
     EvidenceMap,
     extract_grid,
     remove_floaters,
@@ -165,7 +165,7 @@ def complete_frame(
     )
     points = DepthPredictor(FAR_M).lift(view)
     evidence = _in_grid(points, world_to_grid)
-    grid = remove_floaters(extract_grid(evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleaningParameters())
     sight = sight_of(grid, evidence, floor_m=floor_of(points, world_to_grid))
     chance = (model or CompletionModel()).chances(sight)
     labels = likeliest(chance, sight.log_odds)

@@ -15,11 +15,11 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.parameters import parameter
 from world2minecraft.formats.volume_formats import format_by_name
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
-from world2minecraft.reconstruction.instances import FindParameters
-from world2minecraft.reconstruction.occupancy import PREDICTORS, OccupyParameters
-from world2minecraft.reconstruction.registration import RegisterParameters
-from world2minecraft.reconstruction.retrieval import FurnishParameters
+from world2minecraft.reconstruction.fusion import CleaningParameters, FusionParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
+from world2minecraft.reconstruction.occupancy import PREDICTORS, OccupancyParameters
+from world2minecraft.reconstruction.registration import RegistrationParameters
+from world2minecraft.reconstruction.retrieval import RetrievalParameters
 from world2minecraft.reconstruction.semantics import LABELLERS
 
 
@@ -64,12 +64,12 @@ class Parameters:
     capture: dict[str, str] = parameter(dict, stage="scan", typed="--set capture.KEY=VALUE")
     posing: SfmParameters = parameter(SfmParameters, stage="scan")
     stereo: StereoParameters = parameter(StereoParameters, stage="scan")
-    register: RegisterParameters = parameter(RegisterParameters, stage="register")
-    occupy: OccupyParameters = parameter(OccupyParameters, stage="fuse")
-    fuse: FuseParameters = parameter(FuseParameters, stage="fuse")
-    clean: CleanParameters = parameter(CleanParameters, stage="label")
-    find: FindParameters = parameter(FindParameters, stage="find")
-    furnish: FurnishParameters = parameter(FurnishParameters, stage="furnish")
+    register: RegistrationParameters = parameter(RegistrationParameters, stage="register")
+    occupy: OccupancyParameters = parameter(OccupancyParameters, stage="fuse")
+    fuse: FusionParameters = parameter(FusionParameters, stage="fuse")
+    clean: CleaningParameters = parameter(CleaningParameters, stage="label")
+    find: InstanceParameters = parameter(InstanceParameters, stage="find")
+    furnish: RetrievalParameters = parameter(RetrievalParameters, stage="furnish")
     build: BuildParameters = parameter(BuildParameters, stage="build")
 
     def __post_init__(self):

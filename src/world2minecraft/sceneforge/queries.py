@@ -34,7 +34,7 @@ from world2minecraft.editing.scene.repair import (
 )
 from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
-from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.density_clustering import (
     candidate_cells,
     centroids,
@@ -258,7 +258,7 @@ class Centers(Query):
             binary &= draft.labels == self.class_id
         candidates = candidate_cells(binary, density, self.density_threshold)
         classes = draft.labels[tuple(candidates.T)]
-        samples = FindParameters.min_samples
+        samples = InstanceParameters.min_samples
         clusters = cluster_candidates(candidates, classes, self.cluster_radius, samples)
         middles_m = draft.origin_m + (centroids(candidates, clusters) + 0.5) * draft.voxel_m
         kinds = dict(zip(clusters.tolist(), classes.tolist(), strict=True))

@@ -11,10 +11,10 @@ from tests.reconstruction.opening.test_preparation import scene_of
 from world2minecraft.capture.stereo import network_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import DepthMap, Photo, Scan
-from world2minecraft.reconstruction.fusion import FuseParameters, extract_grid, fuse_views
+from world2minecraft.reconstruction.fusion import FusionParameters, extract_grid, fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.registration import (
-    RegisterParameters,
+    RegistrationParameters,
     apply_corrections,
     register,
 )
@@ -69,7 +69,7 @@ def scan_of(views, kind="network") -> Scan:
 
 
 def cells_of(scan: Scan) -> tuple[np.ndarray, np.ndarray]:
-    fused = fuse_views(predictor("depth").predict(scan), scan, FuseParameters().suited("network"))
+    fused = fuse_views(predictor("depth").predict(scan), scan, FusionParameters().suited("network"))
     low = np.round(fused.origin_m / fused.voxel_m).astype(int)
     return np.argwhere(extract_grid(fused).occupied) + low, low
 
@@ -90,7 +90,7 @@ def within_one_voxel(scan: Scan, true: Scan) -> tuple[float, float]:
 
 def registered(scan: Scan) -> Scan:
     return apply_corrections(
-        scan, register(scan, RegisterParameters().suited("network")).corrections
+        scan, register(scan, RegistrationParameters().suited("network")).corrections
     )
 
 

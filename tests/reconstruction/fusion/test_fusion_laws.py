@@ -6,9 +6,9 @@ import pytest
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, GridEvidence, OccupancyGrid, PointEvidence, View
 from world2minecraft.reconstruction.fusion import (
-    CleanParameters,
+    CleaningParameters,
     EvidenceMap,
-    FuseParameters,
+    FusionParameters,
     close_structure,
     extract_grid,
     remove_floaters,
@@ -28,7 +28,7 @@ def looking_at_wall(distance_m: float, name: str = "v") -> PointEvidence:
 
 
 def fused(*views, **changes):
-    map_ = EvidenceMap(np.eye(4), FuseParameters(**changes))
+    map_ = EvidenceMap(np.eye(4), FusionParameters(**changes))
     for item in views:
         map_.add(item)
     return map_.fused()
@@ -90,7 +90,7 @@ def test_growing_the_map_changes_nothing():
 
 
 def test_a_frame_far_off_is_told_before_memory_runs_out():
-    map_ = EvidenceMap(np.eye(4), FuseParameters())
+    map_ = EvidenceMap(np.eye(4), FusionParameters())
     for away_m in (0.0, 120.0):
         points = np.array([[2.0, y / 50, 1.0] for y in range(20)], np.float32) + away_m
         weight = np.full(20, 1e-3, np.float32)
@@ -146,7 +146,7 @@ def test_floaters_go_and_thin_legs_stay():
     labels[:, :, 0] = 2
     labels[5, 5, 1:10] = 8
     labels[15, 15, 12:14] = 11
-    cleaned = remove_floaters(solid_grid(labels), CleanParameters())
+    cleaned = remove_floaters(solid_grid(labels), CleaningParameters())
     assert (cleaned.labels[5, 5, 1:10] == 8).all()
     assert (cleaned.labels[15, 15, 12:14] == 0).all()
 
@@ -156,7 +156,7 @@ def test_floor_holes_are_closed_and_marked_free_stays_free():
     labels[:, :, 0] = 2
     labels[10:14, 10:14, 0] = 255
     labels[20:23, 20:23, 0] = 0
-    closed = close_structure(solid_grid(labels), CleanParameters())
+    closed = close_structure(solid_grid(labels), CleaningParameters())
     assert (closed.labels[10:14, 10:14, 0] == 2).all()
     assert (closed.source[10:14, 10:14, 0] == 2).all()
     assert (closed.labels[20:23, 20:23, 0] == 0).all()
@@ -167,5 +167,5 @@ def test_a_hole_as_wide_as_a_door_stays():
     labels = np.zeros((4, 60, 30), np.uint8)
     labels[0] = 3
     labels[0, 20:32, :25] = 255
-    closed = close_structure(solid_grid(labels), CleanParameters())
+    closed = close_structure(solid_grid(labels), CleaningParameters())
     assert (closed.labels[0, 22:30, 2:20] == 255).all()

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.reconstruction.fusion import (
-    CleanParameters,
+    CleaningParameters,
     close_structure,
     extract_grid,
     remove_floaters,
@@ -37,7 +37,7 @@ def grid_of(labels: np.ndarray) -> OccupancyGrid:
 def test_five_cells_are_noise_and_six_are_not(cells, stays):
     labels = np.zeros((9, 9, 9), np.uint8)
     labels[2, 2, 1 : 1 + cells] = 11
-    cleaned = remove_floaters(grid_of(labels), CleanParameters())
+    cleaned = remove_floaters(grid_of(labels), CleaningParameters())
     assert (cleaned.labels == 11).sum() == (cells if stays else 0)
     assert (cleaned.labels != 255).all()
 
@@ -45,14 +45,14 @@ def test_five_cells_are_noise_and_six_are_not(cells, stays):
 def test_parts_that_meet_at_a_corner_are_one():
     labels = np.zeros((9, 9, 9), np.uint8)
     labels[2, 2, 1:4], labels[3, 3, 4:7] = 11, 8
-    cleaned = remove_floaters(grid_of(labels), CleanParameters())
+    cleaned = remove_floaters(grid_of(labels), CleaningParameters())
     np.testing.assert_array_equal(cleaned.labels, labels)
 
 
 @pytest.mark.parametrize("label", [0, 11, 255])
 def test_a_grid_of_one_kind_stays_as_it_is(label):
     grid = grid_of(np.full((3, 3, 3), label, np.uint8))
-    cleaned = remove_floaters(grid, CleanParameters())
+    cleaned = remove_floaters(grid, CleaningParameters())
     np.testing.assert_array_equal(cleaned.labels, grid.labels)
 
 
@@ -60,7 +60,7 @@ def test_many_cells_that_are_free_or_unknown_are_no_part():
     labels = np.full((9, 9, 9), 255, np.uint8)
     labels[:, :, 5:] = 0
     labels[4, 4, 4] = 7
-    cleaned = remove_floaters(grid_of(labels), CleanParameters())
+    cleaned = remove_floaters(grid_of(labels), CleaningParameters())
     assert cleaned.labels[4, 4, 4] == 0
     assert (cleaned.labels[:, :, :4] == 255).all() and (cleaned.labels[:, :, 5:] == 0).all()
 
@@ -93,7 +93,7 @@ def test_a_hole_of_32_cm_is_closed_and_a_wider_one_is_not(class_id, axis, _what,
     layer[axis] = hole[axis] = 7
     labels[tuple(layer)] = class_id
     labels[tuple(hole)] = 255
-    found = close_structure(grid_of(labels), CleanParameters())
+    found = close_structure(grid_of(labels), CleaningParameters())
     filled = np.zeros(labels.shape, bool)
     filled[tuple(hole)] = closed
     np.testing.assert_array_equal(found.labels, np.where(filled, class_id, labels))
@@ -107,7 +107,7 @@ def test_only_unknown_cells_are_filled_by_adjacent_colour():
     labels[:, :, 1] = 2
     labels[8:12, 8:12, 1] = 255
     labels[9, 9, 1], labels[10, 10, 1] = 0, 8
-    found = close_structure(grid_of(labels), CleanParameters())
+    found = close_structure(grid_of(labels), CleaningParameters())
     assert found.labels[9, 9, 1] == 0 and found.labels[10, 10, 1] == 8
     assert (found.source == 2).sum() == 14
     assert found.colour[8, 10, 1, 0] == 7 and found.colour[11, 10, 1, 0] == 12
@@ -165,7 +165,7 @@ def test_a_strip_of_three_cells_is_flat_and_one_of_two_is_not(width, flat):
 
 
 def test_what_cannot_be_cleaned_is_refused():
-    CleanParameters(floater_cells=0, hole_m=0.0), CleanParameters(hole_m=10.0)
+    CleaningParameters(floater_cells=0, hole_m=0.0), CleaningParameters(hole_m=10.0)
     for wrong in ({"floater_cells": -1}, {"hole_m": -0.01}, {"hole_m": 10.01}):
         with pytest.raises(UsageError, match="must be"):
-            CleanParameters(**wrong)
+            CleaningParameters(**wrong)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import PointEvidence, Scan
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters, fuse_views
+from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters, fuse_views
 from world2minecraft.reconstruction.fusion.integration import face_normals, to_cells
 
-PARAMETERS = FuseParameters(min_share=0.2)
+PARAMETERS = FusionParameters(min_share=0.2)
 
 
 def view(seed: int, count: int = 60, trusted: bool = True) -> PointEvidence:

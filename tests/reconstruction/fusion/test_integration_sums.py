@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.types import PointEvidence
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
+from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters
 from world2minecraft.reconstruction.fusion.integration import place_of
 
-RULES = FuseParameters(min_points=3, min_share=0.1, nudge_m=0.01)
+RULES = FusionParameters(min_points=3, min_share=0.1, nudge_m=0.01)
 seeds = st.integers(0, 10_000)
 
 
@@ -40,7 +40,7 @@ def cloud(seed: int, count: int = 60, spread_m: float = 0.1) -> PointEvidence:
     )
 
 
-def by_cell(item: PointEvidence, scan_to_room: np.ndarray, rules: FuseParameters):
+def by_cell(item: PointEvidence, scan_to_room: np.ndarray, rules: FusionParameters):
     """Each cell's points and normals in the room: a point belongs to the matter behind it."""
     points_m = apply(scan_to_room, item.points_m.astype(float))
     to_camera = apply(scan_to_room, item.camera_m) - points_m
@@ -54,7 +54,7 @@ def by_cell(item: PointEvidence, scan_to_room: np.ndarray, rules: FuseParameters
     return points_m, normals, groups
 
 
-def is_taken(item: PointEvidence, members, rules: FuseParameters) -> bool:
+def is_taken(item: PointEvidence, members, rules: FusionParameters) -> bool:
     seen_m2 = item.weight[members].sum()
     return len(members) >= rules.min_points and seen_m2 >= rules.min_share * rules.voxel_m**2
 
@@ -117,7 +117,7 @@ def test_planes_hits_and_colours_follow_their_definition(seed, yaw_deg, shift_m)
 
 
 def test_measurements_add_up_and_log_odds_have_a_limit():
-    rules = FuseParameters(min_points=1, min_share=0.0, limit_log_odds=1.5)
+    rules = FusionParameters(min_points=1, min_share=0.0, limit_log_odds=1.5)
     one, other, both = (EvidenceMap(np.eye(4), rules) for _ in range(3))
     first, second = cloud(1), cloud(2)
     one.add(first), other.add(second)
@@ -137,7 +137,7 @@ def test_measurements_add_up_and_log_odds_have_a_limit():
 def test_a_single_point_is_noise_and_carves_nothing(count):
     """Two points make a hit and carve the way to it; one does neither."""
     points_m = np.array([[1.02, 0.03, 0.03], [1.02, 0.04, 0.03]], np.float32)[:count]
-    map_ = EvidenceMap(np.eye(4), FuseParameters(min_points=2))
+    map_ = EvidenceMap(np.eye(4), FusionParameters(min_points=2))
     map_.add(PointEvidence("v", np.array([0.02, 0.02, 0.02]), points_m, np.full(count, 0.01, "f4")))
     assert (map_.blocks.log_odds > 0).sum() == (1 if count == 2 else 0)
     carved = (map_.blocks.log_odds < 0).sum()
@@ -156,7 +156,7 @@ def test_a_label_is_one_vote_and_no_class_is_none():
 
 def test_ray_carves_cells_once_and_stops_before_surface():
     """Along +x through cells of 0.08 m, to a surface at 1.00 m of which 0.3 m are kept clear."""
-    rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.3, clear_growth=0.0)
+    rules = FusionParameters(min_points=1, min_share=0.0, clear_m=0.3, clear_growth=0.0)
     points_m = np.array([[1.0, 0.04, 0.04], [1.0, 0.05, 0.04]], np.float32)
     map_ = EvidenceMap(np.eye(4), rules)
     item = PointEvidence("v", np.array([0.0, 0.04, 0.04]), points_m, np.full(2, 0.01, "f4"))
@@ -200,7 +200,7 @@ def test_means_survive_hit_counts_beyond_their_type():
     ("share", "least"), [(0.0, 1), (0.0625, 4), (0.063, 5), (0.5, 32), (0.99, 64), (1.0, 64)]
 )
 def test_a_share_of_a_cell_is_so_many_of_its_64_sub_cells(share, least):
-    map_ = EvidenceMap(np.eye(4), FuseParameters(solid_share=share))
+    map_ = EvidenceMap(np.eye(4), FusionParameters(solid_share=share))
     assert map_._surface_rules.min_sub_cells == least
 
 
@@ -235,7 +235,7 @@ def test_matter_behind_the_last_point_reaches_the_next_block(axis, edge_m, side,
 
 def test_a_cell_that_one_view_met_last_is_carved_by_the_next():
     """In either order: two views down one row, the second through the first's surface."""
-    rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
+    rules = FusionParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
     views = [
         PointEvidence(
             "v", np.array([0.0, 0.04, 0.04]), np.array([[x, 0.04, 0.04]] * 2, np.float32),
@@ -262,7 +262,7 @@ def test_a_map_of_nothing_is_one_cell_of_which_nothing_is_known():
 @pytest.mark.parametrize(("side", "way", "carved"), [(1, 12.0, 12), (-1, 12.0, 12), (1, 0.9, 1)])
 def test_axis_aligned_ray_carves_every_cell_before_surface(axis, side, way, carved):
     """From the middle of a cell, ``way`` cells far; the surface's own cell is left alone."""
-    rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
+    rules = FusionParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
     camera_m = np.full(3, 0.04)
     point_m = camera_m.copy()
     point_m[axis] += side * way * rules.voxel_m

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import GridEvidence, PointEvidence
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters, extract_grid
+from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters, extract_grid
 from world2minecraft.reconstruction.fusion.network_grids import EDGE, grid_gains
 
 SURE = float(np.log((1 - EDGE) / EDGE))
@@ -70,7 +70,7 @@ def test_the_order_of_views_plays_no_part(seeds):
 
 
 def test_sure_view_carves_as_one_ray_never_through_depth():
-    rules = FuseParameters()
+    rules = FusionParameters()
     for free in (0.99, 1.0):
         gains = grid_gains(grid(2, free=free), np.eye(4), rules).gains
         np.testing.assert_allclose(gains, -rules.network_weight * SURE, rtol=1e-5)
@@ -110,7 +110,7 @@ def test_a_grid_may_end_with_a_block_of_the_map_or_just_after_it(shape):
 
 def test_fine_cells_are_averaged_in_the_cell_that_holds_them():
     fine = grid(6, (4, 4, 4), 0.04)
-    gains = grid_gains(fine, np.eye(4), FuseParameters())
+    gains = grid_gains(fine, np.eye(4), FusionParameters())
     for cell, gain in zip(gains.cells, gains.gains, strict=True):
         box = tuple(slice(2 * c, 2 * c + 2) for c in cell)
         free = fine.probabilities[box][fine.seen[box]].astype(float)[:, 0].mean()
@@ -125,14 +125,14 @@ def test_colours_are_those_of_the_view():
 
 
 def test_nearly_free_cells_have_no_votes_and_no_colour():
-    gains = grid_gains(grid(9, free=0.96), np.eye(4), FuseParameters())
+    gains = grid_gains(grid(9, free=0.96), np.eye(4), FusionParameters())
     assert not gains.votes.any() and not gains.coloured.any()
-    gains = grid_gains(grid(9, free=0.94), np.eye(4), FuseParameters())
+    gains = grid_gains(grid(9, free=0.94), np.eye(4), FusionParameters())
     assert (gains.votes[:, 1:].sum(axis=1) > 0.05).all() and gains.coloured.all()
     assert (gains.votes[:, 0] == 0).all()
 
 
 def test_a_grid_without_colours_colours_nothing():
-    gains = grid_gains(replace(grid(9, free=0.1), colour=None), np.eye(4), FuseParameters())
+    gains = grid_gains(replace(grid(9, free=0.1), colour=None), np.eye(4), FusionParameters())
     assert gains.colour.shape == (len(gains.cells), 3)
     assert not gains.colour.any() and not gains.coloured.any()

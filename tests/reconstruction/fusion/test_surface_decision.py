@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera, PointEvidence, View
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
+from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters
 from world2minecraft.reconstruction.fusion.surface_decision import _depth_of_solid
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
@@ -14,7 +14,7 @@ CAMERA = Camera(160, 120, 140.0, 140.0, 80.0, 60.0)
 
 
 def fused(*views, **changes):
-    map_ = EvidenceMap(np.eye(4), FuseParameters(**changes))
+    map_ = EvidenceMap(np.eye(4), FusionParameters(**changes))
     for item in views:
         map_.add(item)
     return map_.fused()

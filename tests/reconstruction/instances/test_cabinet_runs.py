@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import surface_cells
-from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.cabinet_runs import split_cabinet_runs
 
-RULES = FindParameters()
+RULES = InstanceParameters()
 
 
 def _room(*boxes):

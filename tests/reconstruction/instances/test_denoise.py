@@ -8,7 +8,7 @@ from tests.reconstruction.instances.test_instances import grid_of
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
-from world2minecraft.reconstruction.instances import FindParameters, find_objects
+from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 
 TABLE, OBJS, FURN = SemanticClass.TABLE, SemanticClass.OBJS, SemanticClass.FURN
@@ -73,5 +73,5 @@ def test_object_owns_its_specks_and_grid_keeps_labels():
     table = next(item for item in found.instances if item.class_id == TABLE)
     assert (found.grid.instance[8:10, 7:9, 9] == table.id).all()
     assert found.leftover == 0
-    plain = find_objects(grid_of(labels), FindParameters(paper_compat=True))
+    plain = find_objects(grid_of(labels), InstanceParameters(paper_compat=True))
     assert plain.grid.instance[8, 7, 9] != plain.grid.instance[4, 4, 9]

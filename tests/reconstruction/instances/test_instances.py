@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import surface_cells, template, template_cells
-from world2minecraft.reconstruction.instances import FindParameters, find_objects
+from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
 from world2minecraft.reconstruction.instances.denoise import relabel_specks
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 
@@ -70,7 +70,7 @@ def test_touching_boxes_of_two_classes_stay_apart():
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_object_cells_have_an_instance_or_are_leftover(seed, paper_compat):
     labels = _noisy(seed)
-    found = find_objects(grid_of(labels), FindParameters(paper_compat=paper_compat))
+    found = find_objects(grid_of(labels), InstanceParameters(paper_compat=paper_compat))
     objects = (labels >= 5) & (labels <= 11)
     marked = found.grid.instance > 0
     assert not (marked & ~objects).any()
@@ -81,7 +81,7 @@ def test_object_cells_have_an_instance_or_are_leftover(seed, paper_compat):
         cells = tuple(instance.cells.T)
         assert (taken[cells] == instance.class_id).all()
         assert (found.grid.instance[cells] == instance.id).all()
-        assert paper_compat or len(instance.cells) >= FindParameters().min_cells
+        assert paper_compat or len(instance.cells) >= InstanceParameters().min_cells
     keys = [(instance.class_id, *instance.center_m) for instance in found.instances]
     assert keys == sorted(keys)
     np.testing.assert_array_equal(found.grid.labels, labels)
@@ -123,7 +123,7 @@ def test_a_torn_off_leg_comes_back_and_a_speck_does_not():
 def test_the_paper_joins_nothing_again():
     labels = _room((5, 4, 4, 6, 10, 10, 8))
     labels[4, 4, 1:4] = 5
-    found = find_objects(grid_of(labels), FindParameters(paper_compat=True))
+    found = find_objects(grid_of(labels), InstanceParameters(paper_compat=True))
     assert found.grid.instance[4, 4, 1] == 0
     assert found.leftover == 3
 
@@ -198,5 +198,5 @@ def _slow_growth(labels, candidates, clusters):
 )
 def test_parameters_out_of_bounds_are_refused(changed, message):
     with pytest.raises(UsageError) as refused:
-        FindParameters(**changed)
+        InstanceParameters(**changed)
     assert str(refused.value) == message

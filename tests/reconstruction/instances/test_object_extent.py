@@ -5,7 +5,7 @@ import pytest
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances import FindParameters, find_objects
+from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
 from world2minecraft.reconstruction.instances.object_extent import vertical_extent
 
 TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
@@ -24,7 +24,7 @@ def _found(class_id, at=TOP, **changed):
         voxel_m=0.08,
         origin_m=np.array([0.0, 0.0, -0.08]),
     )
-    (instance,) = find_objects(grid, FindParameters(**changed)).instances
+    (instance,) = find_objects(grid, InstanceParameters(**changed)).instances
     return instance
 
 

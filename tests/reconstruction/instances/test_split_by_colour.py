@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
 
-RULES = FindParameters()
+RULES = InstanceParameters()
 SHAPE = (24, 20, 14)
 RED, BLUE = (200, 40, 40), (40, 60, 200)
 

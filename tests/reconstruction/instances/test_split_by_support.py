@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.merge_pieces import merge_lamp_parts
 from world2minecraft.reconstruction.instances.split_by_support import split_by_support
 
-RULES = FindParameters()
+RULES = InstanceParameters()
 SHAPE = (30, 30, 34)
 GREEN, BEIGE = (40, 120, 40), (220, 200, 150)
 

@@ -9,13 +9,13 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.furniture import template, template_cells
-from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances import InstanceParameters
 from world2minecraft.reconstruction.instances.split_chairs import (
     merge_chair_backs,
     split_touching_chairs,
 )
 
-RULES = FindParameters()
+RULES = InstanceParameters()
 SHAPE = (44, 40, 20)
 
 

@@ -12,7 +12,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.reconstruction.fusion import EvidenceMap
-from world2minecraft.reconstruction.occupancy import OccupyParameters, notes_of, predictor
+from world2minecraft.reconstruction.occupancy import OccupancyParameters, notes_of, predictor
 from world2minecraft.reconstruction.occupancy import semantic_fusion as kept
 from world2minecraft.reconstruction.occupancy import semantic_fusion as voters
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
@@ -131,7 +131,7 @@ def test_shares_are_spread_over_the_picture():
 
 def test_unknown_names_are_told_once_with_the_file_to_edit(monkeypatch):
     monkeypatch.setattr(voters, "segmenter", lambda name: Halves())
-    used = predictor("depth", OccupyParameters(semantics="fake:halves"))
+    used = predictor("depth", OccupancyParameters(semantics="fake:halves"))
     list(used.predict(Scan([view(), view(name="w")], np.eye(4), np.ones(3), ("v", "w"))))
     assert notes_of(used) == (
         "1 of 3 labels of fake:halves are in no table and vote for nothing: gizmo; "
@@ -166,6 +166,6 @@ def test_monocular_network_votes_by_the_cell_of_a_point(tmp_path):
 
 def test_voters_are_for_depth_alone(tmp_path):
     with pytest.raises(UsageError, match="vote on what depth sees, not on 'mono'"):
-        predictor("mono:x.onnx", OccupyParameters(semantics="hf:a/b"))
+        predictor("mono:x.onnx", OccupancyParameters(semantics="hf:a/b"))
     with pytest.raises(UsageError, match="set that too"):
-        predictor("depth", OccupyParameters(network="x.onnx"))
+        predictor("depth", OccupancyParameters(network="x.onnx"))

@@ -10,7 +10,7 @@ from tests.reconstruction.occupancy.tiny_network import write_network
 from tests.reconstruction.occupancy.tiny_segmenters import write_segmenter
 
 from world2minecraft.capture import write_plain
-from world2minecraft.reconstruction.occupancy import OccupyParameters
+from world2minecraft.reconstruction.occupancy import OccupancyParameters
 from world2minecraft.reconstruction.occupancy import semantic_fusion as kept
 from world2minecraft.reconstruction.occupancy.hf_segmenter import HuggingFaceSemantics
 from world2minecraft.reconstruction.parameters import Parameters
@@ -30,7 +30,7 @@ def test_a_run_with_a_segmenter(tmp_path, capture, monkeypatch):
     pytest.importorskip("torch")
     pytest.importorskip("transformers")
     folder = write_segmenter("segformer", tmp_path / "model")
-    chosen = Parameters(occupy=OccupyParameters(semantics=f"hf:{folder}"))
+    chosen = Parameters(occupy=OccupancyParameters(semantics=f"hf:{folder}"))
     scan = reconstruct(capture, tmp_path / "OUT", chosen)
     votes = np.load(tmp_path / "OUT" / "evidence.npz")["votes"].astype(float)
     voted = sorted(np.unique(np.nonzero(votes.reshape(-1, 12).sum(axis=0))[0]).tolist())
@@ -59,7 +59,7 @@ def test_a_run_with_votes_of_a_monocular_network(tmp_path, capture):
     reconstruct(capture, tmp_path / "OUT", plain)
     assert not np.load(tmp_path / "OUT" / "evidence.npz")["votes"].any()
     network = write_network(tmp_path / "n.onnx")
-    joined = replace(plain, occupy=OccupyParameters(mono_votes=True, network=str(network)))
+    joined = replace(plain, occupy=OccupancyParameters(mono_votes=True, network=str(network)))
     before = np.load(tmp_path / "OUT" / "evidence.npz")
     before = {name: before[name] for name in ("log_odds", "hits")}
     reconstruct(capture, tmp_path / "OUT", joined, start="fuse")

@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Corrections, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 from world2minecraft.reconstruction.registration import (
-    RegisterParameters,
+    RegistrationParameters,
     apply_corrections,
     register,
     with_registration_note,
@@ -87,7 +87,7 @@ def apart(cameras: np.ndarray, true: np.ndarray) -> tuple[float, float]:
 
 def refined(given: OrientedPoints, scan_to_room=None, **chosen):
     place = np.eye(4) if scan_to_room is None else scan_to_room
-    return register_surface(given, place, RegisterParameters(**chosen))
+    return register_surface(given, place, RegistrationParameters(**chosen))
 
 
 def test_jitter_of_poses_is_taken_away(true_surface):
@@ -213,7 +213,7 @@ def test_a_corrected_scan_has_moved_poses_and_stretched_depth():
 
 def test_the_surface_is_that_of_the_corrected_views():
     scan = scan_of(6)
-    found = register(scan, RegisterParameters())
+    found = register(scan, RegistrationParameters())
     again = collect_oriented_points(apply_corrections(scan, found.corrections).views)
     np.testing.assert_allclose(again.cameras, found.surface.cameras, atol=1e-6)
     np.testing.assert_allclose(again.points_m, found.surface.points_m, atol=1e-4)
@@ -249,4 +249,4 @@ def test_what_is_told():
 )
 def test_wrong_parameters_are_refused(wrong, text):
     with pytest.raises(ValueError, match=text):
-        RegisterParameters(**wrong)
+        RegistrationParameters(**wrong)

@@ -11,8 +11,8 @@ from label_grids import grid_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import ObjectInstance
 from world2minecraft.furniture import surface_cells
-from world2minecraft.reconstruction.instances import FindParameters, find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
+from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import (
     cut_into_runs,
     largest_rectangle,
@@ -79,10 +79,9 @@ def test_a_box_is_not_cut():
 
 
 def test_the_paper_cuts_nothing():
-    found = find_objects(grid_of(_kitchen()), FindParameters(paper_compat=True))
-    assert (
-        len(place_templates(found.grid, found.instances, FurnishParameters(paper_compat=True))) == 1
-    )
+    found = find_objects(grid_of(_kitchen()), InstanceParameters(paper_compat=True))
+    whole = RetrievalParameters(paper_compat=True)
+    assert len(place_templates(found.grid, found.instances, whole)) == 1
 
 
 def test_every_own_cell_is_in_exactly_one_run():

@@ -13,7 +13,7 @@ from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template, template_cells
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances import find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 from world2minecraft.reconstruction.retrieval.variants import Choice, Offer, choose
 
 BROWN, WHITE, RED = (90, 58, 34), (242, 241, 236), (160, 36, 33)
@@ -92,7 +92,7 @@ def _room_with_sofa(rgb):
 @pytest.mark.parametrize(("on", "expected"), [(True, "sofa_leather"), (False, "sofa")])
 def test_a_brown_sofa_that_was_scanned_is_a_leather_one(on, expected):
     found = find_objects(_room_with_sofa(BROWN))
-    (placement,) = place_templates(found.grid, found.instances, FurnishParameters(variants=on))
+    (placement,) = place_templates(found.grid, found.instances, RetrievalParameters(variants=on))
     assert placement.template == expected
     assert placement.iou >= 0.9
     assert set(placement.parameters) == set(template(expected).parameters)

@@ -7,7 +7,7 @@ from label_grids import grid_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.reconstruction.instances import find_objects
-from world2minecraft.reconstruction.retrieval import FurnishParameters, place_templates
+from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
 
 
 def _table_with_back(steep):
@@ -29,7 +29,7 @@ def _table_with_back(steep):
 
 def _chairs(labels, **changed):
     found = find_objects(grid_of(labels))
-    placed = place_templates(found.grid, found.instances, FurnishParameters(**changed))
+    placed = place_templates(found.grid, found.instances, RetrievalParameters(**changed))
     return [one for one in placed if one.class_id == SemanticClass.CHAIR]
 
 

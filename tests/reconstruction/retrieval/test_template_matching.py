@@ -14,7 +14,7 @@ from world2minecraft.furniture import TEMPLATES, surface_cells, template, templa
 from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.retrieval import (
-    FurnishParameters,
+    RetrievalParameters,
     fit_template,
     place_templates,
     ranked_matches,
@@ -47,7 +47,7 @@ def _room(name, quarter_turns, size_m=None, *, hidden=False, wall=True, lift=Non
 
 def _furnished(grid, **changed):
     found = find_objects(grid)
-    return found, place_templates(found.grid, found.instances, FurnishParameters(**changed))
+    return found, place_templates(found.grid, found.instances, RetrievalParameters(**changed))
 
 
 @pytest.mark.parametrize("hidden", [False, True])
@@ -175,7 +175,7 @@ def test_what_no_template_explains_is_built_from_its_own_cells():
         labels[20 + step : 23 + step, 20 + step : 23 + step, 1 + step : 3 + step] = 5
     found, (placement,) = _furnished(grid_of(labels))
     assert placement.template == "cells"
-    assert placement.iou < FurnishParameters().min_iou
+    assert placement.iou < RetrievalParameters().min_iou
     np.testing.assert_allclose(placement.center_m, found.instances[0].center_m, atol=1e-4)
     assert placement.alternatives[0].iou == placement.iou
 
@@ -214,5 +214,5 @@ def test_the_fast_overlap_is_the_slow_one(seed):
 )
 def test_parameters_out_of_bounds_are_refused(changed, message):
     with pytest.raises(UsageError) as refused:
-        FurnishParameters(**changed)
+        RetrievalParameters(**changed)
     assert str(refused.value) == message

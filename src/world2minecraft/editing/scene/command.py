@@ -28,7 +28,7 @@ class Tools(NamedTuple):
     """What commands need of the stages, which edits do not know.
 
     ``match`` returns the furniture that stands for an object in a grid; ``find`` the instance of
-    each cell and the objects, by the parameters given (``FindParameters``). ``fit`` returns one
+    each cell and the objects, by the parameters given (``InstanceParameters``). ``fit`` returns one
     template in an object's place, in the turn given or the best, whatever is there. ``measure``
     returns the object of an id and a class that cells int32 [N, 3] are: its box and its front.
     """

@@ -32,7 +32,7 @@ from world2minecraft.procgen import generate_house, generate_room
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo_rendering import prepare_photos
 from world2minecraft.procgen.sensors.trajectory import plan_trajectory
-from world2minecraft.reconstruction.fusion import CleanParameters, extract_grid, remove_floaters
+from world2minecraft.reconstruction.fusion import CleaningParameters, extract_grid, remove_floaters
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
 from world2minecraft.reconstruction.semantics.completion_labeller import hint_of
 from world2minecraft.reconstruction.semantics.geometric_labeller import GeometricLabeller
@@ -118,7 +118,7 @@ def make_sample(
     rng: np.random.Generator,
 ) -> Sample:
     """Return the sample of a fused look."""
-    grid = remove_floaters(extract_grid(evidence), CleanParameters())
+    grid = remove_floaters(extract_grid(evidence), CleaningParameters())
     hint = hint_of(*GeometricLabeller().traced(grid, evidence)) if look.in_room_axes else None
     truth_to_grid = look.room_to_grid.copy()
     truth_to_grid[:3, :3] = truth_to_grid[:3, :3] @ rotation_about_z(noise.yaw_error_deg)[:3, :3]

@@ -21,7 +21,7 @@ from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.depth_camera import jitter_pose, scale_factor, sense_depth
 from world2minecraft.procgen.sensors.photo_rendering import PhotoScene, take_photo
 from world2minecraft.procgen.sensors.scan_frames import LUMINANCE
-from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
+from world2minecraft.reconstruction.fusion import EvidenceMap, FusionParameters
 from world2minecraft.reconstruction.occupancy.depth_evidence import DepthPredictor
 
 ScanKind = Literal["walk", "few", "single"]
@@ -84,7 +84,7 @@ def fuse_scan(
     wide = WALK_WIDE_PX if look.kind == "walk" else FEW_WIDE_PX
     focal = FOCAL_SHARE * wide
     camera = Camera(wide, wide * 3 // 4, focal, focal, wide / 2, wide * 3 / 8)
-    parameters = FuseParameters()
+    parameters = FusionParameters()
     evidence, lifting = EvidenceMap(look.room_to_grid, parameters), DepthPredictor()
     for pose in look.poses:
         evidence.add(lifting.lift(_view(room, scene, camera, pose, noise, rng, look.kind)))

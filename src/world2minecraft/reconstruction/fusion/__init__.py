@@ -7,7 +7,7 @@ memory of Gaussians). ``calibrate`` says of each labelled cell how surely it is 
 
 from world2minecraft.reconstruction.fusion.accumulator import (
     EvidenceMap,
-    FuseParameters,
+    FusionParameters,
     fuse_views,
 )
 from world2minecraft.reconstruction.fusion.confidence_calibration import (
@@ -17,16 +17,16 @@ from world2minecraft.reconstruction.fusion.confidence_calibration import (
 )
 from world2minecraft.reconstruction.fusion.extract_grid import extract_grid
 from world2minecraft.reconstruction.fusion.grid_cleaning import (
-    CleanParameters,
+    CleaningParameters,
     close_structure,
     remove_floaters,
 )
 
 __all__ = [
-    "CleanParameters",
+    "CleaningParameters",
     "ConfidenceTable",
     "EvidenceMap",
-    "FuseParameters",
+    "FusionParameters",
     "calibrate",
     "close_structure",
     "confidence_table",

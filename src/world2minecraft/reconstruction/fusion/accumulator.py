@@ -30,7 +30,7 @@ from world2minecraft.reconstruction.fusion.integration import (
     to_cells,
 )
 from world2minecraft.reconstruction.fusion.network_grids import grid_gains
-from world2minecraft.reconstruction.fusion.parameters import FuseParameters
+from world2minecraft.reconstruction.fusion.parameters import FusionParameters
 from world2minecraft.reconstruction.fusion.surface_decision import (
     SurfaceRules,
     decide_surface,
@@ -45,8 +45,8 @@ ALL_SUB_CELLS = 64
 class EvidenceMap:
     """The growing map. ``add`` takes evidence, ``fused`` gives the value of the moment."""
 
-    def __init__(self, scan_to_room: np.ndarray, parameters: FuseParameters | None = None):
-        self.parameters = parameters or FuseParameters()
+    def __init__(self, scan_to_room: np.ndarray, parameters: FusionParameters | None = None):
+        self.parameters = parameters or FusionParameters()
         self.scan_to_room = np.asarray(scan_to_room, np.float64)
         self.blocks = Blocks()
         self._base = 1  # The next view's number in the cells' marks.
@@ -219,7 +219,7 @@ class EvidenceMap:
 def fuse_views(
     evidence: Iterable[PointEvidence | GridEvidence],
     scan: Scan,
-    parameters: FuseParameters | None = None,
+    parameters: FusionParameters | None = None,
     progress: Progress = no_progress,
 ) -> FusedEvidence:
     """Fuse the evidence of all views, streamed: the paper's F_embodied, equation 2.

@@ -19,7 +19,7 @@ MAX_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the sq
 
 
 @dataclass(frozen=True)
-class CleanParameters:
+class CleaningParameters:
     """How the grid is cleaned.
 
     floater_cells: a part joined to nothing with fewer cells is noise.
@@ -43,7 +43,7 @@ class CleanParameters:
             raise UsageError(f"clean.hole_m must be 0 to {MAX_HOLE_M:g} m, not {self.hole_m:g}")
 
 
-def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
+def remove_floaters(grid: OccupancyGrid, parameters: CleaningParameters) -> OccupancyGrid:
     """Return the grid with small parts that touch nothing, not even by a corner, made free."""
     parts, _ = label_components(grid.occupied)
     sizes = np.bincount(parts.reshape(-1))
@@ -53,7 +53,7 @@ def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> Occupan
     return replace(grid, labels=labels)
 
 
-def close_structure(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
+def close_structure(grid: OccupancyGrid, parameters: CleaningParameters) -> OccupancyGrid:
     """Return the grid with the unseen holes of floor, ceiling and walls closed.
 
     A hole is a set of unknown cells in a layer of the class that a square of ``hole_m`` closes.

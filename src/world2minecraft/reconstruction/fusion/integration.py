@@ -25,7 +25,7 @@ from world2minecraft.reconstruction.fusion.voxel_blocks import (
 
 
 class ViewRules(NamedTuple):
-    """What decides how a view is integrated; see ``FuseParameters``."""
+    """What decides how a view is integrated; see ``FusionParameters``."""
 
     hit_log_odds: float
     free_log_odds: float

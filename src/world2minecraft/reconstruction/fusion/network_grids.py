@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, cell_centers_m
 from world2minecraft.core.types import GridEvidence
-from world2minecraft.reconstruction.fusion.parameters import FuseParameters
+from world2minecraft.reconstruction.fusion.parameters import FusionParameters
 
 EDGE = 0.02  # Probabilities are kept off 0 and 1, so that one sure view cannot veto all others.
 MIN_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says nothing.
@@ -33,7 +33,7 @@ class GridGains:
 
 
 def grid_gains(
-    evidence: GridEvidence, scan_to_room: np.ndarray, parameters: FuseParameters
+    evidence: GridEvidence, scan_to_room: np.ndarray, parameters: FusionParameters
 ) -> GridGains:
     """Return what a network's grid adds to the map.
 

@@ -10,7 +10,7 @@ ABOVE_0, NOT_BELOW_0, SHARE = "above 0", "0 or more", "0 to 1"
 
 
 @dataclass(frozen=True)
-class FuseParameters:
+class FusionParameters:
     """How views are fused. docs/fusion.md tells what each figure does to generated rooms.
 
     voxel_m: the cell.
@@ -106,13 +106,13 @@ class FuseParameters:
                 given = getattr(self, name)
                 raise UsageError(f"fuse.{name} must lie between 0 and 1, not {given:g}")
 
-    def suited(self, depth_kind: str) -> "FuseParameters":
+    def suited(self, depth_kind: str) -> "FusionParameters":
         """Return the parameters for another kind of depth; what was chosen by hand stays.
 
         Depth from stereo errs more with distance than a sensor's, and by whole patches; so does
         that of a network.
         """
-        default = FuseParameters(self.voxel_m)
+        default = FusionParameters(self.voxel_m)
         changes = BY_DEPTH_KIND.get(depth_kind, {})
         untouched = {k: v for k, v in changes.items() if getattr(self, k) == getattr(default, k)}
         return replace(self, **untouched)

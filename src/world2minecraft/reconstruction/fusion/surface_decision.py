@@ -23,7 +23,7 @@ SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
 
 
 class SurfaceRules(NamedTuple):
-    """What decides whether a cell is solid; see ``FuseParameters``."""
+    """What decides whether a cell is solid; see ``FusionParameters``."""
 
     min_sub_cells: int  # Sub-cells behind its surface that make a cell solid.
     merge_m: float  # Planes are one nearer than this distance

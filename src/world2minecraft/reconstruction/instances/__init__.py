@@ -10,6 +10,6 @@ from world2minecraft.reconstruction.instances.objects import (
     find_objects,
     measure_object,
 )
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
-__all__ = ["CenterMap", "FindParameters", "FoundObjects", "find_objects", "measure_object"]
+__all__ = ["CenterMap", "FoundObjects", "InstanceParameters", "find_objects", "measure_object"]

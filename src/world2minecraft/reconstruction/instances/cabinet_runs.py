@@ -22,7 +22,7 @@ from world2minecraft.reconstruction.instances.object_voxels import (
     cells_by_owner,
     object_voxels,
 )
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 # Slivers of a cut go back to the piece that they touch most.
 SLIVER_WIDTH_M = 0.2  # A piece this thin in plan
@@ -342,7 +342,7 @@ def _colour_step(colours: np.ndarray) -> float:
 
 
 def split_cabinet_runs(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which cupboards of a row have own numbers."""
     result = owners.copy()

@@ -12,7 +12,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import object_cells
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 # Bits of a lamp: its foot on the floor, a piece of its cord, join the shade over or under them.
 MAX_POST_CELLS = 2  # A post or a cord is at most so wide,
@@ -33,7 +33,7 @@ STANDING_FACTOR = 4  # Times ``min_cells``: 32 cells are the star of a chair's f
 
 
 def merge_lamp_parts(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which posts, cords and feet belong to their lamps.
 
@@ -78,7 +78,7 @@ def _vertical_gap(fragment: np.ndarray, whole: np.ndarray, grid: OccupancyGrid) 
 
 
 def merge_stacked(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], with stacked parts of one class under one number.
 
@@ -130,7 +130,7 @@ def _root(parent: list[int], number: int) -> int:
 
 
 def merge_small_pieces(
-    owners: np.ndarray, grid: OccupancyGrid, parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners in which no object is smaller than ``min_cells``.
 
@@ -149,7 +149,7 @@ def merge_small_pieces(
 
 
 def _merge_class(
-    mask: np.ndarray, owners: np.ndarray, min_whole_cells: int, parameters: FindParameters
+    mask: np.ndarray, owners: np.ndarray, min_whole_cells: int, parameters: InstanceParameters
 ) -> None:
     """Merge, in place, the loose pieces of a class and its objects of too few cells."""
     sizes = np.bincount(owners[mask])

@@ -37,7 +37,7 @@ from world2minecraft.reconstruction.instances.object_extent import (
     min_area_rectangle,
     vertical_extent,
 )
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 from world2minecraft.reconstruction.instances.split_by_colour import split_by_colour
 from world2minecraft.reconstruction.instances.split_by_support import split_by_support
 from world2minecraft.reconstruction.instances.split_chairs import (
@@ -48,7 +48,7 @@ from world2minecraft.reconstruction.instances.split_chairs import (
 MAX_OBJECTS = 65535
 
 # A pass takes the owner of each cell, int32 [X, Y, Z] with 0 for none, and returns a new array.
-Pass = Callable[[np.ndarray, OccupancyGrid, FindParameters], np.ndarray]
+Pass = Callable[[np.ndarray, OccupancyGrid, InstanceParameters], np.ndarray]
 PASSES: tuple[Pass, ...] = (
     merge_stacked,
     merge_small_pieces,
@@ -83,7 +83,7 @@ class FoundObjects:
     leftover: int
 
 
-def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> FoundObjects:
+def find_objects(grid: OccupancyGrid, parameters: InstanceParameters | None = None) -> FoundObjects:
     """Find the objects of a room.
 
     Objects are ordered by class, then by the middle of their cells (x, y, z), and numbered from 1.
@@ -92,7 +92,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     Raises:
         UsageError: there are more objects than ids; ``min_cells`` must be raised.
     """
-    chosen = parameters or FindParameters()
+    chosen = parameters or InstanceParameters()
     given = grid
     if not chosen.paper_compat:
         grid = replace(grid, labels=relabel_specks(grid.labels))

@@ -9,7 +9,7 @@ ABOVE_0 = "above 0"
 
 
 @dataclass(frozen=True)
-class FindParameters:
+class InstanceParameters:
     """How objects are found. Lengths are in cells; docs/sweeps.md has the curves.
 
     The paper gives no number. Within wide bounds none matters: the passes after the clusters split

@@ -11,7 +11,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 MAX_COLOUR_DIFFERENCE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
 MIN_CELLS = 5  # Of a patch that is a thing of its own.
@@ -21,7 +21,7 @@ STEPS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 
 
 def split_by_colour(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which small things of other colours have own numbers."""
     result = owners.copy()

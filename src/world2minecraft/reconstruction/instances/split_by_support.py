@@ -15,7 +15,7 @@ from world2minecraft.geometry.colour import srgb_to_oklab
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.density_clustering import assign_voxels
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 # What hangs on a wall: the columns of a curtain or a picture among those of small things.
 WALL_CELLS = 2  # A curtain hangs this near its wall.
@@ -109,7 +109,7 @@ def _is_sheet(plan: np.ndarray, stood: np.ndarray, own: np.ndarray, scene: Local
 
 
 def split_by_support(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which small things of other supports have own numbers."""
     result = owners.copy()

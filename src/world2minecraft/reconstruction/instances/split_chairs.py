@@ -15,7 +15,7 @@ from world2minecraft.furniture.chair_fitting import (
 )
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.instances.object_voxels import cells_by_owner, floor_layer_below
-from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.parameters import InstanceParameters
 
 MAX_CHAIR_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
 MAX_EASY_CHAIR_M = 1.2
@@ -33,7 +33,7 @@ MARGIN_CELLS = 10  # Cells around the voxels: a chair's depth and some more.
 
 
 def split_touching_chairs(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
     owners = _separate_far_pieces(owners, grid)
@@ -53,7 +53,7 @@ def split_touching_chairs(
 
 
 def merge_chair_backs(
-    owners: np.ndarray, grid: OccupancyGrid, _parameters: FindParameters
+    owners: np.ndarray, grid: OccupancyGrid, _parameters: InstanceParameters
 ) -> np.ndarray:
     """Return owners in which a back without a seat joins a seat without a back beside it.
 

@@ -2,7 +2,7 @@
 
 A predictor is any callable object with ``predict(scan)``; the built-in ones are in
 ``PREDICTORS``, others join through the entry point group ``world2minecraft.predictor``. ``depth``
-may be helped by networks that vote for classes (``OccupyParameters``).
+may be helped by networks that vote for classes (``OccupancyParameters``).
 """
 
 from collections.abc import Iterator
@@ -11,9 +11,9 @@ from typing import Protocol
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
-from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
+from world2minecraft.reconstruction.occupancy.parameters import OccupancyParameters
 
-__all__ = ["PREDICTORS", "OccupyParameters", "Predictor", "notes_of", "predictor"]
+__all__ = ["PREDICTORS", "OccupancyParameters", "Predictor", "notes_of", "predictor"]
 
 PREDICTORS = Registry(
     "predictor",
@@ -32,7 +32,7 @@ class Predictor(Protocol):
         ...
 
 
-def predictor(name: str, parameters: OccupyParameters | None = None) -> Predictor:
+def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predictor:
     """Return a new predictor by name.
 
     Args:
@@ -47,7 +47,7 @@ def predictor(name: str, parameters: OccupyParameters | None = None) -> Predicto
     """
     family, _, file = name.partition(":")
     make = PREDICTORS.load(family)
-    chosen = parameters or OccupyParameters()
+    chosen = parameters or OccupancyParameters()
     if chosen.network and not chosen.mono_votes:
         raise UsageError("occupy.network votes by occupy.mono_votes=true; set that too")
     if file and family == "depth":

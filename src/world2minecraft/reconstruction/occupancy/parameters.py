@@ -6,7 +6,7 @@ from world2minecraft.core.parameters import parameter
 
 
 @dataclass(frozen=True)
-class OccupyParameters:
+class OccupancyParameters:
     """Networks that vote on what depth sees; none by default, and nothing is downloaded.
 
     semantics: a network that says what each pixel shows, such as ``hf:ORG/NAME`` or ``hf:FOLDER``.

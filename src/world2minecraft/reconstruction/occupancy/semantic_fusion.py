@@ -29,7 +29,7 @@ from world2minecraft.core.types import View
 from world2minecraft.reconstruction.occupancy.depth_evidence import Voter
 from world2minecraft.reconstruction.occupancy.label_names import TABLE, label_classes, read_table
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import MonoPredictor
-from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
+from world2minecraft.reconstruction.occupancy.parameters import OccupancyParameters
 
 FOLDER = "semantics"
 MAX_BYTES = 1 << 30  # Some 5,000 pictures.
@@ -118,7 +118,7 @@ def segmenter(name: str) -> Segmenter:
     return make(model)
 
 
-def voters_of(chosen: OccupyParameters) -> tuple[Voter, ...]:
+def voters_of(chosen: OccupancyParameters) -> tuple[Voter, ...]:
     """Return the voters that were asked for.
 
     Raises what ``segmenter``, ``read_table`` and ``MonoPredictor`` raise.

@@ -8,12 +8,12 @@ from world2minecraft.reconstruction.registration.corrected_scan import (
     apply_corrections,
     with_registration_note,
 )
-from world2minecraft.reconstruction.registration.parameters import RegisterParameters
+from world2minecraft.reconstruction.registration.parameters import RegistrationParameters
 from world2minecraft.reconstruction.registration.pose_refinement import Registered, refine, register
 
 __all__ = [
-    "RegisterParameters",
     "Registered",
+    "RegistrationParameters",
     "apply_corrections",
     "refine",
     "register",

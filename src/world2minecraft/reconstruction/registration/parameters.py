@@ -9,7 +9,7 @@ ABOVE_0, BELOW_HALF = "above 0", "0 to 0.5"
 
 
 @dataclass(frozen=True)
-class RegisterParameters:
+class RegistrationParameters:
     """How poses and depth scales are refined against the map.
 
     passes: rounds of "who sees the same surface" and "move all frames"; 0 leaves the scan as it
@@ -50,7 +50,7 @@ class RegisterParameters:
             if not 0 <= getattr(self, name) < 0.5:
                 raise ValueError(f"{name} must be 0 to 0.5, not {getattr(self, name)}")
 
-    def suited(self, depth_kind: str) -> "RegisterParameters":
+    def suited(self, depth_kind: str) -> "RegistrationParameters":
         """Return the parameters for another kind of depth.
 
         Poses that stereo was computed from meet to fractions of a pixel already, and what looks at
@@ -58,7 +58,7 @@ class RegisterParameters:
         some per cent, each frame its own way, and is evened out where poses stand.
         """
         if depth_kind == "network":
-            default = RegisterParameters()
+            default = RegistrationParameters()
             untouched = {
                 k: v for k, v in OF_NETWORKS.items() if getattr(self, k) == getattr(default, k)
             }

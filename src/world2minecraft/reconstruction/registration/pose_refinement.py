@@ -26,7 +26,7 @@ from world2minecraft.reconstruction.registration.gauss_newton import (
     solve,
     surfel_means,
 )
-from world2minecraft.reconstruction.registration.parameters import RegisterParameters
+from world2minecraft.reconstruction.registration.parameters import RegistrationParameters
 from world2minecraft.reconstruction.registration.patch_correspondences import Surfels, find_surfels
 
 # The gap that parts two surfaces and the residual beyond which a patch is no look at its surfel
@@ -69,14 +69,14 @@ class State:
     bend_m: float
 
 
-def begin(surface: OrientedPoints, chosen: RegisterParameters) -> State:
+def begin(surface: OrientedPoints, chosen: RegistrationParameters) -> State:
     """Return the state before the first pass; ``surface`` lies in a frame that walls follow."""
     sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, chosen.scale_sigma])
     return State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas, FIRST_BEND_M)
 
 
 def run_passes(
-    state: State, speaks: np.ndarray, chosen: RegisterParameters, first: int = 0
+    state: State, speaks: np.ndarray, chosen: RegistrationParameters, first: int = 0
 ) -> State:
     """Move all frames until their patches meet.
 
@@ -194,26 +194,26 @@ class Registered:
 
 
 def refine(
-    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = no_progress
+    scan: Scan, parameters: RegistrationParameters | None = None, progress: Progress = no_progress
 ) -> Corrections:
     """Return what puts a scan's poses and depth scales right; arguments as ``register``."""
     return register(scan, parameters, progress).corrections
 
 
 def register(
-    scan: Scan, parameters: RegisterParameters | None = None, progress: Progress = no_progress
+    scan: Scan, parameters: RegistrationParameters | None = None, progress: Progress = no_progress
 ) -> Registered:
     """Return the corrections of a scan together with the corrected surface.
 
     Args:
         scan: an aligned scan; its views are read once, depth alone where they can be.
-        parameters: see ``RegisterParameters``.
+        parameters: see ``RegistrationParameters``.
         progress: called with the stage ``register``.
     """
     total = len(scan.views) + 1
     most_each = max(MIN_PATCHES_PER_FRAME, MAX_PATCHES // max(1, len(scan.views)))
     surface = collect_oriented_points(_told(depth_views(scan), total, progress), most_each)
-    found = register_surface(surface, scan.scan_to_room, parameters or RegisterParameters())
+    found = register_surface(surface, scan.scan_to_room, parameters or RegistrationParameters())
     progress(STAGE, total, total)
     return found
 
@@ -225,7 +225,7 @@ def depth_views(scan: Scan) -> Iterable[View]:
 
 
 def register_surface(
-    surface: OrientedPoints, scan_to_room: np.ndarray, chosen: RegisterParameters
+    surface: OrientedPoints, scan_to_room: np.ndarray, chosen: RegistrationParameters
 ) -> Registered:
     """Register the frames of a surface of the scan's frame; ``scan_to_room`` turns walls to axes.
 
@@ -271,7 +271,7 @@ def _held_out(room: OrientedPoints, share: float) -> np.ndarray:
 
 
 def _misfit_m(
-    surface: OrientedPoints, held: np.ndarray, chosen: RegisterParameters
+    surface: OrientedPoints, held: np.ndarray, chosen: RegistrationParameters
 ) -> float | None:
     """Return the median distance of held-out patches from their surfels; None where few judge."""
     judges = surface.subset(held)

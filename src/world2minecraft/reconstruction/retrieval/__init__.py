@@ -5,6 +5,6 @@ It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their un
 
 from world2minecraft.reconstruction.retrieval.chosen_template import fit_template, ranked_matches
 from world2minecraft.reconstruction.retrieval.furniture_placement import place_templates
-from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
-__all__ = ["FurnishParameters", "fit_template", "place_templates", "ranked_matches"]
+__all__ = ["RetrievalParameters", "fit_template", "place_templates", "ranked_matches"]

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Template, template, templates_of_class
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
-from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import floor_under_m, within_rooms
 from world2minecraft.reconstruction.retrieval.template_matching import (
     Bias,
@@ -75,7 +75,7 @@ def _matches(
     templates: tuple[Template, ...],
     rooms: Sequence[Layout],
 ) -> tuple[Evidence, list[Scored]]:
-    chosen = FurnishParameters()
+    chosen = RetrievalParameters()
     floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, instance.cells, reach, False, floor_m)

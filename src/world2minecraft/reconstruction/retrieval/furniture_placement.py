@@ -20,7 +20,7 @@ from world2minecraft.furniture.front_estimation import (
 )
 from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
-from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import (
     floor_under_m,
     settle_placements,
@@ -122,7 +122,7 @@ class Matched(NamedTuple):
 def place_templates(
     grid: OccupancyGrid,
     instances: Sequence[ObjectInstance],
-    parameters: FurnishParameters | None = None,
+    parameters: RetrievalParameters | None = None,
     rooms: Sequence[Layout] = (),
 ) -> tuple[Placement, ...]:
     """Return the furniture that stands for each object, in the objects' order.
@@ -132,7 +132,7 @@ def place_templates(
     stay within ``rooms``, where any are given, stand on the floors of these, and no two are solid
     in the same place.
     """
-    chosen = parameters or FurnishParameters()
+    chosen = parameters or RetrievalParameters()
     around = read_surroundings(grid.labels)
     placed: list[Choice] = []
     for instance in instances:
@@ -148,7 +148,7 @@ def _furnish_one(
     grid: OccupancyGrid,
     instance: ObjectInstance,
     around: Surroundings,
-    chosen: FurnishParameters,
+    chosen: RetrievalParameters,
     floor_m: float,
 ) -> list[Choice]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
@@ -173,7 +173,7 @@ def _furnish_one(
 
 
 def _with_tidy_crumbs(
-    grid: OccupancyGrid, instance: ObjectInstance, parts: list[Matched], chosen: FurnishParameters
+    grid: OccupancyGrid, instance: ObjectInstance, parts: list[Matched], chosen: RetrievalParameters
 ) -> list[Matched]:
     """Return the runs, and of what the cut left over only what has to be placed by itself."""
     runs = [part for part in parts if part.matches]
@@ -194,7 +194,7 @@ def _cells_of(part: Matched) -> np.ndarray:
     return (np.argwhere(part.evidence.code == OWN) + part.evidence.corner).astype(np.int32)
 
 
-def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> Matched | None:
+def _seated(grid: OccupancyGrid, found: Matched, chosen: RetrievalParameters) -> Matched | None:
     """Return a whole chair for cells that match none, where it agrees with what was seen.
 
     A chair across the grid meets few cells exactly, and of one at a table only the back is seen.
@@ -222,7 +222,7 @@ def _match(
     instance: ObjectInstance,
     cells: np.ndarray,
     quarter_turns: int,
-    chosen: FurnishParameters,
+    chosen: RetrievalParameters,
     floor_m: float,
 ) -> Matched:
     templates = templates_of_class(instance.class_id)
@@ -232,7 +232,7 @@ def _match(
     return Matched(evidence, quarter_turns, tuple(matches))
 
 
-def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: FurnishParameters) -> Bias:
+def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: RetrievalParameters) -> Bias:
     if chosen.paper_compat:
         return Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
     return Bias(
@@ -240,14 +240,14 @@ def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: FurnishParameters) ->
     )
 
 
-def _may_be_cut(whole: Matched, voxel_m: float, chosen: FurnishParameters) -> bool:
+def _may_be_cut(whole: Matched, voxel_m: float, chosen: RetrievalParameters) -> bool:
     if chosen.paper_compat or whole.iou >= chosen.cut_below:
         return False
     low, high = whole.evidence.low, whole.evidence.high
     return max(high[0] - low[0], high[1] - low[1]) * voxel_m >= chosen.cut_from_m
 
 
-def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameters) -> bool:
+def _is_better_cut(parts: list[Matched], single: float, chosen: RetrievalParameters) -> bool:
     """Whether the runs that are large enough to be furniture match better than the whole.
 
     Where nothing explains the whole, runs that explain half of it are better than none.
@@ -262,7 +262,7 @@ def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameter
 
 
 def _choice(
-    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Choice:
     """Return the placement of a match and the designs that may stand in its place."""
     placement = _placement(grid, instance, found, chosen)
@@ -274,7 +274,7 @@ def _choice(
 
 
 def _placement(
-    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: RetrievalParameters
 ) -> Placement:
     least = 0.0 if chosen.paper_compat else chosen.min_iou
     explained = bool(found.matches) and (found.whole or found.iou >= least)

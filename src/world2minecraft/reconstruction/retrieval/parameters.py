@@ -9,7 +9,7 @@ ABOVE_0, SHARE, UP_TO_8 = "above 0", "0 to 1", "0 to 8"
 
 
 @dataclass(frozen=True)
-class FurnishParameters:
+class RetrievalParameters:
     """How templates are matched.
 
     min_iou: below it an object is built from its own cells.

@@ -15,7 +15,7 @@ from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import Template, rasterize
 from world2minecraft.furniture.rasterization import count_overlaps
 from world2minecraft.reconstruction.retrieval.object_evidence import Evidence
-from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
 PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
 Cells = tuple[int, int, int]
@@ -185,7 +185,7 @@ def _anchors(trial: Trial, evidence: Evidence, bottom: int, anywhere: bool) -> l
 
 
 def best_matches(
-    templates: tuple[Template, ...], evidence: Evidence, bias: Bias, chosen: FurnishParameters
+    templates: tuple[Template, ...], evidence: Evidence, bias: Bias, chosen: RetrievalParameters
 ) -> list[Scored]:
     """Return the best trial of each template and turn, refined, best first."""
     first: dict[tuple[str, int], Scored] = {}
@@ -206,7 +206,7 @@ def _keep(best: dict[tuple[str, int], Scored], scored: Scored) -> None:
         best[key] = scored
 
 
-def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: FurnishParameters) -> Scored:
+def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: RetrievalParameters) -> Scored:
     """Climb from a seed by shifts, parameters and sizes in turn, each within its bounds.
 
     A parameter is tried at every shift: a seat one cell too low would else be met by a chair
@@ -257,7 +257,7 @@ def _with_parameter(trial: Trial, name: str) -> Iterator[Trial]:
 
 
 def _with_size(
-    trial: Trial, seed: Trial, axis: int, voxel_m: float, chosen: FurnishParameters
+    trial: Trial, seed: Trial, axis: int, voxel_m: float, chosen: RetrievalParameters
 ) -> Iterator[Trial]:
     """Give the trial one cell smaller or larger along one of its own axes, at either end.
 
