@@ -1,14 +1,37 @@
 """Parameters: one truth for every default, and settings that teach."""
 
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
 import pytest
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.reconstruction.layout.parameters import GeometricParameters
 from world2minecraft.reconstruction.parameters import (
     Parameters,
     parameter_keys,
     with_method,
     with_settings,
 )
+from world2minecraft.reconstruction.semantics.completion_labeller import CompletionParameters
+
+
+def numbers_without_origin(parameters: Any) -> Iterator[str]:
+    for entry in fields(parameters):
+        value = getattr(parameters, entry.name)
+        if is_dataclass(value):
+            yield from numbers_without_origin(value)
+            continue
+        several = value if isinstance(value, tuple) else (value,)
+        is_number = any(isinstance(one, int | float) for one in several)
+        if is_number and not isinstance(value, bool) and not entry.metadata.get("origin"):
+            yield f"{type(parameters).__name__}.{entry.name}"
+
+
+@pytest.mark.parametrize("of", [Parameters, GeometricParameters, CompletionParameters])
+def test_every_number_is_declared_with_its_origin(of):
+    assert list(numbers_without_origin(of())) == []
 
 
 def test_every_key_can_be_set_to_its_own_value():

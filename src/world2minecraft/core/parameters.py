@@ -30,3 +30,20 @@ def names_where(parameters: Any, **facts: Any) -> tuple[str, ...]:
         for entry in fields(parameters)
         if all(entry.metadata.get(key) == value for key, value in facts.items())
     )
+
+
+def fact_by_name(parameters: Any, fact: str) -> dict[str, Any]:
+    """Return a fact, such as the limits, by the names of the parameters declared with it, in order.
+
+    Example:
+        >>> from dataclasses import dataclass
+        >>> @dataclass(frozen=True)
+        ... class Sweep:
+        ...     planes: int = parameter(64, limits=(8, 254))
+        ...     network_alone: bool = parameter(False)
+        >>> fact_by_name(Sweep, "limits")
+        {'planes': (8, 254)}
+    """
+    return {
+        entry.name: entry.metadata[fact] for entry in fields(parameters) if fact in entry.metadata
+    }

@@ -20,6 +20,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.core.errors import DamagedFileError, first_line
 from world2minecraft.core.files import read_bytes
+from world2minecraft.core.parameters import parameter
 from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.reconstruction.layout.parameters import GeometricParameters
@@ -143,28 +144,41 @@ class CompletionParameters:
     small_cells: parts of a class with fewer cells take the class around them.
     agreed_share: a piece that the geometric labeller cut takes one class where this share of its
         cells, by their chances, agrees.
-    hint_share: what the geometric label adds to the chance of its class. Object F1 of ten tuning
-        scans was 0.899, 0.891, 0.886 and 0.882 at 0.6, 0.7, 0.8 and 0.9 (0.847 by geometry alone);
-        but in the real kitchen, unlike any room that the network learnt from, geometry is right
-        more often, and from 0.9 on its table, chairs and screen are what they are.
+    hint_share: what the geometric label adds to the chance of its class.
     beside_votes: what the network's chances count beside the shares of 2D votes, where a cell has
         some; then the geometric label counts as it does for the votes labeller.
     sure: the chance of being solid from which an unseen cell is completed.
     reach_cells: how far off the observed surface that may be: 3 cells are 24 cm.
-    clear_cells: no cell is completed so near an observed thing: it would be hidden, and where a
-        block holds both, the thing would be lost to the wall behind it.
-    filled: the classes that are filled: ceiling, floor and wall. Filled furniture is right more
-        often than not, but of three tuning scans object F1 fell from 0.85 to 0.82 by it.
+    clear_cells: no cell is completed so near an observed thing.
+    filled: the classes that are filled: ceiling, floor and wall.
     """
 
-    small_cells: int = 4
-    agreed_share: float = 0.6
-    hint_share: float = 0.9
-    beside_votes: float = 0.2
-    sure: float = 0.8
-    reach_cells: int = 3
-    clear_cells: int = 1
-    filled: tuple[int, ...] = (1, 2, 3)
+    small_cells: int = parameter(4, unit="cells", origin="not recorded")
+    agreed_share: float = parameter(0.6, unit="share", origin="not recorded")
+    hint_share: float = parameter(
+        0.9,
+        unit="chance",
+        origin="object F1 of ten tuning scans was 0.899, 0.891, 0.886 and 0.882 at 0.6, 0.7, 0.8 "
+        "and 0.9 (0.847 by geometry alone); but in the real kitchen, unlike any room that the "
+        "network learnt from, geometry is right more often, and from 0.9 on its table, chairs and "
+        "screen are what they are",
+    )
+    beside_votes: float = parameter(0.2, unit="votes", origin="not recorded")
+    sure: float = parameter(
+        0.8, unit="chance", origin="chosen once on the held-out rooms; docs/completion.md"
+    )
+    reach_cells: int = parameter(3, unit="cells", origin="not recorded")
+    clear_cells: int = parameter(
+        1,
+        unit="cells",
+        origin="a cell beside a thing would be hidden, and where a block holds both, the thing "
+        "would be lost to the wall behind it",
+    )
+    filled: tuple[int, ...] = parameter(
+        (1, 2, 3),
+        origin="filled furniture is right more often than not, but object F1 of three tuning "
+        "scans fell from 0.85 to 0.82 by it",
+    )
 
 
 class CompletionLabeller:
