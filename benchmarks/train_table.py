@@ -28,9 +28,9 @@ from world2minecraft.cli.progress import show_progress
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress
-from world2minecraft.evaluation.metrics.confidence_intervals import micro_figures
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.evaluation.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
+from world2minecraft.evaluation.metrics.score_aggregation import micro_figures
 from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
 from world2minecraft.networks.csv_logger import METRICS, read_metrics

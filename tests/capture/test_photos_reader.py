@@ -11,7 +11,7 @@ from world2minecraft.capture.format_detection import find_capture
 from world2minecraft.capture.images import check_whole, read_colour, read_header
 from world2minecraft.capture.options import ScanOptions, parse_options
 from world2minecraft.capture.photo_stream import photos_of_capture
-from world2minecraft.capture.poster_marker import SOFTWARE_TAG
+from world2minecraft.capture.poster_detection import SOFTWARE_TAG
 from world2minecraft.capture.readers.photo_exif import UprightPhoto, read_photo_metadata
 from world2minecraft.capture.readers.photo_folder import evenly_thinned, natural_key
 from world2minecraft.capture.validation import validate_capture

@@ -14,8 +14,8 @@ from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
 from world2minecraft.formats.run_arrays import read_room
 from world2minecraft.minecraftocc.cell_predictions import PredictedCells, resample_to_grid
-from world2minecraft.minecraftocc.formats.cameras import encode_depth
-from world2minecraft.minecraftocc.frame_completion import GridPlace
+from world2minecraft.minecraftocc.formats.image_conventions import encode_depth
+from world2minecraft.minecraftocc.scene_completion import GridPlace
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))
 ORIGIN_M = np.array([-0.2, 0.48, -0.08])

@@ -6,15 +6,15 @@ from build_samples import CHAIR, FURN, RED, TABLE, WOOD, Sketch, placement
 
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.construction.block_lattice import lattice_over
-from world2minecraft.construction.cell_objects import (
+from world2minecraft.construction.fitted_objects import design_of_parts
+from world2minecraft.construction.fitting import CALM, Shape, shape_set
+from world2minecraft.construction.objects_from_cells import (
     Solid,
     enclosed_cells,
     kinds_for_sheet,
     make_solid,
     share_solids,
 )
-from world2minecraft.construction.fitted_objects import design_of_parts
-from world2minecraft.construction.fitting import CALM, Shape, shape_set
 from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.shape_materials import materials_of
 from world2minecraft.core.classes import SemanticClass

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
-from world2minecraft.construction.block_meanings import Meaning, label_volume, parse_meanings
+from world2minecraft.construction.mod_block_classes import Meaning, label_volume, parse_meanings
 from world2minecraft.construction.mod_furniture import mod_furniture
 from world2minecraft.construction.palette_restriction import UNSEEN, nearest_allowed
 from world2minecraft.construction.palettes import (

@@ -11,7 +11,7 @@ from world2minecraft.construction.block_lattice import (
     lattice_over,
     overlap_weights,
 )
-from world2minecraft.construction.cell_objects import resample_cells
+from world2minecraft.construction.objects_from_cells import resample_cells
 from world2minecraft.construction.template_blocks import half_block_design
 from world2minecraft.construction.worktops import missing_top_cells
 from world2minecraft.furniture import TEMPLATES, template

@@ -5,7 +5,7 @@ import pytest
 from block_volumes import volume_of
 
 from world2minecraft.core.types import BlockEntity, Entity
-from world2minecraft.minecraft.block_entities import convert_volume, count_lost_data
+from world2minecraft.minecraft.entity_conversion import convert_volume, count_lost_data
 from world2minecraft.minecraft.file_format import Losses, WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte

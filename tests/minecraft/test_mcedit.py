@@ -6,8 +6,8 @@ from block_volumes import state_texts, volume_of
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, write_nbt

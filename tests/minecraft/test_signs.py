@@ -8,9 +8,9 @@ from block_volumes import volume_of
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands import parser
 from world2minecraft.minecraft.commands.datapack import datapack_files
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt

@@ -12,7 +12,7 @@ from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import InputError, MissingExtraError, UsageError
 from world2minecraft.minecraftocc.exporters import export_samples
-from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
+from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
 from world2minecraft.minecraftocc.statistics import (
     DatasetStatistics,
     count_samples,

@@ -17,7 +17,7 @@ WORDS: dict[tuple[str, str], str] = {}
 # Modules that the table's Python scripts import, and other words of theirs.
 MODULES: dict[str, str] = {
     "world2minecraft.coordinates": "world2minecraft.core.coordinates",
-    "world2minecraft.exchange.source": "world2minecraft.formats.build_source",
+    "world2minecraft.exchange.source": "world2minecraft.formats.build_reader",
     "read_source": "read_build",
     "LookLight": "LightSettings",
     "world2minecraft.render": "world2minecraft.rendering",

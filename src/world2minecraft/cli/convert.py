@@ -129,7 +129,7 @@ def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume
         InputError: it cannot be read, or nothing but air is in the box.
         UsageError: the box lies beside the build.
     """
-    from world2minecraft.formats.build_source import read_build
+    from world2minecraft.formats.build_reader import read_build
     from world2minecraft.formats.volume_formats import read_volume
 
     return read_volume(source, losses) if box is None else read_build(source, box).volume
@@ -161,7 +161,7 @@ def with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
     """
     if not palette:
         return volume
-    from world2minecraft.construction.block_meanings import label_volume
+    from world2minecraft.construction.mod_block_classes import label_volume
     from world2minecraft.construction.palettes import load_palette
 
     meanings = load_palette(palette).meanings

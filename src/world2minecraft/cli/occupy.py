@@ -9,7 +9,7 @@ import typer
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
     from world2minecraft.minecraftocc.cell_predictions import PredictedCells
-    from world2minecraft.minecraftocc.frame_completion import GridPlace
+    from world2minecraft.minecraftocc.scene_completion import GridPlace
 
 EXAMPLES = """\
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz       SSCNet's NYUv2
@@ -78,7 +78,7 @@ def run(
     """
     from world2minecraft.capture.readers.photo_folder import PHOTO_SUFFIXES
     from world2minecraft.core.errors import InputError
-    from world2minecraft.minecraftocc.frame_completion import read_grid_place
+    from world2minecraft.minecraftocc.scene_completion import read_grid_place
 
     if not source.exists():
         raise InputError(source, "is not there; give a depth PNG, a photo or a capture")
@@ -127,7 +127,7 @@ class _Frame:
         from world2minecraft.capture.images import read_colour, read_header, read_raw
         from world2minecraft.core.errors import CaptureError
         from world2minecraft.minecraftocc.cell_predictions import PredictedCells
-        from world2minecraft.minecraftocc.frame_completion import (
+        from world2minecraft.minecraftocc.scene_completion import (
             VOXEL_M,
             complete_frame,
             depth_of_png,

@@ -8,20 +8,6 @@ import numpy as np
 from world2minecraft.construction.block_lattice import volume_shares
 from world2minecraft.construction.canvas import Canvas
 from world2minecraft.construction.cell_colours import block_colour, fill_colours
-from world2minecraft.construction.cell_objects import (
-    BULKY,
-    CLOSED,
-    WALL_MOUNTED,
-    CellsDesign,
-    Solid,
-    enclosed_cells,
-    fit_cells,
-    good_fits,
-    kinds_for_sheet,
-    make_solid,
-    make_solids,
-    resample_cells,
-)
 from world2minecraft.construction.colour_sources import BuildSource, ColourSamples, ColourSource
 from world2minecraft.construction.design_placement import (
     CanvasWindow,
@@ -42,8 +28,21 @@ from world2minecraft.construction.fitted_objects import (
 )
 from world2minecraft.construction.fitting import remove_loose_blocks
 from world2minecraft.construction.fitting.shapes import SUB
+from world2minecraft.construction.objects_from_cells import (
+    BULKY,
+    CLOSED,
+    WALL_MOUNTED,
+    CellsDesign,
+    Solid,
+    enclosed_cells,
+    fit_cells,
+    good_fits,
+    kinds_for_sheet,
+    make_solid,
+    make_solids,
+    resample_cells,
+)
 from world2minecraft.construction.overlap_avoidance import best_place, best_step
-from world2minecraft.construction.substitutes import substitute_templates
 from world2minecraft.construction.surface_painting import block_colours, chair_paints
 from world2minecraft.construction.template_blocks import (
     LATE_RANKS,
@@ -52,6 +51,7 @@ from world2minecraft.construction.template_blocks import (
     placement_order,
     within_storeys,
 )
+from world2minecraft.construction.template_substitution import substitute_templates
 from world2minecraft.construction.worktops import PlateBuilder
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, Placement

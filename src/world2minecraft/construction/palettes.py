@@ -16,7 +16,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from world2minecraft.construction.block_meanings import parse_meanings
+from world2minecraft.construction.mod_block_classes import parse_meanings
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError, one_line
 from world2minecraft.core.files import load_plain_yaml, read_bytes
@@ -26,7 +26,7 @@ from world2minecraft.minecraft.block_states import BlockState, check_state, comp
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 if TYPE_CHECKING:
-    from world2minecraft.construction.block_meanings import Meanings
+    from world2minecraft.construction.mod_block_classes import Meanings
 
 FILLS = ("one", "row", "floor", "box")
 # Where a block's facing looks, of a piece that looks east.

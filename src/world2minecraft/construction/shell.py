@@ -15,7 +15,7 @@ from world2minecraft.construction.canvas import BARRIER, Canvas
 from world2minecraft.construction.cell_colours import fill_colours
 from world2minecraft.construction.colour_sources import BuildSource
 from world2minecraft.construction.palettes import Palette
-from world2minecraft.construction.structure import CEILING, FLOOR, WALL, WINDOW, Shell
+from world2minecraft.construction.shell_geometry import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.construction.surface_painting import (
     BlockChoice,
     block_colours,

@@ -5,7 +5,7 @@ import numpy as np
 from world2minecraft.construction.block_lattice import Lattice
 from world2minecraft.construction.canvas import BARRIER, Canvas
 from world2minecraft.construction.colour_sources import BuildSource
-from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
+from world2minecraft.construction.shell_geometry import STANDING_M, WALL, WINDOW
 from world2minecraft.construction.surface_painting import BlockChoice, paint_surface
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.geometry.morphology import dilate, fill_holes

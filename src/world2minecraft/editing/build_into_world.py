@@ -31,8 +31,8 @@ from world2minecraft.editing.world_region import (
     read_world_box,
     tag_entities,
 )
-from world2minecraft.minecraft.block_entities import convert_block_entity, convert_entity
 from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.entity_conversion import convert_block_entity, convert_entity
 from world2minecraft.minecraft.versions import name_in_version
 from world2minecraft.minecraft.worlds.session_lock import session_lock
 from world2minecraft.minecraft.worlds.world_reader import read_level

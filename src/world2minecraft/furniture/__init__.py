@@ -4,7 +4,6 @@ A design of your own is one data file in ``designs/``, or an entry point of the 
 ``world2minecraft.template``; see docs/furniture.md.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_designs import BlockDesign, DesignBlock, block_design
 from world2minecraft.furniture.front_estimation import Facing, estimate_facing, read_surroundings
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of_class, variants_of
@@ -16,6 +15,7 @@ from world2minecraft.furniture.rasterization import (
     template_cells,
 )
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
+from world2minecraft.furniture.template_parameters import Look
 from world2minecraft.furniture.template_validation import check_template
 
 __all__ = [

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 from itertools import product
 from typing import Literal
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.template import BlockSize, LocalBlock
+from world2minecraft.furniture.template_parameters import Look
 
 Cell = tuple[int, int, int]
 Side = Literal["back", "front", "right", "left"]

@@ -14,8 +14,8 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import checks
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.materials import Material
+from world2minecraft.furniture.template_parameters import Look
 
 Mount = Literal["floor", "wall", "ceiling", "any"]
 STALE = "; placements.json of another version is made anew by --from furnish"

@@ -19,10 +19,10 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.design_files import design_from_json
 from world2minecraft.furniture.materials import FIXED, Material, block_uses, kinds
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
+from world2minecraft.furniture.template_parameters import Look
 
 NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 MAX_BYTES = 4 << 20

@@ -13,8 +13,8 @@ from importlib.resources import files
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import count_lost_data
 from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.entity_conversion import count_lost_data
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
 

@@ -14,7 +14,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Camera, OccupancyGrid, View
-from world2minecraft.minecraftocc.frame_completion import FILE_AXES, SHAPE, VOXEL_M, GridPlace
+from world2minecraft.minecraftocc.scene_completion import FILE_AXES, SHAPE, VOXEL_M, GridPlace
 from world2minecraft.reconstruction.occupancy.monocular_occupancy import fitted
 from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork
 

@@ -19,7 +19,7 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.formats.build_source import (
+from world2minecraft.formats.build_reader import (
     BuildSource,
     box_around_spawn,
     level_spawn,

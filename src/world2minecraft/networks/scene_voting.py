@@ -12,8 +12,8 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.coordinates import apply, turn_grid
-from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import KnownCells, ProtocolCounts, count_scene
+from world2minecraft.evaluation.metrics.score_aggregation import FrameScore
 
 TOLERANCE_CELLS = 0.02  # So far a box's corner may be off the lattice.
 TOLERANCE_DEG = 0.01

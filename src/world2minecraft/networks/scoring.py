@@ -14,7 +14,6 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
-from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore, summarise
 from world2minecraft.evaluation.metrics.protocols import (
     PROTOCOLS,
     KnownCells,
@@ -22,6 +21,7 @@ from world2minecraft.evaluation.metrics.protocols import (
     count_scene,
     protocol_named,
 )
+from world2minecraft.evaluation.metrics.score_aggregation import FrameScore, summarise
 from world2minecraft.minecraftocc.importers.embodied import SceneSet
 from world2minecraft.minecraftocc.importers.imported_samples import ImportedSet
 from world2minecraft.networks.config import Grid

@@ -9,14 +9,6 @@ from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, NYU, row
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.evaluation.metrics.confidence_intervals import (
-    FrameScore,
-    bootstrap,
-    macro_figures,
-    micro_figures,
-    scene_tables,
-    summarise,
-)
 from world2minecraft.evaluation.metrics.occupancy import (
     OccupancyCounts,
     count_occupancy,
@@ -29,6 +21,14 @@ from world2minecraft.evaluation.metrics.protocols import (
     count_frame,
     count_scene,
     protocol_named,
+)
+from world2minecraft.evaluation.metrics.score_aggregation import (
+    FrameScore,
+    bootstrap,
+    macro_figures,
+    micro_figures,
+    scene_tables,
+    summarise,
 )
 
 # The paper's rows whose printed figures do not agree with each other, and by how many points.

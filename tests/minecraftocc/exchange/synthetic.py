@@ -5,8 +5,8 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COLOURS
 from world2minecraft.core.coordinates import apply, look_at, rotation_about_z
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
-from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
+from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA
+from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
 from world2minecraft.minecraftocc.types import FineClass, LabelRegion, OccLabels, OccSample
 from world2minecraft.rendering.voxel_camera import cast_voxels
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.minecraftocc.formats.cameras import decode_depth, encode_depth
+from world2minecraft.minecraftocc.formats.image_conventions import decode_depth, encode_depth
 
 DEPTH_M = np.array([[0, 0.5, 1.2345], [8.191, 8.192, np.inf]], np.float32)
 

@@ -87,7 +87,7 @@ def test_projected_cells_meet_the_pixels_that_see_them(made, exported):
 
 
 def test_the_masks_of_view_are_the_same(made, exported):
-    from world2minecraft.minecraftocc.formats.label_boxes import box_cells_in_image, region_box
+    from world2minecraft.minecraftocc.formats.label_grids import box_cells_in_image, region_box
 
     loaded = page_loader.load_nyu(exported, "train", KEY)
     ours = box_cells_in_image(region_box(made), made.camera)

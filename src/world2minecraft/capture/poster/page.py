@@ -28,7 +28,7 @@ from world2minecraft.capture.poster.panels import (
     draw_plan,
     draw_view_directions,
 )
-from world2minecraft.capture.poster_marker import SOFTWARE_TAG
+from world2minecraft.capture.poster_detection import SOFTWARE_TAG
 from world2minecraft.capture.quality.diagnostics import (
     BLURRED_SHARE,
     DARK_BRIGHTNESS,

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.capture.images import HEIF_SUFFIXES
 from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
-from world2minecraft.capture.poster_marker import is_saved_poster
+from world2minecraft.capture.poster_detection import is_saved_poster
 from world2minecraft.capture.readers.photo_exif import (
     PhotoMetadata,
     UprightPhoto,

@@ -16,7 +16,7 @@ from scipy import fft
 from world2minecraft.capture.alignment.image_rotation import RotatedImage
 from world2minecraft.capture.images import MAX_PIXELS, ImagePlace
 from world2minecraft.capture.options import MIN_FRAMES, ScanOptions
-from world2minecraft.capture.poster_marker import is_saved_poster
+from world2minecraft.capture.poster_detection import is_saved_poster
 from world2minecraft.capture.readers.apps.video_frames import VideoFrame, open_video
 from world2minecraft.capture.readers.photo_exif import DIAGONAL_MM
 from world2minecraft.capture.source_types import Capture, FrameFiles

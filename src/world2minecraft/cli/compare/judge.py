@@ -92,7 +92,7 @@ def grade_scenes(
     from world2minecraft.cli.compare.build import folder_names
     from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.formats.build_source import read_build
+    from world2minecraft.formats.build_reader import read_build
     from world2minecraft.paper.layouts.importers import read_layouts_of
     from world2minecraft.paper.layouts.judge import grade, pictures_of
 

@@ -8,7 +8,7 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
-    from world2minecraft.formats.build_source import PlayerStart
+    from world2minecraft.formats.build_reader import PlayerStart
     from world2minecraft.formats.volume_crop import Box
     from world2minecraft.rendering.views import GamePose
 
@@ -35,7 +35,7 @@ def read_source(path: Path, box: "Box | None") -> Source:
     Raises:
         InputError: it cannot be read, or nothing but air is there.
     """
-    from world2minecraft.formats.build_source import read_build as read
+    from world2minecraft.formats.build_reader import read_build as read
 
     found = read(path, box)
     return Source(found.volume, found.name, path, _pose(found.start), found.notes)

@@ -4,6 +4,7 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 ``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.
 """
 
+from world2minecraft.core.types.block_volume import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.core.types.capture import Camera, Corrections, Scan, View, ViewStream
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
 from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
@@ -18,7 +19,6 @@ from world2minecraft.core.types.occupancy_and_evidence import (
     PointEvidence,
 )
 from world2minecraft.core.types.photos import DepthMap, Photo, PhotoStream, SparseScene
-from world2minecraft.core.types.volume import AIR, BlockEntity, BlockVolume, Entity
 
 __all__ = [
     "AIR",

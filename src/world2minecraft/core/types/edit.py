@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.types import checks
+from world2minecraft.core.types.block_volume import BlockEntity, Entity
 from world2minecraft.core.types.objects import ObjectInstance, Placement
 from world2minecraft.core.types.occupancy_and_evidence import UNSEEN
-from world2minecraft.core.types.volume import BlockEntity, Entity
 
 COUNTED = ("add", "delete", "orient", "move", "relabel", "other")
 

@@ -3,7 +3,7 @@
 In: the prediction of a frame and what is known of its cells. Out: ``ProtocolCounts``, which add up
 over frames. Two scores of one network may differ by ten points through the protocol alone, so a
 score is named by it. ``PROTOCOLS`` holds them; what each counts is said in its ``cells`` and
-``unknown``. ``evaluation.metrics.confidence_intervals`` makes tables of many frames.
+``unknown``. ``evaluation.metrics.score_aggregation`` makes tables of many frames.
 
 ``ssc`` is the one whose two figures count different cells. SSCNet's paper scores completion (IoU,
 precision, recall) where the camera's surface hides the cell, and classes there and on the surface.

@@ -2,11 +2,11 @@
 
 from typing import Literal
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Cell, Plan, Side
 from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a bowl and its tank are blocks of their own.
 

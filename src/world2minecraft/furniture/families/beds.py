@@ -4,11 +4,11 @@ At one block per metre they are the game's own beds, side by side. At more, wher
 short, a mattress of wool lies on a frame, under a blanket in the bed's colour.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import backrest, lay_back, legs, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 MATTRESS = {"mattress_height": Span(0.3, 0.5, 0.7)}
 FINE = 3.0  # Blocks per metre from which frame and mattress are layers of their own.

@@ -6,7 +6,6 @@ the foremost blocks are the ``face``, such as barrels.
 
 from collections.abc import Sequence
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import legs, part, slab
 from world2minecraft.furniture.families.fronts import (
@@ -19,6 +18,7 @@ from world2minecraft.furniture.families.fronts import (
 )
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part
+from world2minecraft.furniture.template_parameters import Look
 
 DOOR_M, HANDLE_M, GAP_M, LID_M = 0.02, 0.02, 0.008, 0.04
 DOOR_WIDTH_M, DRAWER_M = 0.5, 0.22

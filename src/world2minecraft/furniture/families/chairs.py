@@ -4,7 +4,6 @@ At one block per metre a chair is a stair. At two it has a back of an open trapd
 three on legs, a seat at its height and a back.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import (
     arms,
@@ -19,6 +18,7 @@ from world2minecraft.furniture.box_primitives import (
 )
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a leg is a post of its own.
 

@@ -1,11 +1,11 @@
 """Decor: fireplaces, clocks, aquariums, pianos, bicycles and small things on boards."""
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import column, part, slab
 from world2minecraft.furniture.families.fronts import body_of
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which small parts are blocks of their own.
 

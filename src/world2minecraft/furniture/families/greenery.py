@@ -4,11 +4,11 @@ Leaves are persistent, so that they stay without a tree, and nothing here grows:
 or bamboo but in flower pots.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import column, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a crown has a shape.
 KEPT = {"distance": "7", "persistent": "true"}

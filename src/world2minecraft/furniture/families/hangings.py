@@ -3,11 +3,11 @@
 Nothing here holds on to the wall: plates, panes and wool stand by themselves in the game.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a curtain has folds.
 FOLD_M = 0.16

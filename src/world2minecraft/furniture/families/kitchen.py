@@ -4,7 +4,6 @@ A worktop is upside-down stairs: half a block of stone that stands out over a da
 worktops do over the doors below.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import part, slab
 from world2minecraft.furniture.families.fronts import (
@@ -17,6 +16,7 @@ from world2minecraft.furniture.families.fronts import (
 )
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 LIP_M, TOP_M = 0.03, 0.04
 FINE = 3.0  # Blocks per metre from which a unit is two blocks wide.

@@ -4,11 +4,11 @@ A shade wider than a block is a glowing block in four plates; nothing here needs
 and what hangs holds on to its own chain.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan, Side
 from world2minecraft.furniture.box_primitives import column, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a shade is wider than a block.
 HANGING, STANDING = "minecraft:lantern[hanging=true]", "minecraft:lantern[hanging=false]"

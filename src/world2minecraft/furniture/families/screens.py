@@ -4,11 +4,11 @@ A thin one is of panes, which join side by side to one dark plate. One block wid
 post, so that is a panel, or at few blocks a metre a whole block: a panel is brown, a screen is not.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import lay_legs, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 THICK = 0.3  # Blocks: a screen this deep is a whole block.
 PANELS_FROM = 3.0  # Blocks per metre.

@@ -6,11 +6,11 @@ stand on a board, and air is between them and the next.
 
 from collections.abc import Sequence
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import arms, backrest, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 BOARD_M, POST_M = 0.03, 0.04
 FINE = 3.0  # Blocks per metre from which a side is a board of its own.

@@ -7,11 +7,11 @@ to half a block. Cloth is whole blocks alone, so a sofa in a strong colour is a 
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import FACING, Plan, Side
 from world2minecraft.furniture.box_primitives import arms, backrest, part, slab
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 FINE = 3.0  # Blocks per metre from which a seat has layers of its own.
 WIDE = 3  # Blocks of a seat from which its ends may be arms.

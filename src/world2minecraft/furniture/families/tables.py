@@ -4,7 +4,6 @@ A top thinner than half a block is a plate of trapdoors or a carpet on fences. W
 higher than a block it is a trestle of stairs turned upside down.
 """
 
-from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.box_primitives import (
     arms,
@@ -19,6 +18,7 @@ from world2minecraft.furniture.box_primitives import (
 )
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template_parameters import Look
 
 CUT = 0.3  # 1 - 1/sqrt(2): where the sides of an octagon in a unit square begin.
 THICK = {"top_thickness": Span(0.03, 0.04, 0.16)}

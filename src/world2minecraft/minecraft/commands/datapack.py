@@ -11,7 +11,6 @@ from pathlib import Path
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands.player_scale import (
     function_files,
     pack_mcmeta,
@@ -27,6 +26,7 @@ from world2minecraft.minecraft.commands.writer import (
     entity_tag,
 )
 from world2minecraft.minecraft.entities import check_displays
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
 
 MAX_COMMANDS = 60_000  # Below maxCommandChainLength, 65,536, which counts a whole chain.

@@ -4,7 +4,6 @@ from pathlib import Path
 
 from world2minecraft.core.files import write_text
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_renames import count_unknown_blocks
 from world2minecraft.minecraft.commands.parser import read_command_list
 from world2minecraft.minecraft.commands.writer import (
@@ -15,6 +14,7 @@ from world2minecraft.minecraft.commands.writer import (
     entity_tag,
 )
 from world2minecraft.minecraft.entities import check_displays
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import FileFormat, Losses, WriteOptions
 from world2minecraft.minecraft.versions import GameVersion, game_version
 

@@ -22,8 +22,8 @@ from world2minecraft.minecraft.bit_packing import (
     straddled_word_count,
     unpack_straddled,
 )
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
     Long,

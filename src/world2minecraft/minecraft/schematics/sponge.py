@@ -11,10 +11,10 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.bit_packing import read_varints, write_varints
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_renames import read_state, write_state
 from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
     NbtLimits,

@@ -16,8 +16,8 @@ from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.nbt import (
     COMPOUND,

@@ -16,7 +16,6 @@ from world2minecraft.core.errors import InputError, ServerError, UsageError, one
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.commands.writer import (
     air_commands,
@@ -27,6 +26,7 @@ from world2minecraft.minecraft.commands.writer import (
     entity_tag,
     state_in_version,
 )
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.file_format import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.versions import GameVersion

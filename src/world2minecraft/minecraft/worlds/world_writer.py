@@ -13,9 +13,9 @@ import numpy as np
 from world2minecraft.core.errors import InputError, OutputError, UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.minecraft.block_entities import convert_volume
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.entity_conversion import convert_volume
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.anvil import pack_region

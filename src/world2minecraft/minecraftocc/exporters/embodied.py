@@ -16,7 +16,7 @@ from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.minecraftocc.exporters.occscannet import OccScanNetExporter
 from world2minecraft.minecraftocc.exporters.options import ExportRule
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
-from world2minecraft.minecraftocc.formats.label_boxes import (
+from world2minecraft.minecraftocc.formats.label_grids import (
     SceneGrid,
     StoredFrame,
     read_stored_frame,

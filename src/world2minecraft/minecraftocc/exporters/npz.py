@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.minecraftocc.exporters.options import ExportRule
-from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image, export_labels
+from world2minecraft.minecraftocc.formats.label_grids import cells_in_image, export_labels
 from world2minecraft.minecraftocc.types import OccSample
 
 SPLITS = ("train", "test", "val", "all")

@@ -18,8 +18,12 @@ from world2minecraft.minecraftocc.exporters.options import (
     export_split,
     require_colour,
 )
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler, encode_depth
-from world2minecraft.minecraftocc.formats.label_boxes import (
+from world2minecraft.minecraftocc.formats.image_conventions import (
+    NYU_CAMERA,
+    Resampler,
+    encode_depth,
+)
+from world2minecraft.minecraftocc.formats.label_grids import (
     LabelledBox,
     box_cells_in_image,
     check_standard_region,

@@ -20,13 +20,13 @@ from world2minecraft.minecraftocc.exporters.options import (
     require_colour,
 )
 from world2minecraft.minecraftocc.exporters.scene_names import NamedSample, SceneNames
-from world2minecraft.minecraftocc.formats.cameras import (
+from world2minecraft.minecraftocc.formats.image_conventions import (
     HALF_PX,
     Resampler,
     encode_depth,
     vga_camera,
 )
-from world2minecraft.minecraftocc.formats.label_boxes import (
+from world2minecraft.minecraftocc.formats.label_grids import (
     LabelledBox,
     box_cells_in_image,
     check_standard_region,

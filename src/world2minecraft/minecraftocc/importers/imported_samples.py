@@ -21,8 +21,8 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.unprojection import unproject_depth
-from world2minecraft.minecraftocc.formats.cameras import DepthCode, decode_depth
-from world2minecraft.minecraftocc.formats.label_boxes import cells_in_image
+from world2minecraft.minecraftocc.formats.image_conventions import DepthCode, decode_depth
+from world2minecraft.minecraftocc.formats.label_grids import cells_in_image
 from world2minecraft.minecraftocc.types import (
     DEFAULT_SHAPE,
     DEFAULT_VOXEL_M,

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.core.coordinates import focal_px_of_fov
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Layout
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
+from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.shading_parameters import DAY
 from world2minecraft.rendering.views.cameras import GamePose

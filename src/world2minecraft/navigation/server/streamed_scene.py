@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import BlockVolume, Camera, Layout
-from world2minecraft.formats.build_source import BuildSource, PlayerStart
+from world2minecraft.formats.build_reader import BuildSource, PlayerStart
 from world2minecraft.formats.volume_crop import trim_air
 from world2minecraft.formats.volume_formats import with_scene_labels
 from world2minecraft.formats.world_labels import read_scene

@@ -19,8 +19,8 @@ from world2minecraft.construction.palettes import load_palette
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.plaque import SIGN, WALL_SIGN, add_plaque
 from world2minecraft.construction.shell import put_edge, put_shell
+from world2minecraft.construction.shell_geometry import build_shell
 from world2minecraft.construction.storeys import add_storeys
-from world2minecraft.construction.structure import build_shell
 from world2minecraft.construction.voxel_blocks import place_voxels
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UsageError

@@ -7,8 +7,8 @@ from PIL import Image
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.types import View
-from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, encode_depth
-from world2minecraft.minecraftocc.frame_completion import (
+from world2minecraft.minecraftocc.formats.image_conventions import NYU_CAMERA, encode_depth
+from world2minecraft.minecraftocc.scene_completion import (
     FILE_AXES,
     GridPlace,
     complete_frame,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from build_samples import placement
 
-from world2minecraft.construction.substitutes import is_green, substitute_template
+from world2minecraft.construction.template_substitution import is_green, substitute_template
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Alternative
 from world2minecraft.geometry.colour import srgb_to_oklab
