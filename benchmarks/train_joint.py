@@ -26,7 +26,7 @@ from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes,
 from world2minecraft.cli.progress import show_progress
 from world2minecraft.core.files import write_text
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
-from world2minecraft.networks.data.run_data import CacheLocation
+from world2minecraft.networks.data.training_data import CacheLocation
 
 WAYS = ("alone", "joint", "others")
 DRAWS = 2000

@@ -35,13 +35,13 @@ from world2minecraft.minecraftocc.importers import open_occupancy
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
 from world2minecraft.networks.csv_logger import METRICS, read_metrics
 from world2minecraft.networks.data.cache import Frames
-from world2minecraft.networks.data.run_data import (
+from world2minecraft.networks.data.splits import split_rows
+from world2minecraft.networks.data.training_data import (
     CacheLocation,
     frame_rule,
     open_frames,
     open_run_data,
 )
-from world2minecraft.networks.data.splits import split_rows
 from world2minecraft.networks.models import NETWORKS
 from world2minecraft.networks.scoring import PredictedFrame, network_predictions, protocol_scores
 from world2minecraft.networks.training import (

@@ -304,7 +304,7 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
 
 
 def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
-    from world2minecraft.rendering.presentation import shot_frames
+    from world2minecraft.rendering.presentation import shot_rendering as shot_frames
 
     monkeypatch.setattr(shot_frames, "MIN_PICTURES_PER_JOB", 4)
     words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
@@ -335,7 +335,7 @@ def test_photos_are_traced_by_passes(build, tmp_path, capsys):
 
 def test_a_device_draws_and_is_let_go(build, monkeypatch):
     from world2minecraft.rendering import render_volume
-    from world2minecraft.rendering.presentation import shot_frames
+    from world2minecraft.rendering.presentation import shot_rendering as shot_frames
 
     told = []
 
@@ -362,7 +362,7 @@ def test_a_device_draws_and_is_let_go(build, monkeypatch):
 
 
 def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsys):
-    from world2minecraft.rendering.presentation import shot_frames
+    from world2minecraft.rendering.presentation import shot_rendering as shot_frames
 
     monkeypatch.setattr(shot_frames, "GPU", "world2minecraft.rendering.none")
     assert render(build, "--device", "auto") == 0

@@ -42,7 +42,7 @@ from world2minecraft.minecraftocc.store import open_store, verify_store
 from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 from world2minecraft.minecraftocc.store.shard import member_at
 from world2minecraft.rendering import LightSettings, prepare_scene, render_volume
-from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
+from world2minecraft.rendering.presentation.shot_rendering import with_common_exposure
 from world2minecraft.rendering.views import Shot, camera_of
 
 REGION = RegionRule("paper", (20, 20, 12), 0.25)

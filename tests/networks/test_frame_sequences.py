@@ -23,13 +23,13 @@ from world2minecraft.networks.data.batches import (
 )
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CacheLocation
 from world2minecraft.networks.data.sequences import (
     SequenceSampler,
     move_to_grid,
     sequence_length,
     views_grid,
 )
+from world2minecraft.networks.data.training_data import CacheLocation
 from world2minecraft.networks.models import make_network
 from world2minecraft.networks.training import train_run
 

@@ -23,7 +23,7 @@ from world2minecraft.networks.checkpoints import (
 )
 from world2minecraft.networks.config import RunConfig, read_config
 from world2minecraft.networks.csv_logger import read_metrics
-from world2minecraft.networks.data.run_data import CacheLocation
+from world2minecraft.networks.data.training_data import CacheLocation
 from world2minecraft.networks.lightning_module import learning_rate_at
 from world2minecraft.networks.training import load_trained_network, train_run
 

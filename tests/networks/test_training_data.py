@@ -18,8 +18,8 @@ from world2minecraft.networks.data.batches import (
 from world2minecraft.networks.data.cache import StreamedFrames, cache_bytes, open_cached_frames
 from world2minecraft.networks.data.class_weights import class_counts, class_weights
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CacheLocation, open_run_data
 from world2minecraft.networks.data.splits import split_rows, take_evenly
+from world2minecraft.networks.data.training_data import CacheLocation, open_run_data
 
 RULE = FrameRule(GRIDS["0.16"], 40, 30)
 ARRAYS = (

@@ -121,7 +121,7 @@ def test_a_texture_stays_what_it_is(recipe):
 
 
 def test_a_stair_becomes_a_slope_and_all_else_stays():
-    from world2minecraft.rendering.textures.stencil import doubled
+    from world2minecraft.rendering.textures.pixel_art import doubled
 
     square = np.array([list("...."), list(".mm."), list(".mm."), list("....")])
     corner = np.array([list("m.."), list("mm."), list("mmm")])

@@ -16,7 +16,7 @@ from world2minecraft.rendering.textures import (
     texture_sheet,
 )
 from world2minecraft.rendering.textures.__main__ import main
-from world2minecraft.rendering.textures.generator_table import generator_table
+from world2minecraft.rendering.textures.generator_docs import generator_table
 
 
 def test_one_texture_has_one_name():

@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import apply, block_to_room, invert_rigid
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.rendering import prepare_scene
-from world2minecraft.rendering.presentation.shot_frames import draw_frames
+from world2minecraft.rendering.presentation.shot_rendering import draw_frames
 from world2minecraft.rendering.views import (
     GamePose,
     Shot,

@@ -5,7 +5,7 @@ from scenes import volume_of
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
 from world2minecraft.rendering.presentation.turntable import GROUND, studio_of, turntable
 from world2minecraft.rendering.views import camera_of, orbit_shots
 

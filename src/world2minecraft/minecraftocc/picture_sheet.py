@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_camera
 from world2minecraft.rendering.light import LightSettings
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_frames
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_frames
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.shading_parameters import DAY
 

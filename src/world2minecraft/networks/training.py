@@ -43,11 +43,11 @@ from world2minecraft.networks.checkpoints import (
 from world2minecraft.networks.config import DEFAULT_FRAMES, RunConfig, read_config, write_config
 from world2minecraft.networks.data.batches import plan_draws, training_loader
 from world2minecraft.networks.data.class_weights import class_weights
-from world2minecraft.networks.data.run_data import CacheLocation, RunData, open_run_data
 from world2minecraft.networks.data.splits import take_evenly
+from world2minecraft.networks.data.training_data import CacheLocation, RunData, open_run_data
 from world2minecraft.networks.lightning_module import OccupancyModule
+from world2minecraft.networks.memory_scoring import add_memory_scores
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.scene_memory import add_memory_scores
 from world2minecraft.networks.scoring import network_predictions, protocol_scores
 from world2minecraft.networks.validation import (
     predict_labels,

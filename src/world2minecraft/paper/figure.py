@@ -37,7 +37,7 @@ from world2minecraft.navigation.running.trace import (
 from world2minecraft.navigation.scene import open_scene
 from world2minecraft.rendering.picture import render_volume
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
 from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL

@@ -15,12 +15,12 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.rendering.block_elements import ModelSource
 from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.empty_space_boxes import update_empty_boxes
-from world2minecraft.rendering.freestanding_boxes import (
+from world2minecraft.rendering.light import edit_light
+from world2minecraft.rendering.off_grid_elements import (
     CellElements,
     elements_by_cell,
     split_overhanging,
 )
-from world2minecraft.rendering.light import edit_light
 from world2minecraft.rendering.scene import BlockScene, bake_model, bake_scene, with_elements
 from world2minecraft.rendering.scene_baking import AIR, Baker, kind_of
 from world2minecraft.rendering.scene_tables import BOXES, owner_of_cell

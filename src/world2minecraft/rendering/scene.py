@@ -13,7 +13,10 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.rendering.block_elements import BlockModel, ModelSource
 from world2minecraft.rendering.block_models import BuiltinModels
 from world2minecraft.rendering.empty_space_boxes import find_empty_boxes
-from world2minecraft.rendering.freestanding_boxes import (
+from world2minecraft.rendering.light import LightField, light_field
+from world2minecraft.rendering.light.exposure import standing_cells
+from world2minecraft.rendering.light.propagation import MAX_REACH
+from world2minecraft.rendering.off_grid_elements import (
     CellElements,
     EntityLabels,
     add_cell_rows,
@@ -22,9 +25,6 @@ from world2minecraft.rendering.freestanding_boxes import (
     grid_margin,
     split_overhanging,
 )
-from world2minecraft.rendering.light import LightField, light_field
-from world2minecraft.rendering.light.exposure import standing_cells
-from world2minecraft.rendering.light.propagation import MAX_REACH
 from world2minecraft.rendering.scene_baking import (
     AIR,
     Baker,

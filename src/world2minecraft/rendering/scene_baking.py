@@ -1,7 +1,7 @@
 """Bake block models to arrays: the element tables of ``SceneTables``.
 
 Elements come from the models of a ``ModelSource``. Those that reach beyond their block, as the
-cloth of a banner does, are left to ``rendering.freestanding_boxes``, which lists them in each cell
+cloth of a banner does, are left to ``rendering.off_grid_elements``, which lists them in each cell
 that they reach.
 """
 

@@ -16,7 +16,7 @@ from world2minecraft.navigation.data.keyframes import (
     path_length_m,
     picture_fault,
 )
-from world2minecraft.navigation.data.stream_cleaning import split_into_walks
+from world2minecraft.navigation.data.stream_segmentation import split_into_walks
 from world2minecraft.navigation.types import MOVE_SETS, Move, Stance
 from world2minecraft.navigation.walk_discretization import discretize_walk, simplify_path
 from world2minecraft.navigation.walk_stream import StreamFrame, frame_of_pose

@@ -19,7 +19,7 @@ from world2minecraft.navigation.language.instruction_generation import (
     landmark_text,
 )
 from world2minecraft.navigation.language.instruction_parsing import parse_instruction
-from world2minecraft.navigation.language.landmark_names import (
+from world2minecraft.navigation.language.landmark_grounding import (
     matching_landmarks,
     unambiguous_landmarks,
 )

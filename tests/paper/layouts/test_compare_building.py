@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.paper.layouts import ComparedScene
-from world2minecraft.paper.layouts.design_lookup import design_of, designs
+from world2minecraft.paper.layouts.furniture_lookup import design_of, designs
 from world2minecraft.paper.layouts.importers.value_checks import Box, object_of
 from world2minecraft.paper.layouts.layout_to_world import plan_of
 from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan

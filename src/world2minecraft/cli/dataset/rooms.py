@@ -32,8 +32,8 @@ def run(
     from world2minecraft.cli.dataset.options import parse_camera
     from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples
     from world2minecraft.minecraftocc.store import write_store
+    from world2minecraft.minecraftocc.synthetic_photos import PhotoRooms, photo_samples
 
     plan = PhotoRooms(rooms, images, test_share, seed, parse_camera("nyu", size, None))
     print_compile_note()

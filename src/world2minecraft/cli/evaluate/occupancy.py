@@ -144,7 +144,7 @@ class _Evaluation:
 
     def _frames(self, grid: Any, size: tuple[int, int], progress: "Progress") -> Any:
         from world2minecraft.networks.data.frames import FrameRule
-        from world2minecraft.networks.data.run_data import CacheLocation, open_frames
+        from world2minecraft.networks.data.training_data import CacheLocation, open_frames
 
         place = CacheLocation.parse(self.cache)
         return open_frames(self.found, FrameRule(grid, *size), place, progress)
@@ -180,7 +180,7 @@ class _Evaluation:
         said = predict_labels(network, frames, rows, config, progress=progress)
         scores = self._scored(network_predictions(frames, rows, said), config.cells.voxel_m)
         if not self.protocols or "embodied" in self.protocols:
-            from world2minecraft.networks.scene_memory import add_memory_scores
+            from world2minecraft.networks.memory_scoring import add_memory_scores
 
             add_memory_scores(
                 scores, network, self.found, frames, rows, config, seed=self.seed, progress=progress

@@ -32,7 +32,7 @@ from world2minecraft.core.progress import Progress
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
     from world2minecraft.rendering import Picture
-    from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+    from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
     from world2minecraft.rendering.views import Shot
 
 MAX_WRITERS = 16  # Each holds a picture.
@@ -178,7 +178,7 @@ def _pictures(
 ) -> Generator[tuple["Shot", "Picture", "BlockVolume"], None, None]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.rendering import prepare_scene
-    from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
+    from world2minecraft.rendering.presentation.shot_rendering import with_common_exposure
 
     exposure = None
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):

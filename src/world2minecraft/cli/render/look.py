@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from world2minecraft.cli.render.shot_selection import Kind, Medium
     from world2minecraft.rendering import BlockScene, LightSettings, Picture
     from world2minecraft.rendering.block_elements import ModelSource
-    from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+    from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
     from world2minecraft.rendering.resource_packs import ResourcePackModels
     from world2minecraft.rendering.views import Shot
 
@@ -114,7 +114,7 @@ class Look:
 
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
-        from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+        from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
         from world2minecraft.rendering.shading_parameters import BACKDROP
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
@@ -161,7 +161,7 @@ def take_pictures(
     Raises:
         UsageError: this version has no such tier, or it cannot do what is asked for.
     """
-    from world2minecraft.rendering.presentation.shot_frames import draw_shots
+    from world2minecraft.rendering.presentation.shot_rendering import draw_shots
 
     if look.photo:
         yield from _photos(scene, shots, look, options, step)

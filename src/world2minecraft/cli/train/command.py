@@ -58,7 +58,7 @@ def run(
         changes["image"] = options.image_size(image)
     chosen = options.run_config(network, data or [], config, preset, changes)
     options.check_extra()
-    from world2minecraft.networks.data.run_data import CacheLocation
+    from world2minecraft.networks.data.training_data import CacheLocation
     from world2minecraft.networks.training import score_run, train_run
 
     with show_progress() as progress:

@@ -37,7 +37,7 @@ from world2minecraft.minecraftocc.store.writer import SHARD_SAMPLES
 from world2minecraft.minecraftocc.tours import PlannedView, read_views
 from world2minecraft.minecraftocc.types import OccSample, SceneVoxels
 from world2minecraft.rendering import BlockScene, LightSettings, prepare_scene, render_volume
-from world2minecraft.rendering.presentation.shot_frames import with_common_exposure
+from world2minecraft.rendering.presentation.shot_rendering import with_common_exposure
 from world2minecraft.rendering.views import Shot
 
 OUTPUTS = ("colour", "depth")

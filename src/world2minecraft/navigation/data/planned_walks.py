@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.minecraft.physics.shortest_paths import clearance_m, shortest_path
 from world2minecraft.navigation.landmarks import Landmark
-from world2minecraft.navigation.language.landmark_names import unambiguous_landmarks
+from world2minecraft.navigation.language.landmark_grounding import unambiguous_landmarks
 from world2minecraft.navigation.scene import VlnScene
 from world2minecraft.navigation.types import Stance
 from world2minecraft.navigation.walk_stream import StreamFrame, wrap_deg

@@ -16,7 +16,7 @@ from world2minecraft.navigation.data.keyframes import (
 )
 from world2minecraft.navigation.data.picture_store import vln_camera
 from world2minecraft.navigation.data.planned_walks import floor_landmarks
-from world2minecraft.navigation.data.stream_cleaning import split_into_walks
+from world2minecraft.navigation.data.stream_segmentation import split_into_walks
 from world2minecraft.navigation.language.instruction_generation import generate_instructions
 from world2minecraft.navigation.language.route_events import ObservedWalk, Route, describe_route
 from world2minecraft.navigation.scene import VlnScene

@@ -26,7 +26,7 @@ from world2minecraft.external_models.structured_replies import (
 )
 from world2minecraft.rendering.output.images import colour_bytes
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
 from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.shading_parameters import BACKDROP, NEUTRAL

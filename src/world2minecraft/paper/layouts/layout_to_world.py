@@ -20,7 +20,7 @@ from world2minecraft.evaluation.report import write_brief_report
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.paper.layouts.compared_scene import SCENE_FILE, ComparedScene, write_scene
-from world2minecraft.paper.layouts.design_lookup import design_of
+from world2minecraft.paper.layouts.furniture_lookup import design_of
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_captured
 from world2minecraft.reconstruction.parameters import Parameters
 

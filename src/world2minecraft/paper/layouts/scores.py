@@ -37,7 +37,7 @@ from world2minecraft.furniture.layout_checks import (
 )
 from world2minecraft.navigation.scores import rate
 from world2minecraft.paper.layouts.compared_scene import ComparedScene
-from world2minecraft.paper.layouts.design_lookup import design_of
+from world2minecraft.paper.layouts.furniture_lookup import design_of
 from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.

@@ -9,7 +9,7 @@ from world2minecraft.procgen.rooms.furniture_model import (
     round_to_step,
     shade,
 )
-from world2minecraft.procgen.rooms.solid_voxels import make_model
+from world2minecraft.procgen.rooms.supersampled_voxelization import make_model
 
 FURN, OBJS = int(SemanticClass.FURN), int(SemanticClass.OBJS)
 CERAMIC: Colour = (242, 243, 242)

@@ -19,7 +19,7 @@ from world2minecraft.procgen.rooms.furniture_model import (
     round_to_step,
     shade,
 )
-from world2minecraft.procgen.rooms.solid_voxels import make_model
+from world2minecraft.procgen.rooms.supersampled_voxelization import make_model
 
 CHAIR, FURN, OBJS = (int(c) for c in (SemanticClass.CHAIR, SemanticClass.FURN, SemanticClass.OBJS))
 CLOTHES: tuple[Colour, ...] = (

@@ -12,7 +12,7 @@ from world2minecraft.procgen.rooms.floor_shapes import Ground, Rect, Wall, dilat
 from world2minecraft.procgen.rooms.furniture_model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.procgen.rooms.openings import RECESS_M, Hole
 from world2minecraft.procgen.rooms.placement import Item, Rug
-from world2minecraft.procgen.rooms.solid_voxels import is_plain, solid_cells
+from world2minecraft.procgen.rooms.supersampled_voxelization import is_plain, solid_cells
 
 VOXEL_M = STEP_M
 SHELL_M = 0.12  # Walls, floor slab and ceiling; the truth needs 0.1 m or more.

@@ -6,12 +6,12 @@ and windows that were not seen. ``find_roomplan`` tells whether a path holds a p
 """
 
 from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
-from world2minecraft.reconstruction.floorplans.plan_run import PlanWorld, build_captured, build_plan
-from world2minecraft.reconstruction.floorplans.plan_to_scan import (
+from world2minecraft.reconstruction.floorplans.plan_alignment import (
     AlignedPlan,
     PlanMismatchError,
     align_plan,
 )
+from world2minecraft.reconstruction.floorplans.plan_run import PlanWorld, build_captured, build_plan
 from world2minecraft.reconstruction.floorplans.plan_votes import (
     add_plan_openings,
     add_plan_votes,

@@ -18,7 +18,7 @@ from world2minecraft.formats.layout import read_layouts, write_layouts
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, read_roomplan
 from world2minecraft.formats.run_arrays import read_evidence
 from world2minecraft.reconstruction.floorplans.furniture_categories import class_of
-from world2minecraft.reconstruction.floorplans.plan_to_scan import (
+from world2minecraft.reconstruction.floorplans.plan_alignment import (
     AlignedPlan,
     PlanMismatchError,
     align_plan,

@@ -3,8 +3,8 @@
 It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their union.
 """
 
-from world2minecraft.reconstruction.retrieval.chosen_template import fit_template, ranked_matches
 from world2minecraft.reconstruction.retrieval.furniture_placement import place_templates
+from world2minecraft.reconstruction.retrieval.manual_placement import fit_template, ranked_matches
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 
 __all__ = ["RetrievalParameters", "fit_template", "place_templates", "ranked_matches"]

@@ -18,13 +18,13 @@ from world2minecraft.furniture.front_estimation import (
     estimate_facing,
     read_surroundings,
 )
-from world2minecraft.reconstruction.retrieval.axis_aligned_runs import cut_into_runs
 from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence, evidence_of
 from world2minecraft.reconstruction.retrieval.parameters import RetrievalParameters
 from world2minecraft.reconstruction.retrieval.placement_settling import (
     floor_under_m,
     settle_placements,
 )
+from world2minecraft.reconstruction.retrieval.rectangle_decomposition import cut_into_runs
 from world2minecraft.reconstruction.retrieval.template_matching import (
     NO_SHIFT,
     Bias,

@@ -19,7 +19,7 @@ from world2minecraft.core.types import Layout, OccupancyGrid, Placement
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.furniture.solid_parts import OWN_CELLS, box_m, depth_m, own_cells, solids_m
-from world2minecraft.reconstruction.retrieval.axis_aligned_runs import largest_rectangle
+from world2minecraft.reconstruction.retrieval.rectangle_decomposition import largest_rectangle
 
 # Within rooms.
 STEP_M = 0.04  # How finely a slanted wall is followed.

@@ -17,7 +17,7 @@ from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.rendering.block_models.texture_recipes import PREFIX, hex_colour, split_recipe
 from world2minecraft.rendering.texture import Texture
 from world2minecraft.rendering.textures import GENERATORS, texture_of
-from world2minecraft.rendering.textures.stencil import letters as stencil_letters
+from world2minecraft.rendering.textures.pixel_art import letters as stencil_letters
 
 PICTURE = "picture"
 # Letters that make the base darker or lighter, and inks that every picture may use.

@@ -22,7 +22,6 @@ from world2minecraft.rendering.cutaway import (
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.rendering.freestanding_boxes import display_entity_elements
 from world2minecraft.rendering.light.light_field import BLOCK_SHIFT, COUNT_SHIFT, light_field
 from world2minecraft.rendering.light.propagation import MAX_REACH
 from world2minecraft.rendering.mesh.quads import (
@@ -32,6 +31,7 @@ from world2minecraft.rendering.mesh.quads import (
     hidden_sides,
     quads_of,
 )
+from world2minecraft.rendering.off_grid_elements import display_entity_elements
 from world2minecraft.rendering.scene import bake_model
 from world2minecraft.rendering.scene_baking import Baker, joins_neighbours, kind_of, models_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL

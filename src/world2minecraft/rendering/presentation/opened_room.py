@@ -15,7 +15,7 @@ from world2minecraft.rendering.cutaway import (
     without_partitions,
 )
 from world2minecraft.rendering.plain_models import PlainModels
-from world2minecraft.rendering.presentation.shot_frames import DrawOptions, draw_shots
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
 from world2minecraft.rendering.scene import prepare_scene
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots

@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering.block_elements import ModelSource
 from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
-from world2minecraft.rendering.presentation.shot_frames import (
+from world2minecraft.rendering.presentation.shot_rendering import (
     DrawOptions,
     draw_frames,
     with_common_exposure,

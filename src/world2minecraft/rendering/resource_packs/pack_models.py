@@ -19,12 +19,6 @@ from world2minecraft.rendering.resource_packs.elements import (
     merge_coincident,
     quarter_turn,
 )
-from world2minecraft.rendering.resource_packs.implicit_models import (
-    FLUIDS,
-    fluid_model,
-    implied_model,
-    other_names,
-)
 from world2minecraft.rendering.resource_packs.model_json import (
     MAX_ELEMENTS,
     ModelPart,
@@ -33,6 +27,12 @@ from world2minecraft.rendering.resource_packs.model_json import (
     texture_of,
 )
 from world2minecraft.rendering.resource_packs.pack_files import PackStack
+from world2minecraft.rendering.resource_packs.texture_only_models import (
+    FLUIDS,
+    fluid_model,
+    implied_model,
+    other_names,
+)
 from world2minecraft.rendering.resource_packs.textures import (
     CLEAR,
     MAX_PX,

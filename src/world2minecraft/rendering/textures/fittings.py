@@ -11,9 +11,9 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.painted_surface import Surface
+from world2minecraft.rendering.textures.pixel_art import draw, paints_of
 from world2minecraft.rendering.textures.recipe import Recipe
-from world2minecraft.rendering.textures.stencil import draw, paints_of
+from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, box, bricks, rim, stones
 from world2minecraft.rendering.textures.wood import fibre
 

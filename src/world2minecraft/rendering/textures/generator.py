@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from world2minecraft.rendering.textures.canvas import Canvas
-from world2minecraft.rendering.textures.painted_surface import TONE_FLOOR, TONE_OF_COLOUR, Surface
 from world2minecraft.rendering.textures.recipe import Number, Option, Recipe, rgb_of
+from world2minecraft.rendering.textures.texture_baking import TONE_FLOOR, TONE_OF_COLOUR, Surface
 
 # Every generator has these: other noise, and more or less contrast.
 SHARED: Mapping[str, Option] = {"seed": Number(0, 0, 1e9), "contrast": Number(1.0, 0.0, 3.0)}

@@ -13,9 +13,9 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.plants import scatter
 from world2minecraft.rendering.textures.recipe import Recipe
+from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import stones
 
 # Flames: foot, height and half width, in sixteenths.

@@ -6,7 +6,6 @@ from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.rendering.texture import Texture
 from world2minecraft.rendering.textures.canvas import canvas_of
 from world2minecraft.rendering.textures.catalogue import GENERATORS
-from world2minecraft.rendering.textures.painted_surface import texture_from
 from world2minecraft.rendering.textures.recipe import (
     Recipe,
     join_recipe,
@@ -14,6 +13,7 @@ from world2minecraft.rendering.textures.recipe import (
     rgb_of,
     split_recipe,
 )
+from world2minecraft.rendering.textures.texture_baking import texture_from
 
 SIZES_PX = (16, 32, 64, 128)
 MAX_CACHED = 512  # Textures; 88 MB at 128 px.

@@ -11,8 +11,8 @@ from world2minecraft.rendering.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.rendering.textures.painted_surface import Surface
 from world2minecraft.rendering.textures.recipe import Recipe
+from world2minecraft.rendering.textures.texture_baking import Surface
 from world2minecraft.rendering.textures.tiling_layouts import bevel, bricks, rim
 
 

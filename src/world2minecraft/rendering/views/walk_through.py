@@ -15,7 +15,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.physics.walk_graph import is_shut, open_door
 from world2minecraft.rendering.views.cameras import GamePose, Shot
-from world2minecraft.rendering.views.viewpoint_graph import WalkRoutes
+from world2minecraft.rendering.views.viewpoint_planning import WalkRoutes
 from world2minecraft.rendering.views.visibility import (
     ViewBlockers,
     cast_view_rays,

@@ -15,7 +15,7 @@ from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.sceneforge.queries import QUERIES
 from world2minecraft.sceneforge.server import compare_routes, export_routes, photo_routes
 from world2minecraft.sceneforge.server import start_routes as start
-from world2minecraft.sceneforge.server.build_routes import build_routes
+from world2minecraft.sceneforge.server.build_preview_routes import build_routes
 from world2minecraft.sceneforge.server.error_messages import EXCEPTION_HANDLERS
 from world2minecraft.sceneforge.server.guard import Guard
 from world2minecraft.sceneforge.server.limits import BodyLimit

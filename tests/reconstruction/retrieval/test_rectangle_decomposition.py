@@ -13,11 +13,11 @@ from world2minecraft.core.types import ObjectInstance
 from world2minecraft.furniture import surface_cells
 from world2minecraft.reconstruction.instances import InstanceParameters, find_objects
 from world2minecraft.reconstruction.retrieval import RetrievalParameters, place_templates
-from world2minecraft.reconstruction.retrieval.axis_aligned_runs import (
+from world2minecraft.reconstruction.retrieval.object_evidence import evidence_of
+from world2minecraft.reconstruction.retrieval.rectangle_decomposition import (
     cut_into_runs,
     largest_rectangle,
 )
-from world2minecraft.reconstruction.retrieval.object_evidence import evidence_of
 
 FURN, WALL = int(SemanticClass.FURN), int(SemanticClass.WALL)
 

@@ -10,13 +10,13 @@ from tests.networks.toy_sets import toy_config, toy_set, write_toy_store
 
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.minecraftocc.formats.sscnet import downsample_labels
-from world2minecraft.networks import scene_memory as memory
+from world2minecraft.networks import memory_scoring as memory
 from world2minecraft.networks.config import GRIDS
 from world2minecraft.networks.data.cache import StreamedFrames
 from world2minecraft.networks.data.frames import FrameRule
-from world2minecraft.networks.data.run_data import CacheLocation
+from world2minecraft.networks.data.training_data import CacheLocation
+from world2minecraft.networks.memory_scoring import add_memory_scores, assemble_truth, memory_scores
 from world2minecraft.networks.models import make_network
-from world2minecraft.networks.scene_memory import add_memory_scores, assemble_truth, memory_scores
 from world2minecraft.networks.scoring import MEMORY
 from world2minecraft.networks.training import score_run, train_run
 

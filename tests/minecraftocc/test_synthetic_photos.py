@@ -6,10 +6,10 @@ import pytest
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.core.types import Camera
-from world2minecraft.minecraftocc import photo_rooms
-from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples, voxelize_room
+from world2minecraft.minecraftocc import synthetic_photos as photo_rooms
 from world2minecraft.minecraftocc.sample_figure import share_of_depth_in_cells
 from world2minecraft.minecraftocc.store import open_store
+from world2minecraft.minecraftocc.synthetic_photos import PhotoRooms, photo_samples, voxelize_room
 from world2minecraft.procgen import generate_room
 
 CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)

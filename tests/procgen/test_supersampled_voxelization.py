@@ -8,7 +8,11 @@ from hypothesis import strategies as st
 from world2minecraft.geometry.connected_components import label_components
 from world2minecraft.procgen.rooms.furniture_model import Bar, Model, Part
 from world2minecraft.procgen.rooms.placement import Item
-from world2minecraft.procgen.rooms.solid_voxels import is_plain, make_model, solid_cells
+from world2minecraft.procgen.rooms.supersampled_voxelization import (
+    is_plain,
+    make_model,
+    solid_cells,
+)
 
 WOOD = (180, 140, 90)
 
