@@ -29,6 +29,7 @@ ORDER = (
     "navigation",
     "paper",
     "sceneforge",
+    "api",
     "cli",
 )
 # Stages of a reconstruction never import each other; pipeline.py joins them. Semantics may read

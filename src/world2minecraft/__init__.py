@@ -1,8 +1,33 @@
 """Real rooms become Minecraft scenes that people can walk in and robots can learn in.
 
-The tree is the way of the data: ``scan`` -> ``occupy`` -> ``fuse`` -> ``label`` -> ``find`` ->
-``furnish`` -> ``build``, joined by ``pipeline``. The values that cross between the stages are in
-``types``; the one place that knows axis conventions is ``coordinates``.
+The public functions and types are those of ``__all__``, each imported when it is first used::
+
+    import world2minecraft as w2m
+
+    run = w2m.reconstruct("my_scan", "OUT")
+    w2m.render(run)
+
+The package follows the data: ``capture`` -> ``reconstruction`` -> ``construction``; the values that
+pass between the stages are in ``core.types``, axis conventions in ``core.coordinates``.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from world2minecraft.api import *  # noqa: F403
+    from world2minecraft.core import errors as errors
+
 __version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name == "errors":
+        return import_module("world2minecraft.core.errors")
+    if name.startswith("_"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    api = import_module("world2minecraft.api")
+    if name == "__all__":
+        return [*api.__all__, "errors"]
+    return getattr(api, name)

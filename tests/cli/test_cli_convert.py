@@ -67,7 +67,7 @@ def test_what_is_there_stays_without_force(schem, volume, tmp_path, capsys):
     (tmp_path / "b.schem").write_bytes(b"mine")
     assert convert(schem, tmp_path / "b.schem") == 2
     assert capsys.readouterr().err == (
-        f"error: {tmp_path / 'b.schem'} is there already; add --force to replace it\n"
+        f"error: {tmp_path / 'b.schem'} exists; add --force to replace it\n"
     )
     assert (tmp_path / "b.schem").read_bytes() == b"mine"
     assert convert(schem, tmp_path / "b.schem", "--force") == 0
@@ -111,14 +111,14 @@ def test_a_folder_that_is_no_world_is_never_replaced(schem, tmp_path, capsys):
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter").write_text("years of work")
     assert convert(schem, tmp_path / "thesis", "--force") == 2
-    assert "no world (no level.dat)" in capsys.readouterr().err
+    assert "a folder without a world (no level.dat)" in capsys.readouterr().err
     assert (tmp_path / "thesis" / "chapter").read_text() == "years of work"
 
 
 def test_a_file_is_not_converted_to_itself(schem, capsys):
     before = schem.read_bytes()
     assert convert(schem, schem, "--force") == 2
-    assert "is both A and B" in capsys.readouterr().err
+    assert "is both source and target" in capsys.readouterr().err
     assert schem.read_bytes() == before
 
 
@@ -142,7 +142,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
 @pytest.mark.parametrize(
     ("a", "b", "code", "reason"),
     [
-        ("gone.schem", "b.schem", 3, "gone.schem: is not there"),
+        ("gone.schem", "b.schem", 3, "gone.schem: not found"),
         ("damaged.schem", "b.schem", 3, "damaged.schem: "),
         ("notes.txt", "b.schem", 3, "notes.txt: is no block file"),
         ("a.schem", "b.xyz", 2, "b.xyz: no block format ends in .xyz; known: "),
@@ -255,7 +255,7 @@ def test_a_run_becomes_a_scene_for_habitat(run_folder, tmp_path, capsys):
     (tmp_path / "mine.habitat").mkdir()
     (tmp_path / "mine.habitat" / "thesis").write_text("years of work")
     assert convert(run_folder, tmp_path / "mine.habitat", "--force") == 2
-    assert "is a folder of other things" in capsys.readouterr().err
+    assert "is a folder of other files" in capsys.readouterr().err
     assert convert(target, tmp_path / "b.schem") == 3
 
 

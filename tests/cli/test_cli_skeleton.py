@@ -107,7 +107,7 @@ def test_help_imports_nothing_heavy():
         (["doctr"], "error: no verb is named 'doctr'; did you mean 'doctor'?\n"),
         (["--nope"], "error: no such option: --nope; see w2m --help\n"),
         (["doctor", "x"], "error: got unexpected extra argument(s) (x); see w2m doctor --help\n"),
-        (["convert", "a"], "error: missing argument 'B'; see w2m convert --help\n"),
+        (["convert", "a"], "error: missing argument 'TARGET'; see w2m convert --help\n"),
         (["convert", "--forc"], "--force"),
     ],
 )

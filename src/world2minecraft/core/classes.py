@@ -29,6 +29,12 @@ class SemanticClass(IntEnum):
 UNKNOWN = 255
 CLASS_COUNT = 12
 CLASS_NAMES: tuple[str, ...] = tuple(member.name.lower() for member in SemanticClass)
+CLASS_DISPLAY_NAMES: tuple[str, ...] = (
+    *CLASS_NAMES[:9],
+    "television",
+    "furniture",
+    "object",
+)
 STRUCTURE_CLASSES: tuple[int, ...] = (1, 2, 3, 4)
 OBJECT_CLASSES: tuple[int, ...] = (5, 6, 7, 8, 9, 10, 11)
 
@@ -61,3 +67,13 @@ def class_id(name: str) -> int:
     if name not in CLASS_NAMES:
         raise UnknownNameError("class", name, CLASS_NAMES)
     return CLASS_NAMES.index(name)
+
+
+def display_name(class_id: int) -> str:
+    """Return the name of a class as people read it; files keep ``CLASS_NAMES``.
+
+    Example:
+        >>> display_name(9)
+        'television'
+    """
+    return "unknown" if class_id == UNKNOWN else CLASS_DISPLAY_NAMES[class_id]

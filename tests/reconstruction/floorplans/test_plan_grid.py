@@ -6,8 +6,8 @@ import zipfile
 
 import numpy as np
 import pytest
-from roomplans import captured_room, session_of, surface, thing
 
+from roomplans import captured_room, session_of, surface, thing
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Layout, LayoutObject, Opening

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from roomplans import captured_room, session_of
 from test_plan_grid import layout
 
+from roomplans import captured_room, session_of
 from world2minecraft import cli
 from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
 from world2minecraft.cli.reconstruct import print_plan_outcome

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from forge_driving import Driver
 from PIL import Image
-from roomplans import captured_room
 from scipy.ndimage import gaussian_filter
 
+from roomplans import captured_room
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.sceneforge.server.server_process import ForgeServer
 

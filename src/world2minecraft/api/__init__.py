@@ -1,0 +1,94 @@
+"""The public functions and types, one module for each noun; the command line calls nothing else.
+
+``world2minecraft`` offers the same names, so that ``w2m.reconstruct`` is ``api.rooms.reconstruct``.
+A module is imported when one of its names is first used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from world2minecraft.api.datasets import Dataset, open_dataset
+    from world2minecraft.api.editor import EditorSession, open_editor
+    from world2minecraft.api.generation import (
+        evaluate,
+        generate_house,
+        generate_room,
+        save_room,
+        scan_room,
+    )
+    from world2minecraft.api.navigation import make_env
+    from world2minecraft.api.results import Room, RoomObject, Run, load
+    from world2minecraft.api.rooms import BuildOptions, build, reconstruct
+    from world2minecraft.api.worlds import Conversion, convert, render
+
+__all__ = [
+    "BuildOptions",
+    "Conversion",
+    "Dataset",
+    "EditorSession",
+    "Room",
+    "RoomObject",
+    "Run",
+    "build",
+    "convert",
+    "evaluate",
+    "generate_house",
+    "generate_room",
+    "load",
+    "make_env",
+    "open_dataset",
+    "open_editor",
+    "reconstruct",
+    "render",
+    "save_room",
+    "scan_room",
+]
+
+_MODULES = {
+    "datasets": (
+        "Dataset",
+        "open_dataset",
+    ),
+    "editor": (
+        "EditorSession",
+        "open_editor",
+    ),
+    "generation": (
+        "evaluate",
+        "generate_house",
+        "generate_room",
+        "save_room",
+        "scan_room",
+    ),
+    "navigation": ("make_env",),
+    "results": (
+        "Room",
+        "RoomObject",
+        "Run",
+        "load",
+    ),
+    "rooms": (
+        "BuildOptions",
+        "build",
+        "reconstruct",
+    ),
+    "worlds": (
+        "Conversion",
+        "convert",
+        "render",
+    ),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """Import the module of a public name when it is first used."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'world2minecraft' has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

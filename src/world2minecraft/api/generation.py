@@ -1,0 +1,255 @@
+"""Generated rooms with exact truth, virtual scans of them, and the scores of a reconstruction."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.api.results import Run
+from world2minecraft.api.rooms import path_of
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from world2minecraft.procgen import Room as GeneratedRoom
+
+
+def generate_room(
+    kind: str | None = None,
+    *,
+    seed: int = 0,
+    shape: str | None = "box",
+    clutter: float = 0.0,
+    out: str | Path | None = None,
+) -> "GeneratedRoom":
+    """Generate a furnished room with exact truth; the same seed gives the same room.
+
+    Args:
+        kind: ``living``, ``bed``, ``kitchen``, ``dining``, ``study``, ``bathroom`` ...; drawn by
+            the seed by default.
+        seed: 0 or more.
+        shape: ``box``, ``ell``, ``cut``, ``sloped`` or ``columns``; None draws one.
+        clutter: 0 (tidy) to 1.
+        out: a folder to write the room to: ``layout.json``, ``truth.npz`` and ``preview.png``.
+
+    Raises:
+        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> room = w2m.generate_room("kitchen", seed=7)
+        >>> room.kind, len(room.objects) > 3
+        ('kitchen', True)
+    """
+    from world2minecraft.procgen import generate_room as generate
+
+    try:
+        made = generate(seed, kind=kind, clutter=clutter, shape=shape)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    return made if out is None else save_room(made, out)
+
+
+def generate_house(
+    *,
+    seed: int = 0,
+    rooms: int = 5,
+    storeys: int = 1,
+    clutter: float = 0.0,
+    out: str | Path | None = None,
+) -> "GeneratedRoom":
+    """Generate a house of several furnished rooms; the same seed gives the same house.
+
+    Args:
+        seed: 0 or more.
+        rooms: 3 to 14, halls included.
+        storeys: 1 or 2.
+        clutter: 0 (tidy) to 1.
+        out: a folder to write the house to.
+
+    Raises:
+        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> len(w2m.generate_house(seed=2, rooms=4).layouts)
+        4
+    """
+    from world2minecraft.procgen import generate_house as generate
+
+    try:
+        made = generate(seed, rooms=rooms, storeys=storeys, clutter=clutter)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    return made if out is None else save_room(made, out)
+
+
+def save_room(
+    room: "GeneratedRoom", out: str | Path, progress: Progress = no_progress
+) -> "GeneratedRoom":
+    """Write a generated room: ``layout.json``, ``truth.npz`` and ``preview.png``; return it.
+
+    Args:
+        room: the room or house.
+        out: the folder to write.
+        progress: called at each step.
+
+    Raises:
+        OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.save_room(w2m.generate_room("bathroom"), tmp / "bathroom").kind
+        'bathroom'
+    """
+    import io
+
+    from PIL import Image
+
+    from world2minecraft.core.files import write_bytes
+    from world2minecraft.procgen import room_picture, write_generated
+    from world2minecraft.reconstruction.run_folder import check_writable
+
+    folder = Path(out)
+    check_writable(folder)
+    progress("write", 0, 2, "layout.json, truth.npz")
+    write_generated(room, folder)
+    progress("write", 1, 2, "preview.png")
+    picture = io.BytesIO()
+    Image.fromarray(room_picture(room)).save(picture, "PNG")
+    write_bytes(folder / "preview.png", picture.getvalue())
+    progress("write", 2, 2)
+    return room
+
+
+def scan_room(
+    room: "GeneratedRoom | str | Path",
+    out: str | Path,
+    *,
+    sensor: str = "rgbd",
+    frames: int | None = None,
+    seed: int | None = None,
+    labels: bool = False,
+    label_error: float = 0.0,
+    depth_scale_sigma: float = 0.0,
+    coverage: float = 1.0,
+    progress: Progress = no_progress,
+) -> Path:
+    """Scan a generated room with a virtual camera; write a capture with its truth beside it.
+
+    Args:
+        room: a generated room or house, or the folder of one.
+        out: the folder of the capture; must hold no other capture.
+        sensor: ``rgbd`` (noisy depth), ``clean``, or a phone's ``photo`` (photos with poses),
+            ``photos`` (photos alone) or ``video``.
+        frames: the pictures of the whole walk; 40 by default, 100 photos, 240 of a video.
+        seed: of the walk and the noise; that of the room by default.
+        labels: write label images too.
+        label_error: the share of their surface that is wrong, 0 to 1.
+        depth_scale_sigma: the standard deviation of each frame's factor of depth.
+        coverage: the share of the walk that is taken, above 0 and up to 1.
+        progress: called after each frame.
+
+    Returns:
+        The folder of the capture, for ``reconstruct``; ``evaluate`` finds the truth in it.
+
+    Raises:
+        UsageError: an argument is out of range, or the folder holds another capture.
+        OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> capture = w2m.scan_room(w2m.generate_room("study"), tmp / "capture", frames=3)
+        >>> (capture / "truth.npz").is_file()
+        True
+    """
+    from world2minecraft.procgen import read_generated
+    from world2minecraft.procgen import scan_room as scan
+
+    folder = Path(out)
+    _check_empty(folder)
+    made = read_generated(Path(room)) if isinstance(room, str | Path) else room
+    try:
+        scan(
+            made,
+            folder,
+            sensor=sensor,
+            frames=frames,
+            seed=made.seed if seed is None else seed,
+            with_labels=labels or label_error > 0,
+            label_error=label_error,
+            depth_scale_sigma=depth_scale_sigma,
+            coverage=coverage,
+            progress=progress,
+        )
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    return folder
+
+
+def evaluate(
+    run: Run | str | Path,
+    truth: str | Path,
+    *,
+    stages: bool = False,
+    progress: Progress = no_progress,
+) -> dict[str, Any]:
+    """Score a reconstruction against the room that was scanned.
+
+    Only cells that a noise-free ray of a used frame reached or crossed are scored.
+
+    Args:
+        run: a run or its folder, or the ``labels.npz`` of another method: ``labels`` (uint8
+            [X, Y, Z]), ``voxel_m``, ``origin_m`` and ``grid_to_scan`` (4x4), with an
+            ``objects.json`` beside it.
+        truth: the folder of a virtual scan, or any with ``truth.npz`` and ``truth.json``.
+        stages: also score the run with the truth put in after each stage.
+        progress: called at each step of ``stages``.
+
+    Returns:
+        The figures by group, such as ``["occupancy"]["iou"]``; docs/metrics.md describes them.
+
+    Raises:
+        InputError: a file is missing or cannot be read.
+        UsageError: ``stages`` is asked of another method's labels.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> 0.5 < w2m.evaluate(run, scan)["occupancy"]["iou"] < 1
+        True
+    """
+    from world2minecraft.evaluation.scoring import evaluate_reconstruction
+    from world2minecraft.evaluation.scoring.other_methods import evaluate_foreign, foreign_file
+    from world2minecraft.evaluation.scoring.stage_losses import stage_losses
+
+    place, folder = path_of(run), Path(truth)
+    foreign = foreign_file(place)
+    if foreign is not None:
+        if stages:
+            raise UsageError(f"{place} is not a run of w2m reconstruct; leave out --stages")
+        return evaluate_foreign(foreign, folder)
+    _check_run(place)
+    scores = evaluate_reconstruction(place, folder)
+    if stages:
+        scores["stages"] = stage_losses(place, folder, progress=progress)
+    return scores
+
+
+def _check_run(folder: Path) -> None:
+    """Raise InputError where a folder holds no finished run."""
+    if not folder.is_dir():
+        raise InputError(folder, "is not a folder; w2m reconstruct CAPTURE --out OUT makes one")
+    for name in ("scan.json", "room.npz", "objects.json"):
+        if not (folder / name).is_file():
+            raise InputError(
+                folder, f"has no {name}; finish the run: w2m reconstruct CAPTURE --out {folder}"
+            )
+
+
+def _check_empty(out: Path) -> None:
+    """Refuse a folder that holds a capture or a room: two would mix."""
+    from world2minecraft.reconstruction.run_folder import check_writable
+
+    check_writable(out)
+    if (out / "layout.json").exists():
+        raise UsageError(f"{out} holds a generated room; choose another --out")
+    if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
+        raise UsageError(f"{out} holds a capture; choose another --out, or remove it")

@@ -1,0 +1,295 @@
+"""What the program made, as Python values: a run, its room and its objects."""
+
+import base64
+import html
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN, display_name
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from world2minecraft.minecraftocc.store import OccStore
+    from world2minecraft.procgen import Room as GeneratedRoom
+
+MAX_LISTED = 12  # Objects in the text and in the notebook view of a run.
+
+
+@dataclass(frozen=True, eq=False)
+class RoomObject:
+    """One object of a room.
+
+    Attributes:
+        id: its number, 1 or more; its cells are those where ``room.instances == id``.
+        name: what it is, in words, such as ``television``.
+        class_name: its class of the paper's twelve, such as ``tvs``.
+        center_m: float64 [3], the middle of its box in the room frame (x, y, z up), in metres.
+        size_m: float64 [3], along its own axes: front to back, side to side, height, in metres.
+        yaw_deg: its rotation, counter-clockwise from above; at 0 its front looks along +x.
+        confidence: 0 to 1, the mean confidence of its cells.
+        template: the furniture template that stands for it in the world; empty where there is none.
+    """
+
+    id: int
+    name: str
+    class_name: str
+    center_m: np.ndarray
+    size_m: np.ndarray
+    yaw_deg: float
+    confidence: float
+    template: str = ""
+
+    def __repr__(self) -> str:
+        x, y, z = self.center_m
+        size = " x ".join(f"{side:.2f}" for side in self.size_m)
+        return (
+            f"RoomObject({self.id}, {self.name!r}, at ({x:.2f}, {y:.2f}, {z:.2f}) m, "
+            f"{size} m, confidence {self.confidence:.2f})"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """The semantic occupancy of a room: a class for each cell of a grid in the room frame.
+
+    Attributes:
+        grid: the cells, with their confidence, colour and source.
+        names: the name of each object, by its id.
+        scan_to_room: float64 [4, 4], from the frame of the capture to that of the room.
+
+    Example:
+        >>> from world2minecraft.api.results import Room
+        >>> from world2minecraft.core.types import OccupancyGrid
+        >>> import numpy as np
+        >>> shape = (25, 20, 30)
+        >>> grid = OccupancyGrid(
+        ...     labels=np.full(shape, 3, np.uint8), confidence=np.ones(shape, np.float16),
+        ...     colour=np.zeros((*shape, 3), np.uint8), source=np.ones(shape, np.uint8),
+        ...     instance=np.zeros(shape, np.uint16), voxel_m=0.08, origin_m=np.zeros(3),
+        ... )
+        >>> Room(grid)
+        Room(25 x 20 x 30 cells of 0.08 m, 2.0 x 1.6 x 2.4 m, 0 objects)
+    """
+
+    grid: OccupancyGrid
+    names: Mapping[int, str] = field(default_factory=dict)
+    scan_to_room: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    @property
+    def labels(self) -> np.ndarray:
+        """The class of each cell, uint8 [X, Y, Z]: 0 empty, 1 to 11, 255 unknown."""
+        return self.grid.labels
+
+    @property
+    def instances(self) -> np.ndarray:
+        """The object of each cell, uint16 [X, Y, Z]; 0 for none."""
+        return self.grid.instance
+
+    @property
+    def voxel_m(self) -> float:
+        """The side of a cell in metres."""
+        return self.grid.voxel_m
+
+    @property
+    def origin_m(self) -> np.ndarray:
+        """The minimum corner of cell (0, 0, 0) in the room frame, float64 [3], in metres."""
+        return self.grid.origin_m
+
+    @property
+    def size_m(self) -> np.ndarray:
+        """The size of the grid, float64 [3], in metres."""
+        return np.array(self.grid.shape) * self.grid.voxel_m
+
+    def plan(self, px_per_cell: int = 4) -> "Image":
+        """Draw the room from above without its ceiling, each cell in the colour of its class.
+
+        Args:
+            px_per_cell: the pixels along each side of a cell.
+        """
+        from PIL import Image
+
+        colours = np.full((256, 3), 235, np.uint8)
+        colours[: len(CLASS_COLOURS)] = CLASS_COLOURS
+        seen = (self.labels > 1) & (self.labels != UNKNOWN)
+        top = self.labels.shape[2] - 1 - np.argmax(seen[:, :, ::-1], axis=2)
+        classes = np.take_along_axis(self.labels, top[:, :, None], axis=2)[:, :, 0]
+        flat = np.where(seen.any(axis=2), classes, UNKNOWN)
+        pixels = colours[flat].transpose(1, 0, 2)[::-1]  # x to the right, y up.
+        return Image.fromarray(pixels.repeat(px_per_cell, axis=0).repeat(px_per_cell, axis=1))
+
+    def __repr__(self) -> str:
+        cells = " x ".join(str(side) for side in self.grid.shape)
+        return (
+            f"Room({cells} cells of {self.voxel_m:g} m, {_metres(self.size_m)}, "
+            f"{len(self.names)} objects)"
+        )
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self))}</p>{_img(self.plan())}"
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A folder with a reconstructed or built room; everything is read when it is first used.
+
+    Attributes:
+        folder: where its files lie; docs/file-formats.md describes them.
+    """
+
+    folder: Path
+
+    @cached_property
+    def room(self) -> Room:
+        """The semantic occupancy of the room.
+
+        Raises:
+            InputError: the folder has no ``room.npz``. DamagedFileError: it holds no valid grid.
+        """
+        from world2minecraft.formats.run_arrays import read_room
+
+        grid, scan_to_room = read_room(self.folder / "room.npz")
+        return Room(grid, {one.id: _name_of(one) for one in self._instances(grid)}, scan_to_room)
+
+    @cached_property
+    def objects(self) -> tuple[RoomObject, ...]:
+        """The objects of the room, by their ids.
+
+        Raises:
+            InputError: a file of the run is missing. DamagedFileError: it cannot be read.
+        """
+        templates = self._templates()
+        return tuple(
+            RoomObject(
+                id=one.id,
+                name=self.room.names[one.id],
+                class_name=CLASS_NAMES[one.class_id],
+                center_m=one.center_m,
+                size_m=one.size_m,
+                yaw_deg=one.yaw_deg,
+                confidence=one.confidence,
+                template=templates.get(one.id, ""),
+            )
+            for one in self._instances(self.room.grid)
+        )
+
+    @cached_property
+    def report(self) -> dict[str, Any]:
+        """The figures of ``report.json``; empty where the run has no report."""
+        path = self.folder / "report.json"
+        return read_json(path) if path.is_file() else {}
+
+    @property
+    def world(self) -> Path:
+        """The folder of the Minecraft world."""
+        return self.folder / "build" / "world"
+
+    @cached_property
+    def blocks(self) -> BlockVolume:
+        """The blocks of the world, with the class and the object of each.
+
+        Raises:
+            InputError: the run has no build.
+        """
+        from world2minecraft.evaluation.report.finished_run import read_built
+
+        return read_built(self.folder / "build")
+
+    def _instances(self, grid: OccupancyGrid) -> tuple[ObjectInstance, ...]:
+        from world2minecraft.formats.objects_and_placements import read_objects
+
+        path = self.folder / "objects.json"
+        return read_objects(path, grid) if path.is_file() else ()
+
+    def _templates(self) -> dict[int, str]:
+        from world2minecraft.formats.objects_and_placements import read_placements
+
+        path = self.folder / "placements.json"
+        placements = read_placements(path) if path.is_file() else ()
+        return {one.object_id: one.template for one in placements if one.template != "cells"}
+
+    def __repr__(self) -> str:
+        return f"Run({str(self.folder)!r})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{one.id}</td><td>{html.escape(one.name)}</td><td>{_metres(one.size_m)}</td>"
+            f"<td>{one.confidence:.2f}</td></tr>"
+            for one in self.objects[:MAX_LISTED]
+        )
+        more = len(self.objects) - MAX_LISTED
+        rest = f"<p>and {more} more objects</p>" if more > 0 else ""
+        head = "<tr><th>id</th><th>name</th><th>size</th><th>confidence</th></tr>"
+        title = f"{self!r}: {_metres(self.room.size_m)}, {len(self.objects)} objects"
+        return f"<p>{html.escape(title)}</p>{self._picture()}<table>{head}{rows}</table>{rest}"
+
+    def _picture(self) -> str:
+        from PIL import Image
+
+        path = self.folder / "preview.png"
+        if not path.is_file():
+            return _img(self.room.plan())
+        with Image.open(path) as picture:
+            return _img(picture.resize((640, 480)))
+
+
+def load(path: str | Path) -> "Run | GeneratedRoom | OccStore":
+    """Open a folder that the program wrote.
+
+    Args:
+        path: the folder of a run, of a build, of a generated room or of an occupancy data set.
+
+    Returns:
+        A ``Run``; of ``generate_room`` the generated room; of ``build_dataset`` the data set.
+
+    Raises:
+        InputError: the folder is not found, or the program did not write it.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> room = w2m.generate_room("study", seed=3, out=tmp / "room")
+        >>> w2m.load(tmp / "room").kind
+        'study'
+    """
+    folder = Path(path)
+    if (folder / "room.npz").is_file():
+        return Run(folder)
+    if (folder / "truth.npz").is_file() and (folder / "layout.json").is_file():
+        from world2minecraft.procgen import read_generated
+
+        return read_generated(folder)
+    if (folder / "shards").is_dir():
+        from world2minecraft.minecraftocc.store import open_store
+
+        return open_store(folder)
+    if not folder.exists():
+        raise InputError(folder, "not found; give the folder of a run, a room or a data set")
+    raise InputError(
+        folder,
+        "is not a run, a generated room or a data set; for captures use w2m.reconstruct, for "
+        "worlds and schematics w2m.render or w2m.convert",
+    )
+
+
+def _name_of(instance: ObjectInstance) -> str:
+    return display_name(instance.class_id)
+
+
+def _metres(sides: np.ndarray) -> str:
+    return " x ".join(f"{side:.1f}" for side in sides) + " m"
+
+
+def _img(picture: "Image") -> str:
+    data = io.BytesIO()
+    picture.save(data, "PNG")
+    text = base64.b64encode(data.getvalue()).decode()
+    return f'<img src="data:image/png;base64,{text}" style="max-width: 100%"/>'
