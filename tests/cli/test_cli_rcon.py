@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.cli.build.on_server import parse_address
 from world2minecraft.core.errors import UsageError
+from world2minecraft.minecraft.server.rcon import parse_address
 
 
 @pytest.mark.parametrize(

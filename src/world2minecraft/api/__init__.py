@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from world2minecraft.api.datasets import Dataset, open_dataset
     from world2minecraft.api.editor import EditorSession, open_editor
+    from world2minecraft.api.existing_worlds import build_into_world, build_on_server
     from world2minecraft.api.generation import (
         evaluate,
         generate_house,
@@ -31,6 +32,8 @@ __all__ = [
     "RoomObject",
     "Run",
     "build",
+    "build_into_world",
+    "build_on_server",
     "convert",
     "evaluate",
     "generate_house",
@@ -54,6 +57,7 @@ _MODULES = {
         "EditorSession",
         "open_editor",
     ),
+    "existing_worlds": ("build_into_world", "build_on_server"),
     "generation": (
         "evaluate",
         "generate_house",

@@ -1,64 +1,72 @@
-"""``w2m build``: any occupancy file becomes blocks: in a folder, in a world, or both."""
+"""``w2m build``: build a room as a world of its own, into a world, or on a server."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from world2minecraft.cli.build.options import (
+    MORE,
     Formats,
     PaletteName,
     Scale,
-    Settings,
+    SettingList,
     Style,
     Version,
-    style_note,
-    with_build_options,
+    parse_settings,
+    print_style_note,
+    split_names,
 )
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.core.types import BlockVolume
-    from world2minecraft.reconstruction.parameters import Parameters
+    from world2minecraft.api.existing_worlds import ServerBuild, WorldChange
 
 EXAMPLES = """\
-w2m build OUT --out second --blocks-per-metre 2     a finished run at another scale
-w2m build OUT --out fine --style display            furniture as fine as a mod's, without a mod
-w2m build room.npz --out world_of_room              an occupancy grid alone
-w2m build labels.npy --out world_of_labels          an array of class ids [x, y, z]
-w2m build OUT --into saves/Home --at 100 64 -20     into a world of yours; w2m undo takes it back
+w2m build OUT -o second --blocks-per-metre 2     a finished run at another scale
+w2m build OUT -o fine --style display            furniture as fine as a mod's, without a mod
+w2m build room.npz -o world_of_room              an occupancy grid alone
+w2m build labels.npy -o world_of_labels          an array of class ids [x, y, z]
+w2m build OUT --into saves/Home --at 100 64 -20  into an existing world; w2m undo reverts it
 w2m build house.schem --into saves/Home --at 0 70 0
-w2m build OUT --rcon localhost:25575 --at 0 70 0    on a running server
+w2m build OUT --rcon localhost:25575 --at 0 70 0     on a running server
 """
-
 
 Source = Annotated[
     Path,
     typer.Argument(
-        metavar="ROOM", help="A run's folder, room.npz, occ.json, .npy; or blocks (.schem ...)."
+        metavar="ROOM", help="Folder of a run, room.npz, occ.json, .npy, or blocks (.schem ...)."
     ),
 ]
 Out = Annotated[
-    Path | None, typer.Option("--out", help="The folder of the results: a world of its own.")
+    Path | None, typer.Option("--out", "-o", help="Folder of the results: a world of its own.")
 ]
 Into = Annotated[
     Path | None, typer.Option("--into", metavar="WORLD", help="Build into this world.")
 ]
-Place = Annotated[
-    tuple[int, int, int] | None,
-    typer.Option("--at", metavar="X Y Z", help="Where the room's corner comes to stand."),
-]
 Rcon = Annotated[
     str | None, typer.Option("--rcon", metavar="HOST:PORT", help="Build on a running server.")
 ]
+Place = Annotated[
+    tuple[int, int, int] | None,
+    typer.Option("--at", metavar="X Y Z", help="Place of the room's corner in the world."),
+]
 Turns = Annotated[
-    int, typer.Option("--turns", help="With --at: quarter turns, counter-clockwise from above.")
+    int, typer.Option("--turns", help="Quarter turns, counter-clockwise from above, with --at.")
 ]
 Air = Annotated[
-    str, typer.Option("--air", help="With --at: which air is built: room, box or none.")
+    str,
+    typer.Option(
+        "--air", help="Air that replaces blocks: room, box or none.", rich_help_panel=MORE
+    ),
 ]
 NewChunks = Annotated[
-    bool, typer.Option("--new-chunks", help="With --into: make what the game never generated.")
+    bool,
+    typer.Option(
+        "--new-chunks",
+        help="Make chunks that the game has not generated, with --into.",
+        rich_help_panel=MORE,
+    ),
 ]
 
 
@@ -76,150 +84,117 @@ def run(
     palette: PaletteName = None,
     formats: Formats = None,
     mc_version: Version = "1.20.1",
-    settings: Settings = None,
+    settings: SettingList = None,
 ) -> None:
-    """Build a world from an occupancy grid, or build into a world that exists.
+    """Build a room as a world of its own, into an existing world, or on a running server.
 
-    A run's folder is built from its objects and placements as they stand; from a grid alone the
-    objects are found and matched first. With --into or --rcon, the corner of the room's floor
-    comes to stand at X Y Z, so that one stands on it at height Y. With --into every file that is
-    touched is backed up, and `w2m undo WORLD` brings it back. With --rcon the blocks are set on a
-    running server (password: W2M_RCON_PASSWORD); that cannot be undone.
-
-    Args:
-        source: what to build.
-        out: the folder to write.
-        into: the world to build into.
-        rcon: the server's remote console.
-        at: where the room's corner goes, in blocks of that world.
-        turns: quarter turns before that.
-        air: which air of the room replaces blocks of the world.
-        new_chunks: whether chunks are made that the game never did.
-        blocks_per_metre: the scale.
-        style: what furniture is made of.
-        palette: which blocks may be used.
-        formats: further forms of the build.
-        mc_version: the game version.
-        settings: further parameters.
-
-    Raises:
-        UsageError: nothing says where to build, or an option needs another.
+    A run is built from its objects and placements as they are; of a grid alone the objects are
+    detected and matched first. With --into or --rcon the corner of the room's floor stands at
+    X Y Z, so that one stands on it at height Y. With --into every file that changes is backed up,
+    and `w2m undo WORLD` restores it. A build on a server cannot be undone; its password is read
+    from W2M_RCON_PASSWORD.
     """
-    check_targets(out, into, rcon, at, turns)
-    check_destination(into, rcon, air, new_chunks)
-    from world2minecraft.reconstruction.parameters import Parameters, with_settings
-
-    chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
-    chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])
-    style_note(chosen)
+    _check_targets(out, into, rcon, at, turns, air, new_chunks)
+    changes = parse_settings(settings)
+    print_style_note(blocks_per_metre, changes.get("build.style", style))
+    options: dict[str, Any] = {
+        "blocks_per_metre": blocks_per_metre,
+        "style": style,
+        "palette": palette,
+        "settings": changes,
+    }
+    place: dict[str, Any] = {"turns": turns, "air": air}
     if out is not None:
-        into_folder(source, out, chosen)
+        _build_folder(source, out, options | {"formats": split_names(formats)}, mc_version)
     if into is not None and at is not None:
-        build_into(source, chosen, into, at, turns, air, new_chunks)
+        _build_into(source, into, at, options | place | {"new_chunks": new_chunks})
     if rcon is not None:
-        build_on(source, chosen, rcon, at, turns, air)
+        _build_on_server(source, rcon, options | place | {"at": at, "mc_version": mc_version})
 
 
-def build_into(
-    source: Path,
-    chosen: "Parameters",
-    world: Path,
-    at: tuple[int, int, int],
-    turns: int,
-    air: str,
-    new_chunks: bool,
-) -> None:
-    """Build into a world; what can be known of it is checked before any work."""
-    from world2minecraft.cli.build.into_world import check_world, into_world
-
-    check_world(world, air)
-    how = {"air": air, "new_chunks": new_chunks, "is_room": holds_room(source)}
-    into_world(volume_of(source, chosen), world, at, turns, **how)
-
-
-def build_on(
-    source: Path,
-    chosen: "Parameters",
-    server: str,
-    at: tuple[int, int, int] | None,
-    turns: int,
-    air: str,
-) -> None:
-    """Build on a server; what can be known of it is checked before any work."""
-    from world2minecraft.cli.build.on_server import check_server, on_server
-
-    check_server(server, air)
-    how = {"air": air, "is_room": holds_room(source), "mc_version": chosen.mc_version}
-    on_server(volume_of(source, chosen), server, at, turns, **how)
-
-
-def check_targets(
+def _check_targets(
     out: Path | None,
     into: Path | None,
     rcon: str | None,
     at: tuple[int, int, int] | None,
     turns: int,
+    air: str,
+    new_chunks: bool,
 ) -> None:
-    """Check, before any work, that the options say where to build.
+    """Raise UsageError, before any work, where the options do not say where to build."""
+    from world2minecraft.api.existing_worlds import check_place
 
-    Raises:
-        UsageError: they do not.
-    """
     if out is None and into is None and rcon is None:
         raise UsageError(
-            "say where to build: --out FOLDER, --into WORLD --at X Y Z, or --rcon HOST:PORT"
+            "choose where to build: --out FOLDER, --into WORLD --at X Y Z, or --rcon HOST:PORT"
         )
-    if into is not None and at is None:
-        raise UsageError("--into needs a place: add --at X Y Z, such as the F3 screen shows")
-    if into is None and rcon is None and (at is not None or turns):
-        raise UsageError(
-            "--at and --turns go with --into WORLD or --rcon; add it or leave them out"
-        )
+    has = {"has_world": into is not None, "has_server": rcon is not None}
+    check_place(at, turns, air, new_chunks, **has)
 
 
-def check_destination(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -> None:
-    """Check, before any work, the options that say how a world or a server is built into.
-
-    Raises:
-        UsageError: one is wrong, or says nothing of what is asked for.
-    """
-    from world2minecraft.editing.build_into_world import check_air
-
-    check_air(air)
-    if new_chunks and into is None:
-        raise UsageError("--new-chunks goes with --into WORLD; add it or leave it out")
-    if air != "room" and into is None and rcon is None:
-        raise UsageError("--air goes with --into WORLD or --rcon; add one or leave it out")
-
-
-def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
-    """Build a world of its own and its other forms under ``out``, and say how to play."""
+def _build_folder(source: Path, out: Path, options: dict[str, Any], mc_version: str) -> None:
+    from world2minecraft.api import build
     from world2minecraft.cli.outcome import print_compile_note, print_play_steps
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.reconstruction.build_without_capture import rebuild
 
     print_compile_note()
     with show_progress() as progress:
-        rebuild(source, out, chosen, progress)
+        build(source, out, mc_version=mc_version, progress=progress, **options)
     print()
     print_play_steps(out / "build")
 
 
-def holds_room(source: Path) -> bool:
-    """Whether ``source`` is a room, whose floor is known, and not blocks made elsewhere."""
-    from world2minecraft.reconstruction.build_without_capture import is_block_file
-
-    return not is_block_file(source)
-
-
-def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":
-    """Return the blocks of a room for a target that is no folder; nothing is written."""
+def _build_into(
+    source: Path, world: Path, at: tuple[int, int, int], options: dict[str, Any]
+) -> None:
+    from world2minecraft.api import build_into_world
     from world2minecraft.cli.outcome import print_compile_note
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.reconstruction.build_without_capture import blocks_of
 
     print_compile_note()
     with show_progress() as progress:
-        volume = blocks_of(source, chosen, progress)
+        done = build_into_world(source, world, at, progress=progress, **options)
     print()
-    return volume
+    _print_change(done)
+
+
+def _build_on_server(source: Path, server: str, options: dict[str, Any]) -> None:
+    from world2minecraft.api import build_on_server
+    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.progress import show_progress
+
+    print_compile_note()
+    with show_progress() as progress:
+        done = build_on_server(source, server, progress=progress, **options)
+    _print_server_build(done)
+
+
+def _print_change(done: "WorldChange") -> None:
+    """Print what a build changed in a world, how to go there, and how to undo it."""
+    if done.recovered:
+        print("An earlier step had been interrupted; what it had changed was restored first.")
+    if not done.blocks and not done.entities:
+        print(f"{done.world}: all of it is built already; nothing changed.")
+        return
+    size = " x ".join(map(str, done.size_blocks))
+    more = f" and {done.entities} entities" if done.entities else ""
+    x, z = (done.corner[axis] + done.size_blocks[axis] // 2 for axis in (0, 2))
+    print(f"{done.world}: {done.blocks:,} blocks changed{more}; the build is {size} blocks.")
+    print(f"  go there   /tp @s {x} {done.corner[1]} {z}")
+    if done.has_size_functions:
+        print("  your size  /function w2m:human_size, and back /function w2m:game_size")
+    print(f"  undo       w2m undo '{done.world}'")
+
+
+def _print_server_build(done: "ServerBuild") -> None:
+    """Print what was built on a server and how to go there."""
+    if done.resumed:
+        print("An earlier run of this build had been interrupted; this one continued it.")
+    x, y, z = done.corner
+    size = " x ".join(str(side) for side in done.size_blocks)
+    print(f"\nBuilt {done.blocks:,} blocks at {x} {y} {z} ({size}).")
+    cuts = f", {done.reconnects} lost connections survived" if done.reconnects else ""
+    print(f"  {done.commands:,} commands{cuts}; {done.checked} places read back, all right")
+    for what, count in done.left_out.items():
+        print(f"  left out: {count} {what}")
+    print(f"  look   /tp @s {x} {y} {z}, or a few blocks into the room")
