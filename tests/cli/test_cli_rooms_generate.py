@@ -23,12 +23,12 @@ def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
     [
         (["--kind", "kitchn"], "no room kind is named 'kitchn'; did you mean 'kitchen'?"),
         (["--shape", "round"], "no room shape is named 'round'; known: box, columns, cut, ell"),
-        (["--rooms", "5"], "--rooms and --storeys are of a house; add --house"),
-        (["--house", "--kind", "bed"], "--kind and --shape are of a single room; leave them out"),
-        (["--house", "--rooms", "2"], "--rooms must be from 3 to 14 on 1 storey, not 2"),
-        (["--house", "--storeys", "0"], "--storeys must be 1 or 2, not 0"),
-        (["--seed", "-1"], "--seed must be 0 or more, not -1"),
-        (["--clutter", "2"], "--clutter must be from 0 to 1, not 2.0"),
+        (["--rooms", "5"], "--rooms and --storeys are for a house; add --house"),
+        (["--house", "--kind", "bed"], "--kind and --shape are for a single room; leave them out"),
+        (["--house", "--rooms", "2"], "rooms must be from 3 to 14 on 1 storey, not 2"),
+        (["--house", "--storeys", "0"], "storeys must be 1 or 2, not 0"),
+        (["--seed", "-1"], "seed must be 0 or more, not -1"),
+        (["--clutter", "2"], "clutter must be from 0 to 1, not 2.0"),
     ],
 )
 def test_words_that_cannot_be_are_refused_in_one_line(tmp_path, capsys, words, message):
@@ -51,11 +51,11 @@ def test_houses_become_worlds(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--houses", "2"], "--houses says how many and --worlds where; give both"),
-        (["--houses", "0", "--worlds", "W"], "--houses must be 1 or more, not 0"),
+        (["--houses", "2"], "--houses (how many) and --worlds (where) need each other"),
+        (["--houses", "0", "--worlds", "W"], "houses must be 1 or more, not 0"),
         (["--houses", "1", "--worlds", "W", "--rooms", "5"], "--houses draws kinds, rooms and"),
         (["--houses", "1", "--worlds", "W", "--style", "retrro"], "did you mean 'retro'?"),
-        (["--houses", "1", "--worlds", "W", "--seed", "-1"], "--seed must be 0 or more, not -1"),
+        (["--houses", "1", "--worlds", "W", "--seed", "-1"], "seed must be 0 or more, not -1"),
     ],
 )
 def test_words_of_worlds_are_checked(tmp_path, monkeypatch, capsys, words, message):

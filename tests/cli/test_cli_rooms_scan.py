@@ -42,7 +42,6 @@ def test_a_seed_becomes_a_capture_with_its_truth(tmp_path, capsys):
     assert said.out == (
         f"next: w2m reconstruct {out} --out OUT\nthen: w2m evaluate reconstruction OUT {out}\n"
     )
-    assert "room done in" in said.err
     assert "capture done in" in said.err
     truth = read_npz(out / "truth.npz", ("frame_names", "depth_scale"))
     assert truth["frame_names"].tolist() == ["frame-000000", "frame-000001", "frame-000002"]
@@ -74,18 +73,18 @@ def test_a_trial_is_scanned_by_name(tmp_path, monkeypatch):
         (["--seed", "-1"], "--seed must be 0 or more, not -1"),
         (["--seed", "1", "--kind", "barn"], "no room kind is named 'barn'; known:"),
         (["--seed", "1", "--sensor", "rgb"], "no sensor is named 'rgb'; did you mean 'rgbd'"),
-        (["--seed", "1", "--frames", "0"], "--frames must be 1 or more, not 0"),
+        (["--seed", "1", "--frames", "0"], "frames must be 1 or more, not 0"),
         (
             ["--seed", "1", "--coverage", "0"],
-            "--coverage must be above 0 and at most 1, not 0.0",
+            "coverage must be above 0 and at most 1, not 0.0",
         ),
         (
             ["--seed", "1", "--depth-scale-sigma", "3"],
-            "--depth-scale-sigma must be 0 to 0.2, not 3.0",
+            "depth_scale_sigma must be 0 to 0.2, not 3.0",
         ),
         (
             ["--seed", "1", "--label-error", "2"],
-            "--label-error must be a share from 0 to 1, not 2.0",
+            "label_error must be a share from 0 to 1, not 2.0",
         ),
         (["room", "--kind", "study"], "room has a kind of its own; leave --kind out"),
         (
@@ -105,7 +104,7 @@ def test_wrong_words_are_told_in_one_line(words, text, tmp_path, capsys):
 def test_a_folder_with_a_capture_is_refused(tmp_path, capsys):
     (tmp_path / "capture.json").write_text("{}")
     assert w2m(["rooms", "scan", "--seed", "1", "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} holds a capture already; give another --out, or remove it\n"
+    line = f"error: {tmp_path} holds a capture; choose another --out, or remove it\n"
     assert capsys.readouterr().err == line
 
 
@@ -125,7 +124,7 @@ def test_a_generated_room_is_not_written_over(tmp_path, capsys):
     write_generated(generate_room(3, kind="study"), tmp_path)
     before = (tmp_path / "truth.npz").read_bytes()
     assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path)]) == 2
-    line = f"error: {tmp_path} holds a generated room; give another --out\n"
+    line = f"error: {tmp_path} holds a generated room; choose another --out\n"
     assert capsys.readouterr().err == line
     assert (tmp_path / "truth.npz").read_bytes() == before
 

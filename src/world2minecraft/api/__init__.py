@@ -15,6 +15,7 @@ if TYPE_CHECKING:
         evaluate,
         generate_house,
         generate_room,
+        generate_worlds,
         save_room,
         scan_room,
     )
@@ -38,6 +39,7 @@ __all__ = [
     "evaluate",
     "generate_house",
     "generate_room",
+    "generate_worlds",
     "load",
     "make_env",
     "open_dataset",
@@ -62,6 +64,7 @@ _MODULES = {
         "evaluate",
         "generate_house",
         "generate_room",
+        "generate_worlds",
         "save_room",
         "scan_room",
     ),

@@ -1,5 +1,6 @@
 """Generated rooms with exact truth, virtual scans of them, and the scores of a reconstruction."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -80,6 +81,47 @@ def generate_house(
     except ValueError as error:
         raise UsageError(str(error)) from error
     return made if out is None else save_room(made, out)
+
+
+def generate_worlds(
+    out: str | Path,
+    *,
+    houses: int,
+    seed: int = 0,
+    style: str | None = None,
+    progress: Progress = no_progress,
+) -> list[Path]:
+    """Generate houses as Minecraft worlds, each with the class and the object of every block.
+
+    Args:
+        out: the folder to write; each house is a folder in it.
+        houses: how many; a longer series begins with a shorter one.
+        seed: 0 or more.
+        style: the style of all houses; each draws its own by default.
+        progress: called for each house.
+
+    Returns:
+        The folders of the houses, with ``world/``, ``scene.json``, ``scene.npz`` and
+        ``designs.json``.
+
+    Raises:
+        UsageError: a number is out of range. UnknownNameError: there is no such style.
+        OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> [house.name for house in w2m.generate_worlds(tmp / "worlds", houses=1)]
+        ['house_0001']
+    """
+    from world2minecraft.procgen.worlds import write_worlds
+    from world2minecraft.reconstruction.run_folder import check_writable
+
+    if houses < 1:
+        raise UsageError(f"houses must be 1 or more, not {houses}")
+    if seed < 0:
+        raise UsageError(f"seed must be 0 or more, not {seed}")
+    check_writable(Path(out))
+    return write_worlds(Path(out), houses, seed, style=style, progress=progress)
 
 
 def save_room(
@@ -165,24 +207,60 @@ def scan_room(
     from world2minecraft.procgen import scan_room as scan
 
     folder = Path(out)
-    _check_empty(folder)
+    figures: dict[str, Any] = {
+        "sensor": sensor,
+        "frames": frames,
+        "labels": labels,
+        "label_error": label_error,
+        "depth_scale_sigma": depth_scale_sigma,
+        "coverage": coverage,
+    }
+    check_scan(folder, figures)
     made = read_generated(Path(room)) if isinstance(room, str | Path) else room
+    chosen = made.seed if seed is None else seed
+    scan(made, folder, seed=chosen, progress=progress, **_settings_of(figures))
+    return folder
+
+
+def check_scan(out: Path, figures: Mapping[str, Any]) -> None:
+    """Check the folder and the figures of ``scan_room`` before any work.
+
+    Args:
+        out: the folder of the capture.
+        figures: the arguments of ``scan_room`` by their names.
+
+    Raises:
+        UsageError: a figure is out of range, or the folder holds another capture or a room.
+        OutputError: the folder cannot be written.
+    """
+    from world2minecraft.procgen.sensors.scan_frames import ScanSettings
+
     try:
-        scan(
-            made,
-            folder,
-            sensor=sensor,
-            frames=frames,
-            seed=made.seed if seed is None else seed,
-            with_labels=labels or label_error > 0,
-            label_error=label_error,
-            depth_scale_sigma=depth_scale_sigma,
-            coverage=coverage,
-            progress=progress,
-        )
+        ScanSettings(**_settings_of(figures))
     except ValueError as error:
         raise UsageError(str(error)) from error
-    return folder
+    _check_empty(out)
+
+
+def _settings_of(figures: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of ``scan_room`` as those of a virtual scan."""
+    chosen = {name: value for name, value in figures.items() if name not in ("labels", "progress")}
+    chosen["with_labels"] = bool(figures.get("labels") or figures.get("label_error"))
+    return chosen
+
+
+def scan_trial(name: str, out: str | Path, progress: Progress = no_progress) -> Path:
+    """Write a trial of the benchmark, such as ``noise-500``: a scanned room with its truth.
+
+    Raises:
+        UnknownNameError: there is no such trial. UsageError: the folder holds another capture.
+        OutputError: the folder cannot be written.
+    """
+    from world2minecraft.procgen.benchmark_trials import find_trial, write_trial
+
+    _check_empty(Path(out))
+    write_trial(find_trial(name), Path(out), progress)
+    return Path(out)
 
 
 def evaluate(

@@ -18,49 +18,33 @@ w2m evaluate reconstruction labels.npz my_trial            another method's, obj
 
 def run(
     out: Annotated[
-        Path, typer.Argument(help="The folder of a finished reconstruction, or a labels.npz.")
+        Path, typer.Argument(help="Folder of a finished reconstruction, or a labels.npz.")
     ],
-    truth: Annotated[Path, typer.Argument(help="The folder with truth.npz and truth.json.")],
+    truth: Annotated[Path, typer.Argument(help="Folder with truth.npz and truth.json.")],
     stages: Annotated[
-        bool, typer.Option("--stages", help="Put truth in after each stage and score the rest.")
+        bool,
+        typer.Option("--stages", help="Also score with the truth put in after each stage."),
     ] = False,
     json_path: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write every figure here, too.")
+        Path | None,
+        typer.Option("--json", metavar="FILE", help="Also write every figure to this file."),
     ] = None,
 ) -> None:
     """Score a reconstruction against the room that was scanned.
 
-    Only cells that a noise-free ray of a used frame reached or crossed are scored. What another
-    method made is read from labels.npz: labels (uint8 X, Y, Z), voxel_m, origin_m and grid_to_scan
-    (4x4, from the grid's frame to that of the capture's poses); objects.json beside it is a list
-    of {class, center_m, size_m, yaw_deg}.
-
-    Args:
-        out: the run's folder, or another method's labels.
-        truth: the capture's folder, or that of a truth which names its capture.
-        stages: whether to say what each stage loses.
-        json_path: where to write the figures.
+    Only cells that a noise-free ray of a used frame reached or crossed are scored. The result of
+    another method is read from labels.npz: labels (uint8 X, Y, Z), voxel_m, origin_m and
+    grid_to_scan (4x4, from the grid's frame to that of the capture's poses); objects.json beside
+    it is a list of {class, center_m, size_m, yaw_deg}.
     """
     from rich.console import Console
 
+    from world2minecraft.api import evaluate
     from world2minecraft.cli.progress import show_progress
-    from world2minecraft.core.errors import UsageError
     from world2minecraft.core.files import write_json
-    from world2minecraft.evaluation.scoring import evaluate_reconstruction
-    from world2minecraft.evaluation.scoring.other_methods import evaluate_foreign, foreign_file
-    from world2minecraft.evaluation.scoring.stage_losses import stage_losses
 
-    foreign = foreign_file(out)
-    if foreign is not None and stages:
-        raise UsageError(f"{out} is no run of w2m reconstruct, whose stages --stages goes through")
-    if foreign is None:
-        check_run(out)
-        facts = evaluate_reconstruction(out, truth)
-    else:
-        facts = evaluate_foreign(foreign, truth)
-    if stages:
-        with show_progress() as progress:
-            facts["stages"] = stage_losses(out, truth, progress=progress)
+    with show_progress() as progress:
+        facts = evaluate(out, truth, stages=stages, progress=progress)
     console = Console(highlight=False)
     console.print(score_table(facts))
     if "calibration" in facts:
@@ -70,22 +54,9 @@ def run(
     if json_path is not None:
         write_json(json_path, facts)
         print(f"figures  {json_path}")
-    if foreign is None:
+    if out.is_dir() and (out / "scan.json").is_file():
         for line in next_steps(out, truth, stages):
             print(line)
-
-
-def check_run(out: Path) -> None:
-    """Raise InputError where ``out`` holds no finished run."""
-    from world2minecraft.core.errors import InputError
-
-    if not out.is_dir():
-        raise InputError(out, "is no folder; w2m reconstruct CAPTURE --out OUT makes one")
-    for name in ("scan.json", "room.npz", "objects.json"):
-        if not (out / name).is_file():
-            raise InputError(
-                out, f"has no {name}; finish the run first: w2m reconstruct CAPTURE --out {out}"
-            )
 
 
 def score_table(facts: dict[str, Any]) -> "Table":
