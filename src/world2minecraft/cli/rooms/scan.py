@@ -17,62 +17,71 @@ w2m rooms scan --seed 7 --sensor photos -o photos    JPEGs without depth or pose
 """
 
 
-def run(
-    room_dir: Annotated[
-        Path | None, typer.Argument(help="A folder that w2m rooms generate wrote.")
-    ] = None,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the capture.")] = Path(
-        "capture"
+RoomFolder = Annotated[Path | None, typer.Argument(help="A folder that w2m rooms generate wrote.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the capture.")]
+Seed = Annotated[
+    int | None, typer.Option("--seed", help="Of the room (without ROOM_DIR) and the scan.")
+]
+Kind = Annotated[str | None, typer.Option("--kind", help="Kind of the room of --seed.")]
+TrialName = Annotated[
+    str | None, typer.Option("--trial", help="A trial, such as noise-500 or noise-500-clean.")
+]
+SensorName = Annotated[
+    str | None,
+    typer.Option(
+        "--sensor", help="rgbd or clean; a phone's photo, photos or video.", show_default="rgbd"
     ),
-    seed: Annotated[
-        int | None, typer.Option("--seed", help="Of the room (without ROOM_DIR) and the scan.")
-    ] = None,
-    kind: Annotated[str | None, typer.Option("--kind", help="Kind of the room of --seed.")] = None,
-    trial: Annotated[
-        str | None, typer.Option("--trial", help="A trial, such as noise-500 or noise-500-clean.")
-    ] = None,
-    sensor: Annotated[
-        str | None,
-        typer.Option(
-            "--sensor", help="rgbd or clean; a phone's photo, photos or video.", show_default="rgbd"
-        ),
-    ] = None,
-    frames: Annotated[
-        int | None,
-        typer.Option(
-            "--frames",
-            help="Pictures of the whole walk.",
-            show_default="40; 100 photos; 240 of a video",
-        ),
-    ] = None,
-    depth_scale_sigma: Annotated[
-        float | None,
-        typer.Option(
-            "--depth-scale-sigma",
-            help="Standard deviation of the factor of each frame's depth.",
-            show_default="0",
-            rich_help_panel=MORE,
-        ),
-    ] = None,
-    coverage: Annotated[
-        float | None,
-        typer.Option(
-            "--coverage",
-            help="Share of the walk that is taken.",
-            show_default="1",
-            rich_help_panel=MORE,
-        ),
-    ] = None,
-    labels: Annotated[bool, typer.Option("--labels", help="Write label images too.")] = False,
-    label_error: Annotated[
-        float | None,
-        typer.Option(
-            "--label-error",
-            help="Share of the label images that is wrong.",
-            show_default="0",
-            rich_help_panel=MORE,
-        ),
-    ] = None,
+]
+Frames = Annotated[
+    int | None,
+    typer.Option(
+        "--frames",
+        help="Pictures of the whole walk.",
+        show_default="40; 100 photos; 240 of a video",
+    ),
+]
+DepthScaleSigma = Annotated[
+    float | None,
+    typer.Option(
+        "--depth-scale-sigma",
+        help="Standard deviation of the factor of each frame's depth.",
+        show_default="0",
+        rich_help_panel=MORE,
+    ),
+]
+Coverage = Annotated[
+    float | None,
+    typer.Option(
+        "--coverage",
+        help="Share of the walk that is taken.",
+        show_default="1",
+        rich_help_panel=MORE,
+    ),
+]
+Labels = Annotated[bool, typer.Option("--labels", help="Write label images too.")]
+LabelError = Annotated[
+    float | None,
+    typer.Option(
+        "--label-error",
+        help="Share of the label images that is wrong.",
+        show_default="0",
+        rich_help_panel=MORE,
+    ),
+]
+
+
+def run(
+    room_dir: RoomFolder = None,
+    out: Out = Path("capture"),
+    seed: Seed = None,
+    kind: Kind = None,
+    trial: TrialName = None,
+    sensor: SensorName = None,
+    frames: Frames = None,
+    depth_scale_sigma: DepthScaleSigma = None,
+    coverage: Coverage = None,
+    labels: Labels = False,
+    label_error: LabelError = None,
 ) -> None:
     """Scan a generated room or house with a virtual depth camera or phone.
 
