@@ -136,11 +136,8 @@ TUTORIAL = Scene(
 )
 
 
-FRONT = (  # The README's picture: where each part lies, and what makes it.
-    ((0, 0), "w2m render demo --orbit --frames 4 --size 800x560 --out front/outside", 0),
-    ((804, 0), "w2m render demo --tour --frames 8 --size 480x278 --out front/day", 5),
-    ((804, 282), "w2m render demo --tour --frames 8 --size 480x278 --hour 22 --out front/night", 5),
-)
+# The README's picture.
+FRONT = "w2m render demo --turntable --frames 48 --fps 12 --size 480x360 --out front.webp"
 
 
 def main() -> None:
@@ -154,18 +151,14 @@ def main() -> None:
                 _run(shot.command)
                 write_bytes(DOCS / place / f"{shot.stem}.jpg", small_jpeg(Path(shot.file)))
         _run("w2m demo --out demo")
-        write_bytes(DOCS / "images" / "demo.jpg", front_picture())
+        write_bytes(DOCS / "images" / "demo.webp", front_picture())
     write_text(DOCS / "gallery.md", page())
 
 
 def front_picture() -> bytes:
-    """Return the demo's room from above, by day and by night, as one JPEG."""
-    whole = Image.new("RGB", (1284, 560), "white")
-    for place, command, take in FRONT:
-        _run(command)
-        folder = Path(shlex.split(command)[-1])
-        whole.paste(Image.open(folder / f"{take:06d}.png").convert("RGB"), place)
-    return _jpeg(whole)
+    """Return the demo's room, turning, as an animated WebP."""
+    _run(FRONT)
+    return Path(shlex.split(FRONT)[-1]).read_bytes()
 
 
 def small_jpeg(path: Path) -> bytes:

@@ -82,7 +82,7 @@ def test_a_benchmark_stands_with_its_command():
 def test_a_verb_stands_with_its_examples():
     text = verbs.text()
     assert "## w2m rooms scan { #rooms-scan }" in text
-    assert "w2m rooms scan --seed 7 --sensor photos --out photos" in text
+    assert "w2m rooms scan --seed 7 --sensor photos -o photos" in text
 
 
 @pytest.mark.parametrize(

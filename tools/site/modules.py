@@ -1,7 +1,7 @@
 """MkDocs hook: a page for each package of the library, from its docstrings.
 
 A page holds the package and its public modules in the order of their names; sub-packages have pages
-of their own. The command line and the server of SceneForge are left out: they are no library.
+of their own. The command line and the server of SceneForge are left out: they are not a library.
 """
 
 import ast
@@ -12,7 +12,7 @@ from typing import Any
 from mkdocs.structure.files import File
 
 SOURCE = Path(__file__).parents[2] / "src" / "world2minecraft"
-LEFT_OUT = {"cli", "sceneforge"}
+LEFT_OUT = {"api", "cli", "sceneforge"}  # docs/api.md shows the first.
 # What ``nav`` says where these pages belong.
 PLACE = "API"
 
