@@ -1,14 +1,20 @@
 """``w2m`` itself: help, usage, exit codes, and one line for whatever goes wrong."""
 
 import errno
+import re
 import subprocess
 import sys
+from typing import Annotated
 
 import pytest
+import typer
 
 from world2minecraft import __version__, cli
-from world2minecraft.cli import failures, verbs
+from world2minecraft.cli import failures, panels, verbs
 from world2minecraft.core.errors import CaptureError, UsageError
+
+# Verbs whose help is longer than a screen before "More options". Remove from this list, never add.
+LONG_HELP = ("reconstruct", "render", "dataset build", "vln run", "vln evaluate")
 
 
 @pytest.fixture
@@ -32,11 +38,41 @@ def failing(error):
     return run
 
 
-def test_help_lists_every_verb_with_its_line(capsys):
+def test_help_lists_every_verb_under_its_heading(capsys):
     assert cli.run(["--help"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
-    for name, line in verbs.VERBS.items():
-        assert f"{name} {line}" in text
+    text = capsys.readouterr().out
+    for heading, summaries in verbs.VERB_GROUPS.items():
+        section = " ".join(text.partition(f"\n{heading}:\n")[2].partition("\n\n")[0].split())
+        for name, summary in summaries.items():
+            assert f"{name.split()[-1]} {summary}" in section
+
+
+def test_help_indents_the_verbs_of_a_family(capsys):
+    assert cli.run(["--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    row = next(i for i, line in enumerate(lines) if line.startswith("  rooms generate  "))
+    assert lines[row + 1].startswith("        scan      ")
+
+
+def test_each_verb_stands_in_one_group():
+    names = [name for summaries in verbs.VERB_GROUPS.values() for name in summaries]
+    assert len(names) == len(set(names)) == len(verbs.VERBS)
+    families = {first for first, _, second in (name.partition(" ") for name in names) if second}
+    assert set(verbs.FAMILIES) == families - set(names)
+
+
+@pytest.mark.parametrize("name", verbs.VERBS)
+def test_the_first_part_of_each_help_fits_a_screen(name):
+    command = verbs.load(name)
+    context = command.make_context(f"w2m {name}", [], resilient_parsing=True, terminal_width=80)
+    first = command.get_help(context).partition(f"\n{panels.MORE}:\n")[0].splitlines()
+    assert (len(first) > panels.FIRST_LINES) == (name in LONG_HELP)
+
+
+@pytest.mark.parametrize("name", verbs.FAMILIES)
+def test_a_family_without_a_verb_shows_its_help(name, capsys):
+    assert cli.run([name]) == 0
+    assert verbs.FAMILIES[name] in capsys.readouterr().out
 
 
 def test_no_words_at_all_ask_for_help(capsys):
@@ -50,7 +86,7 @@ def test_version(capsys):
 
 
 @pytest.mark.parametrize("name", verbs.VERBS)
-def test_each_verb_has_a_help_that_ends_with_examples(name, capsys):
+def test_each_verb_has_a_help_with_examples(name, capsys):
     assert cli.run([*name.split(), "--help"]) == 0
     text = capsys.readouterr().out
     assert text.startswith(f"Usage: w2m {name}")
@@ -90,6 +126,23 @@ def test_a_wrong_second_word_names_the_right_verb(verb_of_two_words, capsys):
     assert cli.run(["pro", "bee"]) == 2
     line = "error: no verb is named 'pro bee'; did you mean 'pro be'?\n"
     assert capsys.readouterr().err == line
+
+
+def test_more_options_are_listed_last(verb, capsys):
+    def run(
+        out: panels.OutFolder,
+        seed: Annotated[int, panels.more_option("--seed", help="Choose the room.")] = 7,
+        style: Annotated[str | None, typer.Option(help="Pick one.", show_default="oak")] = None,
+    ) -> None:
+        """Probe."""
+
+    verb(run)
+    assert cli.run(["probe", "--help"]) == 0
+    first, _, more = capsys.readouterr().out.partition("\nMore options:\n")
+    assert re.search(r"Options:\n  -o, --out PATH|Options:\n  --out, -o PATH", first)
+    assert "[default: (oak)]" in first
+    assert first.rstrip().endswith("w2m probe      an example")
+    assert more == "  --seed N  Choose the room.  [default: 7]\n"
 
 
 def test_help_imports_nothing_heavy():

@@ -1,4 +1,4 @@
-"""``w2m demo``: a furnished room is generated, scanned virtually and rebuilt in Minecraft."""
+"""Generate a furnished room, scan it virtually and rebuild it in Minecraft: ``w2m demo``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,24 +13,29 @@ from world2minecraft.cli.build.options import (
     style_note,
     with_build_options,
 )
+from world2minecraft.cli.panels import OutFolder, more_option
 
 EXAMPLES = """\
-w2m demo                        a living room, to OUT/
-w2m demo --kind kitchen         another room
-w2m demo --seed 7 --out other   another one again
+w2m demo                      build a living room in OUT/
+w2m demo --kind kitchen       build a kitchen
+w2m demo --seed 7 -o other    build another living room in other/
 """
 DEMO_SEED = 5
 DEMO_FRAMES = 40
-MIN_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
+MIN_FRAMES = 3  # With fewer, how well the poses fit cannot be measured.
 
 
 def run(
-    out: Annotated[Path, typer.Option("--out", help="The folder of the results.")] = Path("OUT"),
+    out: OutFolder = Path("OUT"),
     kind: Annotated[
-        str, typer.Option("--kind", help="living, bed, kitchen, dining or study.")
+        str, typer.Option("--kind", help="Generate a living, bed, kitchen, dining or study room.")
     ] = "living",
-    seed: Annotated[int, typer.Option("--seed", help="Which room of its kind.")] = DEMO_SEED,
-    frames: Annotated[int, typer.Option("--frames", help="Frames of the scan.")] = DEMO_FRAMES,
+    seed: Annotated[
+        int, typer.Option("--seed", help="Choose another room of this kind.")
+    ] = DEMO_SEED,
+    frames: Annotated[
+        int, more_option("--frames", help="Take this many frames in the virtual scan.")
+    ] = DEMO_FRAMES,
     blocks_per_metre: Scale = 4.0,
     style: Style = None,
     palette: PaletteName = None,
@@ -38,18 +43,18 @@ def run(
 ) -> None:
     """Generate a room, scan it with a virtual depth camera and build it as a world.
 
-    No download, no camera and no game is needed. The truth is known, so the report scores the
-    result against it.
+    No download, camera or game is needed. The room's ground truth is known, so the report scores
+    the result against it.
 
     Args:
-        out: the folder to write; the scan lies in its folder ``capture``.
+        out: the folder to write; the scan is written to its folder ``capture``.
         kind: the kind of room.
         seed: the room's seed.
-        frames: how many frames the virtual camera takes.
+        frames: the number of frames of the virtual camera.
         blocks_per_metre: the scale.
         style: what furniture is made of.
-        palette: which blocks may be used.
-        formats: further forms of the build.
+        palette: the blocks that may be used.
+        formats: further file formats of the build.
     """
     from world2minecraft.cli.outcome import print_compile_note, print_outcome
     from world2minecraft.cli.progress import show_progress
@@ -76,7 +81,7 @@ def run(
 
 
 def check_figures(seed: int, frames: int) -> None:
-    """Raise UsageError, before any work, where there is no such room or scan."""
+    """Raise UsageError for a seed or a number of frames that is out of range."""
     from world2minecraft.core.errors import UsageError
 
     if seed < 0:

@@ -1,9 +1,9 @@
-"""The verbs of ``w2m``: one line here, one file beside, imported when its verb is called.
+"""List the verbs of ``w2m`` and load each one's module when it is called.
 
 A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``; the command
-of a folder is ``cli.render.command``) with a function ``run`` whose typed parameters are its
-arguments, as typer reads them, and a text ``EXAMPLES`` that its ``--help`` ends with. ``run``
-returns an exit code, or None for 0.
+of a folder is ``cli.render.command``) with a function ``run``, whose typed parameters typer reads
+as arguments and options, and a text ``EXAMPLES`` for its help. ``run`` returns an exit code, or
+None for 0. Options declared with ``cli.panels.MORE`` are listed in a section of their own.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,81 +17,113 @@ from typer.core import TyperCommand, TyperGroup
 
 from world2minecraft import __version__
 from world2minecraft.cli.failures import STOPPED
+from world2minecraft.cli.panels import MORE
 
+# The verbs under the headings of ``w2m --help``, each with its one-line summary.
+VERB_GROUPS: dict[str, dict[str, str]] = {
+    "Start": {
+        "demo": "Generate a room, scan it virtually and build it as a world.",
+        "scan": "Show what a capture contains, without reconstructing it.",
+        "reconstruct": "Turn a capture into a Minecraft world, with a report.",
+        "install": "Copy a built world into the game's saves folder.",
+        "doctor": "Check that this machine can run the program.",
+    },
+    "Reconstruct": {
+        "join": "Join reconstructions of single rooms into one home.",
+        "convert": "Convert between rooms, builds, worlds, schematics and 3D files.",
+        "render": "Render a build as images, depth maps, walks and turntables.",
+    },
+    "Edit": {
+        "forge": "Open the SceneForge editor in the browser.",
+        "forge stats": "Report how much editing rooms needed.",
+        "build": "Build a room as a world, into an existing one or on a server.",
+        "clean": "Repair typical reconstruction errors in a built room.",
+        "undo": "Undo the last build into a world.",
+    },
+    "Generate": {
+        "rooms generate": "Generate a furnished room or house with exact ground truth.",
+        "rooms scan": "Scan a generated room or house with a virtual depth camera.",
+    },
+    "Data sets": {
+        "dataset build": "Build a labelled data set of generated houses or worlds.",
+        "dataset rooms": "Build a labelled data set of photo-like pictures of rooms.",
+        "dataset tour": "Plan the views of a world, or read those of screenshots.",
+        "dataset map": "Show how blocks are labelled, and export the table.",
+        "dataset stats": "Summarise a data set beside the paper's figures.",
+        "dataset quality": "Measure the naturalness and sharpness of pictures.",
+        "dataset show": "Draw one sample of a data set.",
+        "dataset sheet": "Draw a contact sheet of a data set or a tour.",
+        "dataset verify": "Verify the checksums of a data set.",
+        "dataset export": "Export a data set in the form of NYUv2, OccScanNet ...",
+        "dataset import": "Import NYUv2, OccScanNet and similar data sets.",
+    },
+    "Networks": {
+        "train": "Train an occupancy network on one or more data sets.",
+        "export": "Export a trained network to ONNX.",
+        "occupy": "Predict the class of each cell of a picture or room.",
+        "evaluate occupancy": "Score predictions by the published protocols.",
+    },
+    "Navigation": {
+        "vln build": "Build navigation tasks from walks through scenes.",
+        "vln reword": "Rephrase the instructions of a navigation set.",
+        "vln annotate": "Write instructions for walks on a page in the browser.",
+        "vln stats": "Summarise a navigation set, with the scores of guessing.",
+        "vln export": "Export navigation data for trainers and simulators.",
+        "vln run": "Run an agent on an instruction, with scores and video.",
+        "vln evaluate": "Evaluate a model on the items of a navigation set.",
+        "vln table": "Print the results of navigation runs side by side.",
+        "vln server": "Check and prepare a game server for an agent.",
+    },
+    "Evaluate": {
+        "evaluate reconstruction": "Score a reconstruction against ground truth.",
+        "evaluate scannet": "Create ground truth from a ScanNet scene.",
+        "compare layouts": "Score the layouts of other methods and ours.",
+        "compare build": "Build layouts of other methods as worlds.",
+        "compare judge": "Grade rooms with a vision-language model.",
+        "compare describe": "Describe a room as text-to-layout methods do.",
+        "paper": "Print the paper's tables beside our results.",
+        "paper figure": "Draw a room like the figures of the paper.",
+    },
+    "Tools": {
+        "furniture list": "List the furniture templates.",
+        "furniture show": "Show one furniture template.",
+        "furniture add": "Add a furniture template from a schematic.",
+        "furniture sheet": "Draw all furniture templates on one sheet.",
+        "palettes": "List the block palettes, or check one of your own.",
+    },
+}
 VERBS: dict[str, str] = {
-    "demo": "Try this first: a room is generated, scanned, built.",
-    "scan": "Tell what a capture holds, before any long work.",
-    "reconstruct": "Turn a capture into a Minecraft world, with a report.",
-    "build": "Build a room: a world of its own, in yours, on a server.",
-    "forge": "See every stage of a room in the browser, and mend it.",
-    "forge stats": "Tell how much work edited rooms were.",
-    "join": "Join finished runs of single rooms into one home.",
-    "rooms generate": "Generate a furnished room or a house, with exact truth.",
-    "rooms scan": "Scan a generated room or house with a virtual depth camera.",
-    "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
-    "evaluate scannet": "Make a truth of a ScanNet scene of yours, to score runs by.",
-    "occupy": "Say what each cell is: of a picture's grid, or of a captured room.",
-    "train": "Train an occupancy network on any data sets.",
-    "export": "Write a trained network as ONNX, which runs without torch.",
-    "evaluate occupancy": "Score a network or saved predictions by the published protocols.",
-    "dataset stats": "Tell what a data set holds, beside the paper's.",
-    "dataset quality": "Measure how natural and how sharp pictures are.",
-    "furniture list": "List the furniture that rooms are built of.",
-    "furniture show": "Show one piece of furniture.",
-    "furniture add": "Add a piece of your own from a schematic.",
-    "furniture sheet": "Draw all furniture on one sheet.",
-    "palettes": "List the palettes, or check one of your own.",
-    "dataset map": "Tell what blocks of any world stand for; export the table.",
-    "render": "Draw a build: pictures, depth, ids, walks and turntables.",
-    "dataset export": "Write a data set as other loaders read it: NYUv2, OccScanNet ...",
-    "dataset import": "Read NYUv2, OccScanNet and such into a data set of ours.",
-    "dataset show": "Show one sample of any data set as a picture.",
-    "convert": "Turn any form of a room or build into any other.",
-    "clean": "Mend a built room as a person would.",
-    "install": "Copy a built world to where the game finds it.",
-    "undo": "Take back what was last built into a world.",
-    "dataset build": "Make a labelled data set of generated houses, or of worlds of yours.",
-    "dataset rooms": "Make a labelled data set of photo-like pictures of generated rooms.",
-    "dataset verify": "Check every byte of a data set.",
-    "dataset tour": "Plan which pictures of a world are taken, or take those of screenshots.",
-    "dataset sheet": "Draw many pictures of a data set or a tour on one page.",
-    "vln build": "Make navigation questions of walks through scenes.",
-    "vln reword": "Let a navigation set ask in the words of people, or of a model.",
-    "vln stats": "Tell what a navigation set holds, and what guessing scores.",
-    "vln export": "Write navigation data as trainers and simulators read it.",
-    "vln run": "Let an agent walk by an instruction: live, scored and on film.",
-    "vln annotate": "Write instructions for walks of a set, on a page in the browser.",
-    "vln server": "Check, and put in place, what a body on a game server needs.",
-    "vln evaluate": "Ask a model the items of a navigation set.",
-    "vln table": "Print the results of navigation runs side by side.",
-    "compare layouts": "Score layouts of rooms, of other methods and ours, by one rule.",
-    "compare build": "Build layouts of other methods as Minecraft worlds, faults and all.",
-    "compare judge": "Let a vision-language model grade built rooms, all shown alike.",
-    "compare describe": "Say a room in the words that text-to-layout methods start from.",
-    "paper": "Print the paper's tables, with ours beside and how it was measured.",
-    "paper figure": "Draw a room as the paper does: photo, world, cells, construction.",
-    "doctor": "Check that this machine can run the program.",
+    verb: summary for group in VERB_GROUPS.values() for verb, summary in group.items()
+}
+
+# The first words of verbs of two words, each with the summary of its own help.
+FAMILIES = {
+    "compare": "Compare rooms with those of other methods.",
+    "dataset": "Build, inspect and exchange occupancy data sets.",
+    "evaluate": "Score reconstructions and networks against ground truth.",
+    "furniture": "Inspect and extend the library of furniture templates.",
+    "rooms": "Generate rooms and houses, and scan them virtually.",
+    "vln": "Build, run and score vision-language navigation.",
 }
 
 # Verbs of one word whose folder holds more than the command.
 FOLDERS = ("build", "forge", "paper", "render", "train")
 
-# What stands in the help for a value that has no word of its own, by what its type says.
+# The placeholder of a value without a metavar, by its type.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
 
 EXAMPLES = """\
-w2m demo                                  a room to OUT/, nothing needed
-w2m scan my_scan                          what is in this folder?
-w2m reconstruct my_scan --out OUT         the whole way
-w2m install OUT                           the world comes into your game
-w2m render OUT --tour --out walk.gif      a walk through it, as a picture that moves
-w2m doctor                                check this machine
-w2m convert house.schem worlds/house      a schematic becomes a world
+w2m demo                                  build a generated room in OUT/
+w2m scan my_scan                          show what a capture contains
+w2m reconstruct my_scan --out OUT         turn it into a world
+w2m install OUT                           copy the world into the game
+w2m render OUT --tour --out walk.gif      render a walk through it
+w2m convert house.schem worlds/house      convert a schematic into a world
 """
 
 
 def call(words: Sequence[str]) -> int:
-    """Run the command that ``words`` say and return its exit code."""
+    """Run the command given by ``words`` and return its exit code."""
     result = typer.main.get_command(_app()).main(
         args=list(words), prog_name="w2m", standalone_mode=False
     )
@@ -101,12 +133,16 @@ def call(words: Sequence[str]) -> int:
 
 
 class VerbCommand(TyperCommand):
-    """A verb whose help ends with its examples, printed as they are written."""
+    """The command of one verb.
+
+    Its help shows arguments, options and examples first, and the options of the panel ``MORE``
+    last.
+    """
 
     examples = ""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Read the words; what is wrong with them is said with this verb's help to look at."""
+        """Parse the arguments; a usage error refers to the help of this verb."""
         try:
             return super().parse_args(ctx, args)
         except Exception as error:
@@ -116,7 +152,7 @@ class VerbCommand(TyperCommand):
             raise
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """Return what follows the verb: names in capitals, in brackets what may be left out."""
+        """Return the arguments in capitals, the optional ones in brackets."""
         words = (
             (f"{one.metavar}" if one.required else f"[{one.metavar}]") + "..." * (one.nargs != 1)
             for one in self.params
@@ -125,47 +161,57 @@ class VerbCommand(TyperCommand):
         return ["[OPTIONS]", *words]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the arguments, then the options, each with its line."""
-        for kind in ("argument", "option"):
-            rows = [
-                (one.metavar or record[0] if kind == "argument" else record[0], record[1])
-                for one in self.get_params(ctx)
-                if one.param_type_name == kind and (record := one.get_help_record(ctx))
-            ]
-            if rows:
-                with formatter.section(f"{kind.capitalize()}s"):
-                    formatter.write_dl(rows)
+        """Write the arguments, then the options that are not in the panel ``MORE``."""
+        self._write_section(ctx, formatter, "Arguments", "argument")
+        self._write_section(ctx, formatter, "Options", "option")
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
-        """Write the examples under the options."""
+        """Write the examples, then the options of the panel ``MORE``."""
         _write_examples(formatter, self.examples)
+        self._write_section(ctx, formatter, MORE, "option")
+
+    def _write_section(self, ctx: Any, formatter: Any, heading: str, kind: str) -> None:
+        rows = [
+            (one.metavar or record[0] if kind == "argument" else record[0], record[1])
+            for one in self.get_params(ctx)
+            if one.param_type_name == kind
+            and (getattr(one, "rich_help_panel", None) == MORE) == (heading == MORE)
+            and (record := one.get_help_record(ctx))
+        ]
+        if rows:
+            with formatter.section(heading):
+                formatter.write_dl(rows)
 
 
 class VerbGroup(TyperGroup):
-    """The verbs that begin with ``prefix``, all for an empty one. Listing them imports none."""
+    """The verbs that begin with ``prefix``, or all verbs. Listing them imports no module."""
 
     prefix = ""
 
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments; without any, show the help."""
+        return super().parse_args(ctx, args or ["--help"])
+
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of the verbs."""
-        return list(self._lines())
+        return list(self._summaries())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Import the verb's module and make its command; the first of two words is a group."""
+        """Return the command of a verb, or the group of the verbs that begin with a word."""
         name = f"{self.prefix}{cmd_name}"
         if name in VERBS:
             return load(name)
         return _family(name) if any(verb.startswith(f"{name} ") for verb in VERBS) else None
 
-    def _lines(self) -> dict[str, str]:
+    def _summaries(self) -> dict[str, str]:
         start = len(self.prefix)
         return {verb[start:]: VERBS[verb] for verb in VERBS if verb.startswith(self.prefix)}
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Find the verb that ``args`` begin with.
+        """Return the verb that ``args`` begin with.
 
         Raises:
-            UnknownNameError: there is none; the message suggests the nearest.
+            UnknownNameError: no verb has this name; the message suggests the nearest.
         """
         both = " ".join(args[:2])
         if len(args) > 1 and both in VERBS:
@@ -178,9 +224,14 @@ class VerbGroup(TyperGroup):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the table of verbs from their lines here."""
-        with formatter.section("Verbs"):
-            formatter.write_dl(list(self._lines().items()))
+        """Write the verbs with their summaries, all verbs under the headings of their groups."""
+        if self.prefix:
+            with formatter.section("Verbs"):
+                formatter.write_dl(list(self._summaries().items()))
+            return
+        for heading, summaries in VERB_GROUPS.items():
+            with formatter.section(heading):
+                formatter.write_dl(_indent_families(summaries))
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
         """Write the examples under the table."""
@@ -188,8 +239,19 @@ class VerbGroup(TyperGroup):
             _write_examples(formatter, EXAMPLES)
 
 
+def _indent_families(summaries: dict[str, str]) -> list[tuple[str, str]]:
+    """Return the rows of a group; a first word is written once for the verbs that share it."""
+    rows, previous = [], ""
+    for verb, summary in summaries.items():
+        first, _, second = verb.partition(" ")
+        name = " " * len(first) + f" {second}" if second and first == previous else verb
+        rows.append((name, summary))
+        previous = first
+    return rows
+
+
 def load(verb: str) -> Any:
-    """Import a verb's module and return its command."""
+    """Import the module of a verb and return its command."""
     words = verb.split()
     module = import_module(_module_of(words))
     app = typer.Typer(rich_markup_mode=None, add_completion=False)
@@ -208,35 +270,35 @@ def _module_of(words: list[str]) -> str:
 
 
 def _name_values(command: Any, function: Callable[..., Any]) -> None:
-    """Give each argument and value its word in capitals, the same in help and errors."""
-    told = signature(function).parameters
+    """Give each argument and value its placeholder, the same in help and errors."""
+    declared = signature(function).parameters
     for one in command.params:
         if one.param_type_name == "argument":
             word = (one.metavar or one.name.upper()).removesuffix("...")
             one.metavar = word[1:-1] if word[0] + word[-1] == "[]" else word
-        elif one.metavar is None and not one.is_flag and one.name in told:
-            kind = told[one.name].annotation  # Annotated[...], of which the type is the first.
+        elif one.metavar is None and not one.is_flag and one.name in declared:
+            kind = declared[one.name].annotation  # Annotated[...], of which the type is the first.
             kind = str(kind.__origin__ if hasattr(kind, "__metadata__") else kind)
             one.metavar = next((VALUE_WORDS[part] for part in VALUE_WORDS if part in kind), None)
 
 
 def _family(first: str) -> Any:
-    """Return the group of the verbs that begin with a word; alone it shows its help."""
+    """Return the group of the verbs that begin with a word; without a verb it shows its help."""
     app = typer.Typer(
-        cls=VerbGroup, rich_markup_mode=None, add_completion=False, no_args_is_help=True
+        cls=VerbGroup, rich_markup_mode=None, add_completion=False, subcommand_metavar="VERB ..."
     )
-    app.callback(help=f"The verbs that begin with {first}.")(_no_options)
+    app.callback(help=FAMILIES.get(first, f"Run a verb of {first}."))(_no_options)
     group = typer.main.get_command(app)
     group.name, group.prefix = first, f"{first} "  # type: ignore[attr-defined]
     return group
 
 
 def _no_options() -> None:
-    """Take nothing: a group's own help."""
+    """Take no options: a group of verbs has its help alone."""
 
 
 def _help(verb: str, function: Callable[..., Any]) -> str:
-    """Return the verb's line and what its docstring says after its first line, up to the Args."""
+    """Return the verb's summary and its docstring, without the first line and the sections."""
     details = cleandoc(function.__doc__ or "").partition("\n\n")[2]
     for section in ("Args:", "Raises:"):
         details = details.partition(section)[0]
@@ -247,7 +309,7 @@ def _app() -> typer.Typer:
     app = typer.Typer(
         cls=VerbGroup, rich_markup_mode=None, add_completion=False, subcommand_metavar="VERB ..."
     )
-    app.callback(help="Real rooms become Minecraft scenes.")(_global_options)
+    app.callback(help="Turn real rooms into Minecraft worlds.")(_global_options)
     return app
 
 
@@ -261,15 +323,15 @@ def _global_options(
     _version: Annotated[
         bool,
         typer.Option(
-            "--version", is_eager=True, callback=_show_version, help="Show the version and leave."
+            "--version", is_eager=True, callback=_show_version, help="Show the version and exit."
         ),
     ] = False,
     _traceback: Annotated[
         bool,
-        typer.Option("--traceback", help="When something goes wrong, show where. Works anywhere."),
+        typer.Option("--traceback", help="Show a traceback on errors; allowed anywhere."),
     ] = False,
 ) -> None:
-    """Take the options that stand before the verb; both are acted on elsewhere."""
+    """Accept the options before the verb; ``_show_version`` and ``cli.run`` act on them."""
 
 
 def _write_examples(formatter: Any, examples: str) -> None:
