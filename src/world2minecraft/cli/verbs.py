@@ -6,11 +6,12 @@ as arguments and options, and a text ``EXAMPLES`` for its help. ``run`` returns 
 None for 0. Options declared with ``cli.panels.MORE`` are listed in a section of their own.
 """
 
+import os
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import cleandoc, signature
 from keyword import iskeyword
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -90,6 +91,8 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "furniture add": "Add a furniture template from a schematic.",
         "furniture sheet": "Draw all furniture templates on one sheet.",
         "palettes": "List the block palettes, or check one of your own.",
+        "settings": "List the keys of --set with units, defaults and meanings.",
+        "completion": "Print a script that completes w2m commands in a shell.",
     },
 }
 VERBS: dict[str, str] = {
@@ -109,6 +112,9 @@ FAMILIES = {
 # Verbs of one word whose folder holds more than the command.
 FOLDERS = ("build", "forge", "paper", "render", "train")
 
+# A shell's completion script sets this variable when it asks for names.
+COMPLETE_VARIABLE = "_W2M_COMPLETE"
+
 # The placeholder of a value without a metavar, by its type.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
 
@@ -124,12 +130,40 @@ w2m convert house.schem worlds/house      convert a schematic into a world
 
 def call(words: Sequence[str]) -> int:
     """Run the command given by ``words`` and return its exit code."""
+    if COMPLETE_VARIABLE in os.environ:
+        from typer.completion import completion_init  # type: ignore[attr-defined]
+
+        completion_init()
     result = typer.main.get_command(_app()).main(
         args=list(words), prog_name="w2m", standalone_mode=False
     )
     if result == STOPPED:  # typer turns an interrupt into this code; older ones raise it.
         raise KeyboardInterrupt
     return result if isinstance(result, int) else 0
+
+
+class Completion(NamedTuple):
+    """One name that a shell may complete a word to, as typer reads it."""
+
+    value: str
+    help: str
+    type: str = "plain"
+
+
+def complete_verbs(prefix: str, beginning: str) -> list[Any]:
+    """Return the words that may follow ``prefix`` in a verb, without importing any verb.
+
+    Example:
+        >>> [one.value for one in complete_verbs("rooms ", "")]
+        ['generate', 'scan']
+    """
+    start = f"{prefix}{beginning}"
+    words = {}
+    for verb in (verb for verb in VERBS if verb.startswith(start)):
+        word = verb[len(prefix) :].partition(" ")[0]
+        name = f"{prefix}{word}"
+        words[word] = Completion(word, VERBS.get(name) or FAMILIES.get(name, ""))
+    return list(words.values())
 
 
 class VerbCommand(TyperCommand):
@@ -192,6 +226,15 @@ class VerbGroup(TyperGroup):
         """Parse the arguments; without any, show the help."""
         return super().parse_args(ctx, args or ["--help"])
 
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        """Return the verbs that fit, or options where the word begins with a dash."""
+        own = self.prefix.strip()
+        if own in VERBS and not incomplete[:1].isalnum():
+            return load(own).shell_complete(ctx, incomplete)
+        if incomplete.startswith("-"):
+            return super().shell_complete(ctx, incomplete)
+        return complete_verbs(self.prefix, incomplete)
+
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of the verbs."""
         return list(self._summaries())
@@ -201,7 +244,7 @@ class VerbGroup(TyperGroup):
         name = f"{self.prefix}{cmd_name}"
         if name in VERBS:
             return load(name)
-        return _family(name) if any(verb.startswith(f"{name} ") for verb in VERBS) else None
+        return _family(cmd_name, self.prefix)
 
     def _summaries(self) -> dict[str, str]:
         start = len(self.prefix)
@@ -217,7 +260,11 @@ class VerbGroup(TyperGroup):
         if len(args) > 1 and both in VERBS:
             # Its first word may be a verb of its own, which would take the second for a file.
             return both, load(both), args[2:]
+        if ctx.resilient_parsing and len(args) == 1 and (group := _family(args[0], self.prefix)):
+            return args[0], group, []  # A shell may complete "forge st" to "forge stats".
         if self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
+            if ctx.resilient_parsing:  # A shell completes a word after an unknown one.
+                return None, None, args
             from world2minecraft.core.errors import UnknownNameError
 
             raise UnknownNameError("verb", f"{self.prefix}{args[0]}", VERBS)
@@ -282,8 +329,11 @@ def _name_values(command: Any, function: Callable[..., Any]) -> None:
             one.metavar = next((VALUE_WORDS[part] for part in VALUE_WORDS if part in kind), None)
 
 
-def _family(first: str) -> Any:
-    """Return the group of the verbs that begin with a word; without a verb it shows its help."""
+def _family(word: str, prefix: str = "") -> Any:
+    """Return the group of the verbs that begin with a word, or None where none does."""
+    first = f"{prefix}{word}"
+    if not any(verb.startswith(f"{first} ") for verb in VERBS):
+        return None
     app = typer.Typer(
         cls=VerbGroup, rich_markup_mode=None, add_completion=False, subcommand_metavar="VERB ..."
     )

@@ -1,21 +1,47 @@
-"""Declare the parameters of a stage: each with its default, its unit, and where its number is from.
+"""Declare and describe the parameters of a stage.
 
-A stage's parameters are a frozen dataclass whose fields are made by ``parameter``. What lists
-parameters reads these declarations: no name is written down twice.
+A stage's parameters are a frozen dataclass whose fields are made by ``parameter``, each with its
+default, its unit and the origin of the default; the docstring of the class says what each one
+means. Everything that lists parameters reads these declarations.
 """
 
-from dataclasses import field, fields
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, is_dataclass
+from fnmatch import fnmatchcase
+from inspect import cleandoc
 from typing import Any
+
+# The first line of an entry of a docstring: one or more names, a colon, the meaning.
+ENTRY = re.compile(r"(?P<names>[a-z][\w*]*(?:, [a-z][\w*]*)*): (?P<meaning>.*)")
+
+
+@dataclass(frozen=True)
+class ParameterInfo:
+    """One parameter as a listing shows it.
+
+    key: its name, after the names of the groups that hold it: ``find.cluster_radius``.
+    default: its default value.
+    unit: such as ``m``; nothing for a name or a switch.
+    meaning: one sentence or more, of the docstring of its class.
+    origin: where the default comes from.
+    """
+
+    key: str
+    default: Any
+    unit: str
+    meaning: str
+    origin: str
 
 
 def parameter(default: Any = None, *, unit: str = "", origin: str = "", **facts: Any) -> Any:
     """Return a dataclass field that declares a parameter.
 
     Args:
-        default: its value where nobody chooses another; a class makes a fresh value of its own.
+        default: its default value; a class is called to make a new value for each instance.
         unit: such as ``m`` or ``cells``; nothing for a name, a switch or a group.
         origin: where the default comes from.
-        **facts: what else listings ask for, such as the bounds that a check names.
+        **facts: further facts for listings, such as the bounds that a check names.
     """
     metadata = {"unit": unit, "origin": origin, **facts}
     if isinstance(default, type):
@@ -47,3 +73,68 @@ def fact_by_name(parameters: Any, fact: str) -> dict[str, Any]:
     return {
         entry.name: entry.metadata[fact] for entry in fields(parameters) if fact in entry.metadata
     }
+
+
+def describe_parameters(parameters: type) -> tuple[ParameterInfo, ...]:
+    """Return a description of each parameter of a class and of its groups, in order.
+
+    Parameters that only copy another one, and dictionaries, which have no keys of their own, are
+    left out.
+
+    Example:
+        >>> @dataclass(frozen=True)
+        ... class Sweep:
+        ...     '''How planes are swept.
+        ...
+        ...     planes: depths tried for each pixel.
+        ...     '''
+        ...
+        ...     planes: int = parameter(64, unit="planes")
+        >>> describe_parameters(Sweep)[0].meaning
+        'depths tried for each pixel'
+    """
+    return tuple(_describe(parameters(), ""))
+
+
+def _describe(value: Any, prefix: str) -> Iterator[ParameterInfo]:
+    entries = docstring_entries(type(value).__doc__ or "")
+    for entry in fields(value):
+        inner, facts = getattr(value, entry.name), entry.metadata
+        if is_dataclass(inner):
+            yield from _describe(inner, f"{prefix}{entry.name}.")
+        elif "copy_of" not in facts and not isinstance(inner, dict):
+            meaning = _meaning(entry.name, entries)
+            unit, origin = facts.get("unit", ""), facts.get("origin", "")
+            yield ParameterInfo(prefix + entry.name, inner, unit, meaning, origin)
+
+
+def docstring_entries(docstring: str) -> dict[str, str]:
+    """Return the entries ``name: meaning.`` of a docstring, by the text before the colon.
+
+    An entry may name several parameters (``width, height: ...``), or all that match a pattern
+    (``bed_*: ...``). Its further lines are indented.
+
+    Example:
+        >>> docstring_entries("bed_*: a side of a bed.")
+        {'bed_*': 'a side of a bed'}
+    """
+    entries: dict[str, str] = {}
+    names = ""
+    for line in cleandoc(docstring).splitlines():
+        if found := ENTRY.fullmatch(line):
+            names = found["names"]
+            entries[names] = found["meaning"]
+        elif names and line.startswith(" "):
+            entries[names] += f" {line.strip()}"
+        else:
+            names = ""
+    return {names: text.removesuffix(".") for names, text in entries.items()}
+
+
+def _meaning(name: str, entries: dict[str, str]) -> str:
+    """Return the text of the entry of a parameter, else of the first that mentions it."""
+    for names, text in entries.items():
+        if any(fnmatchcase(name, pattern) for pattern in names.split(", ")):
+            return text
+    mentions = re.compile(rf"\b{re.escape(name)}\b")
+    return next((text for text in entries.values() if mentions.search(text)), "")

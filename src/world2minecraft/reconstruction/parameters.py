@@ -34,6 +34,7 @@ class Parameters:
     plan: the path of a RoomPlan of the same room, as more evidence.
     labeller: ``auto`` takes ``completion`` where depth was measured and cells are of the size that
         its network learnt; else ``votes`` where anything voted, or ``geometric``.
+    mc_version: the version of Minecraft that the world is written for.
     mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells what that was.
     formats: further forms of the build, such as ``litematic,nbt,glb``.
     known: a length by its name, such as ``("table height", 0.72)``.

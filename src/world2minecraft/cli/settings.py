@@ -1,0 +1,88 @@
+"""List the keys of ``--set`` with their units, defaults and meanings: ``w2m settings``."""
+
+import json
+import shutil
+import textwrap
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.core.parameters import ParameterInfo
+
+EXAMPLES = """\
+w2m settings                      list all keys
+w2m settings find                 list the keys that begin with find.
+w2m settings fuse --json          print them as JSON
+"""
+INDENT = "    "
+MAX_WIDTH = 100
+
+
+def run(
+    prefix: Annotated[
+        str | None, typer.Argument(help="A group such as find, or a single key.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.")] = False,
+) -> None:
+    """List the keys of --set.
+
+    Each key is followed by its default, its unit and what it means. Change one with
+    --set KEY=VALUE. Keys that begin with capture. are options of the capture's reader and are
+    described in the documentation of each format.
+
+    Args:
+        prefix: the group or key to list, or None for all.
+        as_json: print a JSON list instead of text.
+
+    Raises:
+        UnknownNameError: no key begins with ``prefix``; the message suggests the nearest.
+    """
+    found = select_settings(prefix)
+    if as_json:
+        print(json.dumps([vars(one) for one in found], indent=2))
+        return
+    width = min(MAX_WIDTH, shutil.get_terminal_size().columns)
+    for one in found:
+        print("\n".join(format_setting(one, width)))
+
+
+def select_settings(prefix: str | None) -> "tuple[ParameterInfo, ...]":
+    """Return the settings whose key is ``prefix`` or begins with it and a dot; None means all."""
+    from world2minecraft.core.errors import UnknownNameError
+    from world2minecraft.core.parameters import describe_parameters
+    from world2minecraft.reconstruction.parameters import Parameters, parameter_keys
+
+    accepted = set(parameter_keys())
+    settings = tuple(one for one in describe_parameters(Parameters) if one.key in accepted)
+    if prefix is None:
+        return settings
+    start = prefix.rstrip(".")
+    found = tuple(one for one in settings if f"{one.key}.".startswith(f"{start}."))
+    if not found:
+        groups = dict.fromkeys(one.key.partition(".")[0] for one in settings if "." in one.key)
+        raise UnknownNameError("setting", prefix, [*groups, *(one.key for one in settings)])
+    return found
+
+
+def format_setting(setting: "ParameterInfo", width: int) -> Iterator[str]:
+    """Yield the lines of one setting: ``key = default unit``, then the meaning, indented.
+
+    Example:
+        >>> from world2minecraft.core.parameters import ParameterInfo
+        >>> info = ParameterInfo("clean.hole_m", 0.2, "m", "holes up to this width are closed", "")
+        >>> list(format_setting(info, 80))
+        ['clean.hole_m = 0.2 m', '    Holes up to this width are closed.']
+    """
+    yield " ".join(filter(None, (f"{setting.key} = {_plain(setting.default)}", setting.unit)))
+    meaning = setting.meaning[:1].upper() + setting.meaning[1:] + "."
+    yield from textwrap.wrap(
+        meaning.replace("``", ""), width, initial_indent=INDENT, subsequent_indent=INDENT
+    )
+
+
+def _plain(default: object) -> str:
+    if isinstance(default, bool):
+        return "yes" if default else "no"
+    return "(none)" if default in ("", None) else str(default)
