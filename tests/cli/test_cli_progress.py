@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from world2minecraft.cli import progress
+from world2minecraft.cli import progress, time_left
 
 
 class Terminal(io.StringIO):
@@ -28,7 +28,8 @@ def test_a_stage_is_two_lines():
     lines = progress.LineProgress(stream, clock=ticking())
     for done in range(41):
         lines("fuse", done, 40)
-    assert stream.getvalue() == "fuse ...\nfuse done in 20.0 s\n"
+    text = "Fusing depth into voxels"
+    assert stream.getvalue() == f"{text} ...\n{text}: done in 20.5 s\n"
 
 
 def test_a_long_stage_prints_its_progress_and_time_left():
@@ -38,21 +39,22 @@ def test_a_long_stage_prints_its_progress_and_time_left():
         lines("images", done, 2000, "9.1 a second")
         now[0] += 11
     told = stream.getvalue().splitlines()
-    assert told[1] == "images 300 of 2,000, 9.1 a second, 3 min left"
-    assert told[-2] == "images 1,800 of 2,000, 9.1 a second, 22 s left"
-    assert told[-1] == "images done in 220.0 s (9.1 a second)"
+    assert told[1] == "images: 300 of 2,000, 9.1 a second, 3 min left"
+    assert told[-2] == "images: 1,800 of 2,000, 9.1 a second, 22 s left"
+    assert told[-1] == "images: done in 220.0 s (9.1 a second)"
     assert len(told) == 8
 
 
 def test_a_stage_of_unknown_length_ends_with_the_next():
     stream = io.StringIO()
     lines = progress.LineProgress(stream, clock=ticking())
-    lines("scan", 3, 0, "3 frames")
-    lines("fuse", 0, 2)
+    lines("mesh", 3, 0, "3 parts")
+    lines("write", 0, 2)
     lines.finish()
     lines.finish()
     assert stream.getvalue() == (
-        "scan ...\nscan done in 0.5 s (3 frames)\nfuse ...\nfuse done in 0.5 s\n"
+        "Reading the mesh ...\nReading the mesh: done in 1.0 s (3 parts)\n"
+        "Writing files ...\nWriting files: done in 1.0 s\n"
     )
 
 
@@ -61,7 +63,7 @@ def test_a_stage_that_comes_again_is_shown_again():
     lines = progress.LineProgress(stream, clock=ticking())
     lines("fuse", 1, 1)
     lines("fuse", 1, 1)
-    assert stream.getvalue().count("fuse ...") == 2
+    assert stream.getvalue().count("voxels ...") == 2
 
 
 def test_shown_ends_the_last_stage():
@@ -76,7 +78,7 @@ def test_a_stage_that_failed_is_not_called_done():
     with pytest.raises(KeyError), progress.show_progress(stream) as report:
         report("scan", 0, 9)
         raise KeyError
-    assert stream.getvalue() == "scan ...\n"
+    assert stream.getvalue() == "Reading the capture ...\n"
 
 
 def test_a_terminal_gets_a_bar_with_the_notes_as_they_are():
@@ -86,7 +88,41 @@ def test_a_terminal_gets_a_bar_with_the_notes_as_they_are():
         report("fuse", 4, 4, "frame[red].png")
         report("label", 1, 1)
     text = stream.getvalue()
-    assert "fuse" in text
+    assert "Fusing depth into voxels" in text
     assert "100%" in text
     assert "frame[red].png" in text
-    assert "label" in text
+    assert "Labelling voxels" in text
+    assert progress.WHOLE_RUN not in text
+
+
+def test_a_terminal_shows_one_bar_for_the_whole_run():
+    stream = Terminal()
+    with progress.show_progress(stream) as report:
+        report("scan", 4, 4)
+        report("fuse", 0, 4)
+    lines = [line for line in stream.getvalue().splitlines() if progress.WHOLE_RUN in line]
+    assert lines
+    assert "100%" in lines[-1]
+
+
+def test_lines_state_the_time_left_after_the_first_stage():
+    stream, now = io.StringIO(), [0.0]
+    lines = progress.LineProgress(stream, lambda: now[0], progress.WholeRun(until="register"))
+    lines("scan", 0, 1)
+    now[0] = 8.0
+    lines("scan", 1, 1)
+    lines("register", 0, 40)
+    printed = stream.getvalue().splitlines()
+    assert printed[0] == "Reading the capture ..."
+    assert printed[-1] == "Refining camera poses ... (about 4 s left in total)"
+
+
+def test_stages_without_a_known_run_state_no_time_left():
+    whole = progress.WholeRun()
+    whole.report("render", 1, 2, 0.0)
+    whole.report("write", 0, 2, 9.0)
+    assert whole.text(9.0) == ""
+
+
+def test_every_stage_of_a_whole_run_has_a_text():
+    assert set(time_left.COSTS) <= set(progress.STAGE_TEXTS)

@@ -42,7 +42,7 @@ def test_a_seed_becomes_a_capture_with_its_truth(tmp_path, capsys):
     assert said.out == (
         f"next: w2m reconstruct {out} --out OUT\nthen: w2m evaluate reconstruction OUT {out}\n"
     )
-    assert "capture done in" in said.err
+    assert "Scanning the room virtually: done in" in said.err
     truth = read_npz(out / "truth.npz", ("frame_names", "depth_scale"))
     assert truth["frame_names"].tolist() == ["frame-000000", "frame-000001", "frame-000002"]
     assert len(set(truth["depth_scale"].tolist())) == 3

@@ -58,6 +58,7 @@ def run(
     """
     from world2minecraft.cli.outcome import print_compile_note, print_outcome
     from world2minecraft.cli.progress import show_progress
+    from world2minecraft.cli.time_left import DEMO
     from world2minecraft.construction import BuildParameters
     from world2minecraft.procgen import generate_room, scan_room
     from world2minecraft.reconstruction.parameters import Parameters
@@ -71,7 +72,7 @@ def run(
     check_writable(out)
     style_note(chosen)
     print_compile_note()
-    with show_progress() as progress:
+    with show_progress(stages=DEMO) as progress:
         progress("room", 0, 1)
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
