@@ -1,5 +1,6 @@
-"""``w2m doctor``: what stands well, what to do where it does not, and the exit code."""
+"""``w2m doctor``: the checks, their advice, and the exit code."""
 
+import json
 from importlib import metadata
 
 import pytest
@@ -8,7 +9,7 @@ from world2minecraft import cli
 from world2minecraft.cli import doctor
 
 
-def test_here_the_program_can_run(capsys, monkeypatch, tmp_path):
+def test_this_machine_can_run_the_program(capsys, monkeypatch, tmp_path):
     monkeypatch.setenv("W2M_CACHE_DIR", str(tmp_path / "cache"))
     assert cli.run(["doctor"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -16,6 +17,21 @@ def test_here_the_program_can_run(capsys, monkeypatch, tmp_path):
     assert all(line[:5].strip() in ("ok", "warn") for line in lines[:-1])
     for what in ("Python", "numpy", "numba", "cache", "cores", "memory", "disk", "Java"):
         assert any(line[5:].startswith(what) for line in lines)
+
+
+def test_json_lists_the_checks(capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv("W2M_CACHE_DIR", str(tmp_path / "cache"))
+    assert cli.run(["doctor", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert rows[0].keys() == {"what", "state", "found", "advice"}
+    assert rows[0]["what"] == "Python"
+
+
+@pytest.mark.parametrize("options", [[], ["--json"]])
+def test_a_problem_makes_the_exit_code_1(options, capsys, monkeypatch):
+    monkeypatch.setattr(doctor, "examine", lambda: [doctor.Check("x", "bad", "y")])
+    assert cli.run(["doctor", *options]) == 1
+    assert capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -34,8 +50,8 @@ def test_a_missing_core_package_fails_with_its_install_line(capsys, monkeypatch)
     monkeypatch.setattr(doctor.metadata, "version", version)
     assert doctor.run() == 1
     text = capsys.readouterr().out
-    assert "bad  numba         not installed; pip install world2minecraft\n" in text
-    assert text.endswith(f"{len(doctor.CORE_PACKAGES)} to put right\n")
+    assert "bad  numba         not installed; run: pip install world2minecraft\n" in text
+    assert text.endswith(f"{len(doctor.CORE_PACKAGES)} problems to fix\n")
 
 
 def test_a_cache_that_cannot_be_written_is_a_warning(monkeypatch, tmp_path):
@@ -67,9 +83,9 @@ def test_extras_are_those_that_the_package_declares(monkeypatch):
     assert doctor.optional_extras() == {"train": ("torch", "onnx")}
 
 
-def test_a_missing_extra_is_no_fault_and_says_how_to_get_it():
+def test_a_missing_extra_is_ok_and_has_its_install_command():
     check = doctor.check_extra("train", ("numpy", "no-such-package"))
     assert check.state == "ok"
-    assert check.found == "optional, without no-such-package"
-    assert check.advice == "pip install 'world2minecraft[train]'"
+    assert check.found == "optional, no-such-package not installed"
+    assert check.advice == "to install: pip install 'world2minecraft[train]'"
     assert doctor.check_extra("train", ("numpy",)).found == "installed"

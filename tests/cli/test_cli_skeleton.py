@@ -176,10 +176,10 @@ FAILURES = [
     (UsageError("give --out"), "error: give --out\n", 2),
     (CaptureError("cap", "has no poses"), "error: cap: has no poses\n", 3),
     (CaptureError("cap", "a\n\n b"), "error: cap: a b\n", 3),
-    (KeyboardInterrupt(), "stopped; run the same command again to go on\n", 130),
+    (KeyboardInterrupt(), "stopped; run the same command again to continue\n", 130),
     (
         MemoryError(),
-        "error: out of memory; try a larger --voxel, or close other programs\n",
+        "error: out of memory; close other programs, or use a larger --voxel\n",
         1,
     ),
     (
@@ -189,12 +189,12 @@ FAILURES = [
     ),
     (
         KeyError("x"),
-        "error: unexpected KeyError: 'x' (please report it, with --traceback for details)\n",
+        "error: unexpected KeyError: 'x'; please report it with the output of --traceback\n",
         1,
     ),
     (
         ZeroDivisionError(),
-        "error: unexpected ZeroDivisionError (please report it, with --traceback for details)\n",
+        "error: unexpected ZeroDivisionError; please report it with the output of --traceback\n",
         1,
     ),
 ]
@@ -216,7 +216,7 @@ def test_a_traceback_is_shown_where_it_is_asked_for(verb, capsys, words):
     text = capsys.readouterr().err
     assert "Traceback" in text
     assert text.endswith(
-        "error: unexpected KeyError: 'x' (please report it, with --traceback for details)\n"
+        "error: unexpected KeyError: 'x'; please report it with the output of --traceback\n"
     )
 
 

@@ -1,8 +1,8 @@
-"""``w2m``, one file a verb.
+"""The command line ``w2m``, one module per verb.
 
-``main`` is all that starts at once; ``verbs`` holds the table of verbs, each imported when it is
-called, so that ``w2m --help`` loads neither numpy nor numba. ``failures`` turns what goes wrong
-into one line and an exit code: 0 done, 1 failure, 2 usage, 3 bad input, 130 stopped.
+``verbs`` holds the table of verbs and imports each module when its verb is called, so
+``w2m --help`` loads neither numpy nor numba. ``failures`` reports an error as one line and an exit
+code: 0 success, 1 failure, 2 usage error, 3 bad input, 130 interrupted.
 """
 
 import os
@@ -13,16 +13,16 @@ TRACEBACK_FLAG = "--traceback"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and leave with its exit code."""
+    """Run the command line and exit with its exit code."""
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run one command and return its exit code: nothing that goes wrong escapes from here.
+    """Run one command and return its exit code; errors are reported, never raised.
 
     Args:
-        arguments: the words after ``w2m``. ``--traceback`` may stand anywhere among them; the
-            environment variable ``W2M_TRACEBACK=1`` says the same.
+        arguments: the words after ``w2m``. ``--traceback`` may stand anywhere among them; setting
+            the environment variable ``W2M_TRACEBACK=1`` has the same effect.
     """
     words = [word for word in arguments if word != TRACEBACK_FLAG] or ["--help"]
     wants_traceback = len(words) < len(arguments) or os.environ.get("W2M_TRACEBACK", "0") != "0"

@@ -1,5 +1,6 @@
-"""``w2m doctor``: whether this machine can run the program, and what to do where it cannot."""
+"""Check that this machine can run the program: ``w2m doctor``."""
 
+import json
 import os
 import re
 import shutil
@@ -9,22 +10,31 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
+
+import typer
 
 EXAMPLES = """\
 w2m doctor                  check this machine
 w2m doctor && w2m demo      check it, then build the demo room
+w2m doctor --json           print the checks as JSON, for a bug report
 """
 
 PYTHON_RANGE = ((3, 11), (3, 14))
-MIN_MEMORY_GB = 1.0  # A 40-frame capture has a budget of 1 GB.
-MIN_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB; the rest is room.
+MIN_MEMORY_GB = 1.0  # The budget of a capture of 40 frames.
+MIN_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB.
 CORE_PACKAGES = ("numpy", "numba", "scipy", "pillow")
 
 
 @dataclass(frozen=True)
 class Check:
-    """What was looked at, how it stands, and what to do where it does not stand well."""
+    """The result of one check.
+
+    what: the name of what was checked.
+    state: ``ok``, ``warn`` where the program runs with limits, ``bad`` where it cannot run.
+    found: what was found.
+    advice: what to do about it, if anything.
+    """
 
     what: str
     state: Literal["ok", "warn", "bad"]
@@ -32,23 +42,29 @@ class Check:
     advice: str = ""
 
 
-def run() -> int:
-    """Look at Python, the libraries, the cache folder, memory, disk and the optional extras.
+def run(as_json: Annotated[bool, typer.Option("--json", help="Print a JSON list.")] = False) -> int:
+    """Check Python, the libraries, the cache folder, memory, disk and the optional extras.
 
-    Leaves with 0 where the program can run, with 1 where something must be put right first.
+    Exits with code 0 if the program can run, and with code 1 if something must be fixed first.
     Java, the game and a graphics card are not needed.
+
+    Args:
+        as_json: print the checks as JSON instead of text.
     """
     checks = list(examine())
+    if as_json:
+        print(json.dumps([vars(check) for check in checks], indent=2))
+        return int(any(check.state == "bad" for check in checks))
     for check in checks:
         advice = f"; {check.advice}" if check.advice else ""
         print(f"{check.state:<5}{check.what:<14}{check.found}{advice}")
     bad = sum(check.state == "bad" for check in checks)
-    print(f"{bad} to put right" if bad else "ready: try w2m demo")
+    print(f"{bad} problem{'s' * (bad != 1)} to fix" if bad else "ready: try w2m demo")
     return int(bad > 0)
 
 
 def examine() -> Iterator[Check]:
-    """Make all checks, in the order they are shown."""
+    """Run all checks, in the order they are shown."""
     yield check_python(sys.version_info[:2])
     for name in CORE_PACKAGES:
         yield check_package(name)
@@ -58,28 +74,30 @@ def examine() -> Iterator[Check]:
     yield check_disk(Path.cwd())
     for extra, packages in optional_extras().items():
         yield check_extra(extra, packages)
-    yield Check("Java, game", "ok", "not needed to build; a Java Edition opens the worlds")
+    yield Check("Java, game", "ok", "not needed to build; Java Edition opens the worlds")
 
 
 def check_python(version: tuple[int, ...]) -> Check:
-    """Check that Python is of a version that the libraries are made for."""
+    """Check that the libraries support this version of Python."""
     first, last = PYTHON_RANGE
     found = ".".join(map(str, version))
     if first <= version <= last:
         return Check("Python", "ok", found)
     wanted = " to ".join(".".join(map(str, end)) for end in PYTHON_RANGE)
-    return Check("Python", "bad", found, f"install Python {wanted} and make the environment anew")
+    return Check(
+        "Python", "bad", found, f"install Python {wanted} and create a new environment with it"
+    )
 
 
 def check_package(name: str) -> Check:
-    """Check that a core package is installed, and say its version."""
+    """Check that a core package is installed, and return its version."""
     if _is_installed(name):
         return Check(name, "ok", metadata.version(name))
-    return Check(name, "bad", "not installed", "pip install world2minecraft")
+    return Check(name, "bad", "not installed", "run: pip install world2minecraft")
 
 
 def check_cache() -> Check:
-    """Check that compiled kernels can be kept between runs."""
+    """Check that compiled kernels can be saved between runs."""
     from world2minecraft.core.jit import user_cache_dir
 
     folder = user_cache_dir()
@@ -88,12 +106,12 @@ def check_cache() -> Check:
         with tempfile.TemporaryFile(dir=folder):
             return Check("cache", "ok", str(folder))
     except OSError as error:
-        advice = "every run compiles anew: set W2M_CACHE_DIR to a folder of yours"
+        advice = "every run compiles again; set W2M_CACHE_DIR to a writable folder"
         return Check("cache", "warn", f"{folder}: {error.strerror}", advice)
 
 
 def check_threads() -> Check:
-    """Say how many cores this process may use."""
+    """Return the number of cores that this process may use."""
     from world2minecraft.core.machine import usable_cores
 
     cores = usable_cores()
@@ -102,12 +120,12 @@ def check_threads() -> Check:
 
 
 def check_memory(free_gb: float | None) -> Check:
-    """Check the free memory, None where the system does not say."""
+    """Check the free memory; None where the system does not report it."""
     if free_gb is None:
-        return Check("memory", "ok", "not known on this system")
+        return Check("memory", "ok", "not reported by this system")
     if free_gb >= MIN_MEMORY_GB:
         return Check("memory", "ok", f"{free_gb:.1f} GB free")
-    advice = f"{MIN_MEMORY_GB:.0f} GB is wanted: close programs, or use a larger --voxel"
+    advice = f"{MIN_MEMORY_GB:.0f} GB is needed; close other programs, or use a larger --voxel"
     return Check("memory", "warn", f"{free_gb:.1f} GB free", advice)
 
 
@@ -116,11 +134,16 @@ def check_disk(folder: Path) -> Check:
     free_gb = shutil.disk_usage(folder).free / 1e9
     if free_gb >= MIN_DISK_GB:
         return Check("disk", "ok", f"{free_gb:.1f} GB free here")
-    return Check("disk", "warn", f"{free_gb:.1f} GB free here", "work on a disk with more space")
+    return Check(
+        "disk",
+        "warn",
+        f"{free_gb:.1f} GB free here",
+        f"{MIN_DISK_GB} GB is needed; free some space, or use another disk",
+    )
 
 
 def optional_extras() -> dict[str, tuple[str, ...]]:
-    """Return the extras that the package declares, but ``dev``, with the packages of each."""
+    """Return the packages of each extra that the distribution declares, except ``dev``."""
     extras: dict[str, tuple[str, ...]] = {}
     for requirement in metadata.requires("world2minecraft") or ():
         name = re.match(r"[\w.-]+", requirement)
@@ -131,16 +154,16 @@ def optional_extras() -> dict[str, tuple[str, ...]]:
 
 
 def check_extra(extra: str, packages: tuple[str, ...]) -> Check:
-    """Say whether an optional extra is installed; none is needed for the main job."""
+    """Check whether an optional extra is installed; reconstruction and building need none."""
     missing = [name for name in packages if not _is_installed(name)]
     if not missing:
         return Check(f"[{extra}]", "ok", "installed")
-    install = f"pip install 'world2minecraft[{extra}]'"
-    return Check(f"[{extra}]", "ok", f"optional, without {', '.join(missing)}", install)
+    install = f"to install: pip install 'world2minecraft[{extra}]'"
+    return Check(f"[{extra}]", "ok", f"optional, {', '.join(missing)} not installed", install)
 
 
 def available_memory_gb() -> float | None:
-    """Return the memory that a new program could take, in GB, or None where nothing says it."""
+    """Return the memory available to a new program, in GB; None where it is not reported."""
     try:
         lines = Path("/proc/meminfo").read_text().splitlines()
         values = {line.split(":")[0]: line.split()[1] for line in lines}

@@ -1,4 +1,4 @@
-"""What goes wrong, as one line on stderr and an exit code."""
+"""Report errors as one line on stderr and an exit code."""
 
 import errno
 import sys
@@ -10,7 +10,7 @@ FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
 
 
 def report_error(error: BaseException, with_traceback: bool = False) -> int:
-    """Say on stderr what went wrong, and return the exit code that says it too."""
+    """Print the error to stderr and return its exit code."""
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else int(error.code is not None)
     if with_traceback:
@@ -21,25 +21,25 @@ def report_error(error: BaseException, with_traceback: bool = False) -> int:
 
 
 def explain_error(error: BaseException) -> tuple[str, int]:
-    """Return one line that says what went wrong and what to do, and the exit code.
+    """Return one line that states the error and what to do next, and the exit code.
 
     Example:
         >>> explain_error(MemoryError())
-        ('out of memory; try a larger --voxel, or close other programs', 1)
+        ('out of memory; close other programs, or use a larger --voxel', 1)
     """
     if isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":
-        return "stopped; run the same command again to go on", STOPPED
+        return "stopped; run the same command again to continue", STOPPED
     if isinstance(error, World2MinecraftError):
         return one_line(error), error.exit_code
     if hasattr(error, "format_message"):  # typer's usage errors; older ones come from click.
         return _usage(error), USAGE
     if isinstance(error, MemoryError):
-        return "out of memory; try a larger --voxel, or close other programs", FAILURE
+        return "out of memory; close other programs, or use a larger --voxel", FAILURE
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         where = f"{error.filename}: " if error.filename else ""
         return f"{where}the disk is full; free some space and run the same command again", BAD_INPUT
     what = one_line(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)
-    return f"unexpected {what} (please report it, with --traceback for details)", FAILURE
+    return f"unexpected {what}; please report it with the output of --traceback", FAILURE
 
 
 def _usage(error: BaseException) -> str:

@@ -1,36 +1,41 @@
-"""What a finished run tells its user: where the world is, how to open it, what came out."""
+"""Print the result of a finished run and the next steps."""
 
 from pathlib import Path
 from typing import Any
 
 
 def print_compile_note() -> None:
-    """Say, once after installation, why the first run takes longer."""
+    """Print why the first run after installation takes longer."""
     from world2minecraft.core.jit import KERNEL_CACHE
 
     if not any(KERNEL_CACHE.iterdir()):
-        print("First run: compiling the inner loops, about 30 s; later runs start at once.")
+        print("First run: compiling the kernels takes about 30 s; later runs reuse them.")
 
 
 def print_outcome(out: Path, facts: dict[str, Any]) -> None:
-    """Print the outcome and the next steps."""
+    """Print the size of the result, its notes and where to look at it.
+
+    Args:
+        out: the folder of the run.
+        facts: the contents of its ``report.json``.
+    """
     explained = facts["surface_explained"]["within_one_voxel"]
     size = " x ".join(f"{side:.1f}" for side in facts["room_size_m"])
     used, skipped = facts["scan"]["frames_used"], len(facts["scan"]["frames_skipped"])
     print(
         f"\nRoom {size} m from {used} frames ({skipped} skipped), {len(facts['objects'])} objects,"
     )
-    print(f"{facts['blocks']:,} blocks; {explained:.0%} of the seen surface stands in a block.")
+    print(f"{facts['blocks']:,} blocks; {explained:.0%} of the observed surface lies in a block.")
     for note in facts["scan"]["notes"]:
         print(f"note: {note}")
-    print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
+    print(f"\n  look   open {out / 'report.html'} in a browser, or {out / 'preview.png'}")
     print_play_steps(out / "build")
 
 
 def print_play_steps(build: Path) -> None:
-    """Print how to open the world in the game, and what the further forms left out."""
-    print(f"  play   w2m install {build.parent}      puts the world into your game")
-    print(f"  or     copy {build / 'world'} into the game's saves folder")
+    """Print how to open the world in the game, and the further formats of the build."""
+    print(f"  play   w2m install {build.parent}      copies the world into the game")
+    print(f"         or copy {build / 'world'} into the game's saves folder")
     pack = build / "datapack.zip"
     print(
         f"         {build / 'room.schem'} for WorldEdit" + f", {pack} for a server" * pack.is_file()
@@ -39,11 +44,11 @@ def print_play_steps(build: Path) -> None:
 
 
 def print_extra_formats(build: Path) -> None:
-    """Print the further forms that were asked for, each with what it could not carry."""
+    """Print the files of the further formats, each with what the format cannot hold."""
     from world2minecraft.core.files import read_json
 
     if not (build / "forms.json").is_file():
         return
     for row in read_json(build / "forms.json").values():
         lost = ", ".join(f"{count:,} {what}" for what, count in row["lost"].items())
-        print(f"         {build / row['file']}" + (f" (left out: {lost})" if lost else ""))
+        print(f"         {build / row['file']}" + (f" (not included: {lost})" if lost else ""))
