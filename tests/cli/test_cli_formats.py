@@ -33,7 +33,7 @@ def test_each_form_holds_the_world_and_says_what_it_left_out(room, tmp_path, cap
         assert (held.states > 0).sum() == (world.states > 0).sum()
         assert sum(rows[name]["lost"].values()) > 0
     said = capsys.readouterr().out
-    assert "room.litematic (left out:" in said
+    assert "room.litematic (not included:" in said
     assert "w2m install" in said
 
 

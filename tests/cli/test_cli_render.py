@@ -326,7 +326,7 @@ def test_what_cannot_be_written_ends_the_command(build, tmp_path, capsys):
 def test_photos_are_traced_by_passes(build, tmp_path, capsys):
     words = ("--orbit", "--frames", "2", "--photo", "--photo-samples", "5")
     assert render(build, *words, "--out", "p") == 0
-    assert "render done" in capsys.readouterr().err
+    assert "Rendering views: done" in capsys.readouterr().err
     for name in ("000000.png", "000001.png"):
         photo = image(tmp_path / "p" / name)
         assert photo.shape == (36, 48, 3)

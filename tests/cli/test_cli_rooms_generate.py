@@ -15,7 +15,7 @@ def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
     assert read_generated(out).kind == "bathroom"
     shown = capsys.readouterr()
     assert f"next   w2m rooms scan {out} --out capture" in shown.out
-    assert "write done" in shown.err
+    assert "Writing files: done" in shown.err
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from world2minecraft.cli import failures, panels, verbs
 from world2minecraft.core.errors import CaptureError, UsageError
 
 # Verbs whose help is longer than a screen before "More options". Remove from this list, never add.
-LONG_HELP = ("reconstruct", "render", "dataset build", "vln run", "vln evaluate")
+LONG_HELP = ("render", "dataset build", "vln run", "vln evaluate")
 
 
 @pytest.fixture
@@ -140,7 +140,7 @@ def test_more_options_are_listed_last(verb, capsys):
     assert cli.run(["probe", "--help"]) == 0
     first, _, more = capsys.readouterr().out.partition("\nMore options:\n")
     assert re.search(r"Options:\n  -o, --out PATH|Options:\n  --out, -o PATH", first)
-    assert "[default: (oak)]" in first
+    assert "[default: oak]" in first
     assert first.rstrip().endswith("w2m probe      an example")
     assert more == "  --seed N  Choose the room.  [default: 7]\n"
 

@@ -4,8 +4,8 @@ An option is listed under "Options", or under "More options" where it is declare
 ``rich_help_panel=MORE``. The first section, with usage and examples, fits in ``FIRST_LINES`` lines.
 
 The help shows a default in one form, ``[default: X]``, which typer writes. Where the default is
-None but stands for a value, name that value: ``typer.Option(..., show_default="vanilla")`` is shown
-as ``[default: (vanilla)]``. The help text itself never names the default.
+None but stands for a value, name that value: ``typer.Option(..., show_default="vanilla")``. The
+help text itself never names the default.
 """
 
 from pathlib import Path

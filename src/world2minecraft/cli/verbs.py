@@ -7,6 +7,7 @@ None for 0. Options declared with ``cli.panels.MORE`` are listed in a section of
 """
 
 import os
+import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import cleandoc, signature
@@ -116,6 +117,7 @@ FOLDERS = ("build", "forge", "paper", "render", "train")
 COMPLETE_VARIABLE = "_W2M_COMPLETE"
 
 # The placeholder of a value without a metavar, by its type.
+IMPLIED_DEFAULT = re.compile(r"\[default: \((.+?)\)\]")  # Typer's form of show_default texts.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
 
 EXAMPLES = """\
@@ -206,7 +208,10 @@ class VerbCommand(TyperCommand):
 
     def _write_section(self, ctx: Any, formatter: Any, heading: str, kind: str) -> None:
         rows = [
-            (one.metavar or record[0] if kind == "argument" else record[0], record[1])
+            (
+                one.metavar or record[0] if kind == "argument" else record[0],
+                IMPLIED_DEFAULT.sub(r"[default: \1]", record[1]),
+            )
             for one in self.get_params(ctx)
             if one.param_type_name == kind
             and (getattr(one, "rich_help_panel", None) == MORE) == (heading == MORE)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from world2minecraft.cli.build.options import (
-    MORE,
     Formats,
     PaletteName,
     Scale,
@@ -17,6 +16,7 @@ from world2minecraft.cli.build.options import (
     print_style_note,
     split_names,
 )
+from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:

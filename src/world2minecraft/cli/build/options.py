@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.cli.panels import MORE
+
 if TYPE_CHECKING:
     from world2minecraft.reconstruction.parameters import Parameters
 
 SKETCHES_UNDER = 1.5  # Blocks per metre.
-MORE = "More options"  # The second panel of a help page.
 
 Scale = Annotated[
     float,

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from world2minecraft.cli.build.options import MORE
+from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
