@@ -33,14 +33,14 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
              "--markdown", str(tmp_path / "t.md"), *COMMON]  # fmt: skip
     assert train_table.main(words) == 0
     first = capsys.readouterr()
-    assert "train ..." in first.err and "paper, 8k: monoscene" in first.out
+    assert "Training ..." in first.err and "paper, 8k: monoscene" in first.out
     text = (tmp_path / "t.md").read_text()
     assert text.startswith("| network | million weights") and "| 40.66 |" in text
     blind = next(line for line in text.splitlines() if line.startswith("| no picture | - |"))
     assert blind.count("|") == text.splitlines()[0].count("|")
     assert train_table.main(words) == 0
     again = capsys.readouterr()
-    assert "train ..." not in again.err and again.out == first.out
+    assert "Training ..." not in again.err and again.out == first.out
     given = training.read_config(tmp_path / "R/symphonies+depth/run.yaml").depth
     assert (given, training.read_config(tmp_path / "R/monoscene/run.yaml").depth) == (
         "given",
