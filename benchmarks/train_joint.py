@@ -23,7 +23,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes, figure_of, markdown
-from world2minecraft.cli.progress import show_progress
+from world2minecraft.api.progress import show_progress
 from world2minecraft.core.files import write_text
 from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
 from world2minecraft.networks.data.training_data import CacheLocation

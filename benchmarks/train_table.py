@@ -24,7 +24,7 @@ from rich.console import Console
 from rich.table import Table
 from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, row
 
-from world2minecraft.cli.progress import show_progress
+from world2minecraft.api.progress import show_progress
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress

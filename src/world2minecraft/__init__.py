@@ -25,9 +25,12 @@ def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
     if name == "errors":
         return import_module("world2minecraft.core.errors")
-    if name.startswith("_"):
+    if name.startswith("_") and name != "__all__":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     api = import_module("world2minecraft.api")
-    if name == "__all__":
-        return [*api.__all__, "errors"]
-    return getattr(api, name)
+    return [*api.__all__, "errors"] if name == "__all__" else getattr(api, name)
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted([*import_module("world2minecraft.api").__all__, "errors", "__version__"])

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import UnknownNameError
 
 WORDS = [
     ("demo --seed -1", 2, "--seed must be 0 or more, not -1"),
-    ("demo --frames 1", 2, "frames must be 3 or more, not 1; 40 are usual"),
+    ("demo --frames 1", 2, "frames must be 3 or more, not 1; try 40"),
     ("demo --palette nordc", 2, "no palette is named 'nordc'; known: "),
     ("demo --palette no.yaml", 3, "no.yaml: "),
     ("reconstruct scan --out OUT --palette vanila", 2, "did you mean 'vanilla'?"),

@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from world2minecraft.cli import progress, time_left
+from world2minecraft.api import progress, time_left
 
 
 class Terminal(io.StringIO):

@@ -5,17 +5,17 @@ import json
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.cli.settings import select_settings
+from world2minecraft.api import settings
 from world2minecraft.reconstruction.parameters import parameter_keys
 
 
 def test_every_key_that_set_changes_is_listed_once():
-    keys = [one.key for one in select_settings(None)]
+    keys = [one.key for one in settings()]
     copies = {"fuse.voxel_m"}
     assert sorted(keys) == sorted(set(parameter_keys()) - copies)
 
 
-@pytest.mark.parametrize("setting", select_settings(None), ids=lambda one: one.key)
+@pytest.mark.parametrize("setting", settings(), ids=lambda one: one.key)
 def test_every_setting_has_a_meaning(setting):
     assert setting.meaning
 
@@ -31,7 +31,7 @@ def test_a_prefix_selects_a_group(capsys):
 
 
 def test_a_prefix_may_be_a_single_key():
-    assert [one.key for one in select_settings("find.min_cells")] == ["find.min_cells"]
+    assert [one.key for one in settings("find.min_cells")] == ["find.min_cells"]
 
 
 def test_json_is_a_list_of_settings(capsys):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from world2minecraft.cli.time_left import COSTS, DEMO, FROM_PHOTOS, RECONSTRUCTION, TimeLeft
+from world2minecraft.api.time_left import COSTS, DEMO, FROM_PHOTOS, RECONSTRUCTION, TimeLeft
 
 # Seconds of each stage in recorded runs on two cores.
 KITCHEN_S = (1.12, 1.07, 1.01, 0.19, 0.09, 0.60, 0.30, 2.11)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from world2minecraft.api.editor import EditorSession, open_editor
     from world2minecraft.api.existing_worlds import build_into_world, build_on_server
     from world2minecraft.api.generation import (
+        demo,
         evaluate,
         generate_house,
         generate_room,
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
         scan_room,
     )
     from world2minecraft.api.navigation import make_env
+    from world2minecraft.api.parameters import settings
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.api.results import Room, RoomObject, Run, load
     from world2minecraft.api.rooms import BuildOptions, build, reconstruct
     from world2minecraft.api.worlds import Conversion, convert, render
@@ -36,6 +39,7 @@ __all__ = [
     "build_into_world",
     "build_on_server",
     "convert",
+    "demo",
     "evaluate",
     "generate_house",
     "generate_room",
@@ -48,6 +52,8 @@ __all__ = [
     "render",
     "save_room",
     "scan_room",
+    "settings",
+    "show_progress",
 ]
 
 _MODULES = {
@@ -61,6 +67,7 @@ _MODULES = {
     ),
     "existing_worlds": ("build_into_world", "build_on_server"),
     "generation": (
+        "demo",
         "evaluate",
         "generate_house",
         "generate_room",
@@ -69,6 +76,8 @@ _MODULES = {
         "scan_room",
     ),
     "navigation": ("make_env",),
+    "parameters": ("settings",),
+    "progress": ("show_progress",),
     "results": (
         "Room",
         "RoomObject",

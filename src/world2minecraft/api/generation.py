@@ -1,16 +1,18 @@
 """Generated rooms with exact truth, virtual scans of them, and the scores of a reconstruction."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from world2minecraft.api.results import Run
-from world2minecraft.api.rooms import path_of
+from world2minecraft.api.rooms import BuildOptions, path_of
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.procgen import Room as GeneratedRoom
+
+MIN_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
 
 
 def generate_room(
@@ -247,6 +249,63 @@ def _settings_of(figures: Mapping[str, Any]) -> dict[str, Any]:
     chosen = {name: value for name, value in figures.items() if name not in ("labels", "progress")}
     chosen["with_labels"] = bool(figures.get("labels") or figures.get("label_error"))
     return chosen
+
+
+def demo(
+    out: str | Path = "OUT",
+    *,
+    kind: str = "living",
+    seed: int = 5,
+    frames: int = 40,
+    blocks_per_metre: float = 4.0,
+    style: str | None = None,
+    palette: str | Path | None = None,
+    formats: Sequence[str] = (),
+    progress: Progress = no_progress,
+) -> Run:
+    """Generate a room, scan it with a virtual depth camera and reconstruct it.
+
+    The truth is known, so that the report scores the result against it.
+
+    Args:
+        out: the folder to write; the scan is in its folder ``capture``.
+        kind: the kind of room, as ``generate_room`` has it.
+        seed: 0 or more.
+        frames: the frames of the scan, 3 or more.
+        blocks_per_metre: the scale of the world.
+        style: ``blocks``, ``display`` or ``voxels``.
+        palette: ``vanilla``, the palette of a mod, or a YAML file.
+        formats: further files of the build.
+        progress: called at each step.
+
+    Raises:
+        UsageError: an argument is out of range. OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.demo(tmp / "demo", kind="study", seed=3, frames=6).world.is_dir()
+        True
+    """
+    from world2minecraft.procgen import generate_room as generate
+    from world2minecraft.procgen import scan_room as scan
+    from world2minecraft.reconstruction.run_folder import check_writable
+    from world2minecraft.runs import run_capture
+
+    if seed < 0:
+        raise UsageError(f"--seed must be 0 or more, not {seed}")
+    if frames < MIN_FRAMES:
+        raise UsageError(f"--frames must be {MIN_FRAMES} or more, not {frames}; try 40")
+    plaque = {"build.plaque": f"A {kind} room"}
+    options = BuildOptions(blocks_per_metre, style, palette, formats, settings=plaque)
+    chosen = options.parameters()
+    folder = Path(out)
+    check_writable(folder)
+    progress("room", 0, 1)
+    made = generate(seed, kind=kind)
+    progress("room", 1, 1, f"a {kind} room, seed {seed}")
+    scan(made, folder / "capture", frames=frames, seed=seed, progress=progress)
+    run_capture(folder / "capture", folder, chosen, progress=progress)
+    return Run(folder)
 
 
 def scan_trial(name: str, out: str | Path, progress: Progress = no_progress) -> Path:

@@ -189,6 +189,11 @@ class Run:
         return read_json(path) if path.is_file() else {}
 
     @property
+    def notes(self) -> list[str]:
+        """What the reconstruction noted about the capture and its result."""
+        return list(self.report.get("scan", self.report).get("notes", ()))
+
+    @property
     def world(self) -> Path:
         """The folder of the Minecraft world."""
         return self.folder / "build" / "world"

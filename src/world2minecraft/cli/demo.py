@@ -10,8 +10,8 @@ from world2minecraft.cli.build.options import (
     PaletteName,
     Scale,
     Style,
-    style_note,
-    with_build_options,
+    print_style_note,
+    split_names,
 )
 from world2minecraft.cli.panels import OutFolder, more_option
 
@@ -56,36 +56,23 @@ def run(
         palette: the blocks that may be used.
         formats: further file formats of the build.
     """
+    from world2minecraft.api import demo
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.api.time_left import DEMO
     from world2minecraft.cli.outcome import print_compile_note, print_outcome
-    from world2minecraft.cli.progress import show_progress
-    from world2minecraft.cli.time_left import DEMO
-    from world2minecraft.construction import BuildParameters
-    from world2minecraft.procgen import generate_room, scan_room
-    from world2minecraft.reconstruction.parameters import Parameters
-    from world2minecraft.reconstruction.run_folder import check_writable
-    from world2minecraft.runs import run_capture
 
-    check_figures(seed, frames)
-    plaque = BuildParameters(plaque=f"A {kind} room")
-    chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
-    chosen = with_build_options(chosen, style, palette, formats)
-    check_writable(out)
-    style_note(chosen)
+    print_style_note(blocks_per_metre, style)
     print_compile_note()
     with show_progress(stages=DEMO) as progress:
-        progress("room", 0, 1)
-        room = generate_room(seed, kind=kind)
-        progress("room", 1, 1, f"a {kind} room, seed {seed}")
-        scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
-        facts = run_capture(out / "capture", out, chosen, progress=progress)
-    print_outcome(out, facts)
-
-
-def check_figures(seed: int, frames: int) -> None:
-    """Raise UsageError for a seed or a number of frames that is out of range."""
-    from world2minecraft.core.errors import UsageError
-
-    if seed < 0:
-        raise UsageError(f"--seed must be 0 or more, not {seed}")
-    if frames < MIN_FRAMES:
-        raise UsageError(f"--frames must be {MIN_FRAMES} or more, not {frames}; 40 are usual")
+        made = demo(
+            out,
+            kind=kind,
+            seed=seed,
+            frames=frames,
+            blocks_per_metre=blocks_per_metre,
+            style=style,
+            palette=palette,
+            formats=split_names(formats),
+            progress=progress,
+        )
+    print_outcome(out, made.report)

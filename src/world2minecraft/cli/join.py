@@ -61,8 +61,8 @@ def run(
         mc_version: the game version.
         settings: further parameters.
     """
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.evaluation.report import write_brief_report
     from world2minecraft.reconstruction.homes import join
     from world2minecraft.reconstruction.parameters import Parameters, with_settings

@@ -186,8 +186,8 @@ def _from_capture(
     keep: Path | None,
 ) -> "PredictedCells":
     """Run a capture as far as its labels, and write what they are."""
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import (
         cells_of_room,

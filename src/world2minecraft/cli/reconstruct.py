@@ -134,8 +134,8 @@ def run(
     Photos and videos are given poses and depth first, which takes a minute or two.
     """
     from world2minecraft.api import reconstruct
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     changes = parse_settings(settings)
     print_style_note(blocks_per_metre, changes.get("build.style", style))

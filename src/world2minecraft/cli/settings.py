@@ -39,31 +39,15 @@ def run(
     Raises:
         UnknownNameError: no key begins with ``prefix``; the message suggests the nearest.
     """
-    found = select_settings(prefix)
+    from world2minecraft.api import settings
+
+    found = settings(prefix)
     if as_json:
         print(json.dumps([vars(one) for one in found], indent=2))
         return
     width = min(MAX_WIDTH, shutil.get_terminal_size().columns)
     for one in found:
         print("\n".join(format_setting(one, width)))
-
-
-def select_settings(prefix: str | None) -> "tuple[ParameterInfo, ...]":
-    """Return the settings whose key is ``prefix`` or begins with it and a dot; None means all."""
-    from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.core.parameters import describe_parameters
-    from world2minecraft.reconstruction.parameters import Parameters, parameter_keys
-
-    accepted = set(parameter_keys())
-    settings = tuple(one for one in describe_parameters(Parameters) if one.key in accepted)
-    if prefix is None:
-        return settings
-    start = prefix.rstrip(".")
-    found = tuple(one for one in settings if f"{one.key}.".startswith(f"{start}."))
-    if not found:
-        groups = dict.fromkeys(one.key.partition(".")[0] for one in settings if "." in one.key)
-        raise UnknownNameError("setting", prefix, [*groups, *(one.key for one in settings)])
-    return found
 
 
 def format_setting(setting: "ParameterInfo", width: int) -> Iterator[str]:

@@ -134,8 +134,8 @@ def _check_targets(
 
 def _build_folder(source: Path, out: Path, options: dict[str, Any], mc_version: str) -> None:
     from world2minecraft.api import build
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note, print_play_steps
-    from world2minecraft.cli.progress import show_progress
 
     print_compile_note()
     with show_progress() as progress:
@@ -148,8 +148,8 @@ def _build_into(
     source: Path, world: Path, at: tuple[int, int, int], options: dict[str, Any]
 ) -> None:
     from world2minecraft.api import build_into_world
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     print_compile_note()
     with show_progress() as progress:
@@ -160,8 +160,8 @@ def _build_into(
 
 def _build_on_server(source: Path, server: str, options: dict[str, Any]) -> None:
     from world2minecraft.api import build_on_server
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     print_compile_note()
     with show_progress() as progress:

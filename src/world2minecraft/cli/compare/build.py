@@ -49,8 +49,8 @@ def run(
     Raises:
         InputError: the layout cannot be read. UsageError: an option is wrong.
     """
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.paper.layouts.importers import How, read_layouts_of
     from world2minecraft.paper.layouts.layout_to_world import build_scene
     from world2minecraft.reconstruction.parameters import Parameters

@@ -89,8 +89,8 @@ def grade_scenes(
     places: list[Path], chat: "ChatModel", out: Path, wish: str, repeats: int
 ) -> "list[Grades]":
     """Return the grades of built rooms; their pictures are written to ``out/pictures``."""
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.compare.build import folder_names
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.files import write_bytes
     from world2minecraft.formats.build_reader import read_build
     from world2minecraft.paper.layouts.importers import read_layouts_of

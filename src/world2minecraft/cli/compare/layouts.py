@@ -55,7 +55,7 @@ def run(
     Raises:
         InputError: a layout cannot be read. UsageError: an option is wrong.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.files import write_json
     from world2minecraft.navigation.running.result_tables import format_markdown, format_text
     from world2minecraft.paper.layouts import score_scene, summary_of

@@ -86,8 +86,8 @@ def run(
 
 def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> None:
     """Carry out a plan and say what came of it. Raises what ``run`` raises."""
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.minecraftocc.building import build_dataset
     from world2minecraft.minecraftocc.engine import open_engine
@@ -100,7 +100,7 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
 
 
 def _print_summary(folder: Path, report: "BuildReport") -> None:
-    from world2minecraft.cli.progress import format_duration
+    from world2minecraft.api.progress import format_duration
     from world2minecraft.minecraftocc.building import TITLES
 
     for note in report.notes:

@@ -52,7 +52,7 @@ def run(
     Pictures are cropped and resampled where a format asks for a certain camera. An export that was
     stopped goes on when the same command is given again. docs/occupancy-formats.md has every file.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
     from world2minecraft.minecraftocc.exporters.options import DATA_ROOT, FRAMES_PER_SCENE
     from world2minecraft.minecraftocc.importers import open_occupancy

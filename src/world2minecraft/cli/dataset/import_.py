@@ -41,7 +41,7 @@ def run(
     """
     from itertools import islice
 
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.minecraftocc.importers import open_occupancy
     from world2minecraft.minecraftocc.store import write_store

@@ -60,7 +60,7 @@ def run(
     Raises:
         InputError: there are no pictures. UsageError: a size or a model is none.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.files import write_json
     from world2minecraft.evaluation.metrics.image_quality import niqe_model
     from world2minecraft.evaluation.metrics.image_quality.niqe import available_variants

@@ -29,9 +29,9 @@ def run(
     Truth is the rooms' own, in cells of 8 cm by NYUv2's rule. Beside the block worlds of w2m
     dataset build it stands for real photos, of which there are few: see docs/training.md.
     """
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.dataset.options import parse_camera
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.minecraftocc.store import write_store
     from world2minecraft.minecraftocc.synthetic_photos import PhotoRooms, photo_samples
 

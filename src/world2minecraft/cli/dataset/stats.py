@@ -65,7 +65,7 @@ def run(
         InputError: it is no data set, or damaged. UsageError: there is no such split.
         MissingExtraError: plots are asked for, and matplotlib is not installed.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.minecraftocc.statistics import statistics_text
     from world2minecraft.minecraftocc.statistics.dataset_statistics import statistics_of

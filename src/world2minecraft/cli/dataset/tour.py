@@ -106,8 +106,8 @@ def run(
 def _plan(
     source: "SceneSource", count: int, seed: int, camera, reachable: bool
 ) -> "list[PlannedView]":
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.errors import UsageError
     from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views
 

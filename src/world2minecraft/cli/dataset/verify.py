@@ -14,7 +14,7 @@ def run(folder: option.Folder) -> None:
     Raises:
         InputError: it is no data set, or not finished. DamagedFileError: something is wrong.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.errors import DamagedFileError
     from world2minecraft.minecraftocc.store import verify_store
 

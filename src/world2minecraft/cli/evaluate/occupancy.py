@@ -76,7 +76,7 @@ def run(
     """
     from rich.console import Console
 
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.files import write_json, write_text
     from world2minecraft.minecraftocc.importers import open_occupancy
     from world2minecraft.networks.scoring import latex_rows

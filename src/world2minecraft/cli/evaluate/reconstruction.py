@@ -40,7 +40,7 @@ def run(
     from rich.console import Console
 
     from world2minecraft.api import evaluate
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.core.files import write_json
 
     with show_progress() as progress:

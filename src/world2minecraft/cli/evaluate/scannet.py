@@ -32,8 +32,8 @@ def run(
     SCENE.aggregation.json. Of all that, the truth knows surfaces and what cameras saw through;
     what lies behind surfaces, and the fronts of chairs, it does not know and does not ask for.
     """
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.evaluation.scoring.scannet import scenes_in, write_scannet_truth
 
     scenes = scenes_in(scene)

@@ -115,8 +115,8 @@ def draw(
     """Draw a view and say what was drawn. Raises what ``run`` raises."""
     from time import perf_counter
 
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.rendering.output import required_outputs
     from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 

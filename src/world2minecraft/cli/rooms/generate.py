@@ -86,8 +86,8 @@ def _write_room(
     clutter: float,
 ) -> None:
     from world2minecraft.api import generate_house, generate_room, save_room
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     print_compile_note()
     with show_progress() as progress:
@@ -117,8 +117,8 @@ def _print_room(made: "Room", out: Path) -> None:
 
 def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
     from world2minecraft.api import generate_worlds
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     print_compile_note()
     with show_progress() as progress:

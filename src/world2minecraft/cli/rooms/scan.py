@@ -90,8 +90,8 @@ def run(
     own settings.
     """
     from world2minecraft.api.generation import scan_trial
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
 
     figures = {
         "sensor": sensor, "frames": frames, "depth_scale_sigma": depth_scale_sigma,

@@ -46,7 +46,7 @@ def run(
     A run that was stopped goes on with the same command. RUN/run.yaml holds every setting; others
     than the options here are set there, and trained with --config.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
 
     given = {
         "size": size, "backbone": backbone, "grid": grid, "depth": depth, "steps": steps,
@@ -73,7 +73,7 @@ def run(
 
 def print_summary(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> None:
     """Say what came of a run and what to do next."""
-    from world2minecraft.cli.progress import format_duration
+    from world2minecraft.api.progress import format_duration
 
     micro = scores["protocols"]["monoscene"]["micro"]
     stopped = ", stopped early" if state.stopped else ""

@@ -120,8 +120,8 @@ def run(
 def _build(
     out: Path, scenes: list[Path], made: tuple[int, int], rule: "BuildRule", workers: int | None
 ) -> "BuiltSet":
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.progress import show_progress
     from world2minecraft.core.machine import usable_cores
     from world2minecraft.navigation.data.generated_scenes import make_scenes
     from world2minecraft.navigation.data.set_building import build_navigation_set

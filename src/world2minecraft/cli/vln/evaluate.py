@@ -109,7 +109,7 @@ def run(
 def _evaluate(
     target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
 ) -> None:
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.navigation.running.item_evaluation import evaluate, write_result
 
     with show_progress() as progress:

@@ -53,7 +53,7 @@ def run(
     Each folder has the rows, the pictures, the paper's recipe and the command that runs it; the
     steps that it will take are told here, before a GPU is rented. docs/vln-finetuning.md has more.
     """
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.navigation.exporters import ExportOptions, export_set
 
     choices = {

@@ -77,7 +77,7 @@ def run(
 def _reword(
     made: "NavigationSet", chat: "ChatModel", jobs: int
 ) -> "tuple[NavigationSet, Counter[str]]":
-    from world2minecraft.cli.progress import show_progress
+    from world2minecraft.api.progress import show_progress
     from world2minecraft.external_models.chat_messages import Turn
     from world2minecraft.external_models.structured_replies import strip_reasoning
     from world2minecraft.navigation.data.rewording import reword_set

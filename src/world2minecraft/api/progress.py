@@ -1,7 +1,7 @@
 """Show progress on stderr: bars on a terminal, plain lines elsewhere.
 
 Both implement ``core.progress.Progress``. A reconstruction also shows the time left of the whole
-run, which ``cli.time_left`` estimates.
+run, which ``api.time_left`` estimates.
 """
 
 import sys
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from world2minecraft.cli.time_left import TimeLeft, stages_from
+from world2minecraft.api.time_left import TimeLeft, stages_from
 from world2minecraft.core.progress import Progress
 
 LINE_INTERVAL_S = 30.0  # Between the lines of a long stage, where there is no terminal.
@@ -172,7 +172,8 @@ class LineProgress:
         self._stage, self._note = "", ""
 
     def _print(self, line: str) -> None:
-        print(line, file=self._stream, flush=True)
+        self._stream.write(f"{line}\n")
+        self._stream.flush()
 
 
 def format_duration(seconds: float) -> str:
