@@ -112,7 +112,7 @@ def test_samples_without_pictures_are_shown_too(made):
     ("words", "code", "text"),
     [
         (["show", "{npz}", "house"], 2, "no sample is named 'house'"),
-        (["show", "{npz}/none"], 3, "is not there"),
+        (["show", "{npz}/none"], 3, "not found"),
         (["export", "{npz}", "--format", "nyuv2", "--out", "{out}"], 2, "did you mean 'nyu'?"),
         (["export", "{npz}", "--format", "npz"], 2, "missing option '--out'"),
         (
@@ -121,7 +121,7 @@ def test_samples_without_pictures_are_shown_too(made):
             "there is no sample to export in test",
         ),
         (["import", "{npz}", "--out", "{out}", "--split", "val"], 2, "has no sample in val"),
-        (["import", "{out}", "--out", "{out}"], 3, "is not there"),
+        (["import", "{out}", "--out", "{out}"], 3, "not found"),
     ],
 )
 def test_wrong_words_are_answered_in_one_line(words, code, text, npz, tmp_path, capsys):

@@ -40,7 +40,7 @@ def test_quality_prints_the_papers_rows_and_writes_json(tmp_path, capsys):
     assert run([*words, "--resize", "none", "--json", str(tmp_path / "q.json")]) == 0
     text = capsys.readouterr().out
     assert "9.97" in text and "274,305" in text and "note: LV depends on the kernel" in text
-    assert "from   2 of 3 pictures" in text
+    assert "from   2 of 3 images" in text
     assert json.loads((tmp_path / "q.json").read_text())["rows"][0]["pictures"] == 2
 
 
@@ -51,7 +51,10 @@ def test_quality_prints_the_papers_rows_and_writes_json(tmp_path, capsys):
         (["stats", "{data}", "--split", "val"], 2, "the splits of"),
         (["quality", "{tmp}/none"], 3, "is no folder of pictures and no data set"),
         (["quality", "{data}"], 3, "has labels alone, no picture"),
-        (["quality", "{tmp}", "--resize", "big"], 2, "--resize is WIDTHxHEIGHT, such as 640x480"),
+        *(
+            (["quality", "{tmp}", "--resize", text], 2, "--resize is WIDTHxHEIGHT")
+            for text in ("640", "x480", "axb", "640x480x2", "")
+        ),
         (["quality", "{tmp}", "--variant", "matlab"], 2, "no NIQE variant is named 'matlab'"),
         (["quality", "{tmp}", "--variant", "no.mat"], 3, "no.mat: cannot be read"),
     ],

@@ -78,8 +78,8 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "text"),
     [
-        (["--at", "feet"], 2, "--at, --poses and --pattern tell of --screenshots DIR; name them"),
-        (["--screenshots", "."], 2, "--at feet, as F3 and most mods tell, or --at eye"),
+        (["--at", "feet"], 2, "--at, --poses and --pattern need --screenshots DIR"),
+        (["--screenshots", "."], 2, "--at feet, as F3 and most mods show, or --at eye"),
         (["--screenshots", "none", "--at", "eye"], 3, "is no folder of screenshots"),
         (["--count", "0"], 2, "a plan has one view or more, not 0"),
         (["--camera", "nyy"], 2, "no camera is named 'nyy'; did you mean 'nyu'?"),
@@ -94,8 +94,8 @@ def test_tours_that_cannot_be(world, tmp_path, monkeypatch, capsys, words, code,
 
 def test_sheets_that_cannot_be(tour, tmp_path, capsys):
     for words, code, text in (
-        ([str(tour)], 2, "name what it is a tour of: --world WORLD"),
-        ([str(tour), "--most", "0"], 2, "--most and --columns are 1 or more"),
+        ([str(tour)], 2, "name its world with --world WORLD"),
+        ([str(tour), "--most", "0"], 2, "--most and --columns must be 1 or more"),
         ([str(tmp_path)], 3, ""),
     ):
         assert cli.run(["dataset", "sheet", *words]) == code

@@ -384,32 +384,32 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
     assert f"{data}: 3 images (2 train, 1 test) in 2 shards" in out
     assert "ms of CPU each: render" in out
     assert cli.run(words) == 0
-    assert "made   nothing: all was there" in capsys.readouterr().out
+    assert "made   nothing: the data set is complete" in capsys.readouterr().out
     assert cli.run(["dataset", "verify", data]) == 0
     assert "3 samples in 2 shards, 0 MB: ok" in capsys.readouterr().out
     (tmp_path / "data/shards/stray.txt").write_text("x")
     assert cli.run(["dataset", "verify", data]) == 3
     out, err = capsys.readouterr()
     assert "fault: shards/stray.txt: belongs to no data set" in out
-    assert "has 1 fault; delete the shards that are named" in err
+    assert "has 1 fault; delete the shards that are listed" in err
 
 
 @pytest.mark.parametrize(
     ("words", "line", "code"),
     [
         ([], "a data set needs a scene: give --houses", 2),
-        (["--houses", "0", "--images", "5"], "--houses is 1 or more, not 0", 2),
-        (["--houses", "2", "--world", "x"], "--houses are generated; give them alone", 2),
-        (["--tour", "t.jsonl", "--screenshots", "d"], "are two kinds of views; give one", 2),
+        (["--houses", "0", "--images", "5"], "--houses must be 1 or more, not 0", 2),
+        (["--houses", "2", "--world", "x"], "--houses are generated; give them without", 2),
+        (["--tour", "t.jsonl", "--screenshots", "d"], "exclude each other; give one", 2),
         (
             ["--houses", "2", "--screenshots", "gone", "--at", "eye"],
             "gone: is no folder of screenshots",
             3,
         ),
-        (["--world", "gone"], "gone: is not there", 3),
-        (["--worlds", "gone"], "gone: is no folder of worlds", 3),
+        (["--world", "gone"], "gone: not found", 3),
+        (["--worlds", "gone"], "gone: is not a folder of worlds", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),
-        (["--houses", "2", "--size", "big"], "--size is width and height in pixels", 2),
+        (["--houses", "2", "--size", "big"], "--size is WIDTHxHEIGHT in pixels", 2),
         (["--houses", "2", "--voxel", "big"], "--voxel is metres, such as 0.08, or block", 2),
         (["--houses", "2", "--region", "cube"], "no kind of region is named 'cube'", 2),
         (["--houses", "2", "--image-format", "gif"], "pictures are jpg, png, webp, not 'gif'", 2),

@@ -8,7 +8,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from world2minecraft.api.datasets import Dataset, open_dataset
+    from world2minecraft.api.dataset_contents import dataset_statistics
+    from world2minecraft.api.datasets import (
+        Dataset,
+        build_dataset,
+        export_dataset,
+        import_dataset,
+        open_dataset,
+        verify_dataset,
+    )
     from world2minecraft.api.editor import EditorSession, open_editor
     from world2minecraft.api.existing_worlds import build_into_world, build_on_server
     from world2minecraft.api.generation import (
@@ -36,14 +44,18 @@ __all__ = [
     "RoomObject",
     "Run",
     "build",
+    "build_dataset",
     "build_into_world",
     "build_on_server",
     "convert",
+    "dataset_statistics",
     "demo",
     "evaluate",
+    "export_dataset",
     "generate_house",
     "generate_room",
     "generate_worlds",
+    "import_dataset",
     "load",
     "make_env",
     "open_dataset",
@@ -54,18 +66,27 @@ __all__ = [
     "scan_room",
     "settings",
     "show_progress",
+    "verify_dataset",
 ]
 
 _MODULES = {
+    "dataset_contents": ("dataset_statistics",),
     "datasets": (
         "Dataset",
+        "build_dataset",
+        "export_dataset",
+        "import_dataset",
         "open_dataset",
+        "verify_dataset",
     ),
     "editor": (
         "EditorSession",
         "open_editor",
     ),
-    "existing_worlds": ("build_into_world", "build_on_server"),
+    "existing_worlds": (
+        "build_into_world",
+        "build_on_server",
+    ),
     "generation": (
         "demo",
         "evaluate",

@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.progress import Progress
+
 
 def print_compile_note() -> None:
     """Print why the first run after installation takes longer."""
@@ -10,6 +12,23 @@ def print_compile_note() -> None:
 
     if not any(KERNEL_CACHE.iterdir()):
         print("First run: compiling the kernels takes about 30 s; later runs reuse them.")
+
+
+def with_compile_note(progress: Progress) -> Progress:
+    """Return a progress that prints the note on compilation before its first step.
+
+    What is wrong with the arguments is reported before any step, and without the note.
+    """
+    noted = False
+
+    def report(stage: str, done: int, total: int, note: str = "") -> None:
+        nonlocal noted
+        if not noted:
+            noted = True
+            print_compile_note()
+        progress(stage, done, total, note)
+
+    return report
 
 
 def print_outcome(out: Path, facts: dict[str, Any]) -> None:

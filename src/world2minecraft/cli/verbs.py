@@ -19,6 +19,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from world2minecraft import __version__
 from world2minecraft.cli.failures import STOPPED
+from world2minecraft.cli.json_output import complete_json_option
 from world2minecraft.cli.panels import MORE
 
 # The verbs under the headings of ``w2m --help``, each with its one-line summary.
@@ -180,7 +181,7 @@ class VerbCommand(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the arguments; a usage error refers to the help of this verb."""
         try:
-            return super().parse_args(ctx, args)
+            return super().parse_args(ctx, complete_json_option(args, self.params))
         except Exception as error:
             wrong: Any = error
             if getattr(wrong, "ctx", ctx) is None:

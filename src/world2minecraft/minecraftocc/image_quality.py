@@ -123,6 +123,7 @@ class QualityReport:
     rows: tuple[QualityRow, ...]
     variants: tuple[str, ...]
     sizes_px: tuple[str, ...]  # of the pictures as they are
+    found: int = 0  # Pictures that the sample was taken of.
 
 
 def sample_keys(
@@ -147,26 +148,11 @@ def sample_keys(
     return sorted(islice((key for key in shuffled if not is_wanted or is_wanted(key)), count))
 
 
-def parse_size(text: str) -> tuple[int, int] | None:
-    """Return the width and height that a text says, None for ``none``.
-
-    Raises:
-        UsageError: it says none.
-
-    Example:
-        >>> parse_size("640x480"), parse_size("none")
-        ((640, 480), None)
-    """
-    if text == "none":
-        return None
-    width, _, height = text.partition("x")
-    try:
-        size = (int(width), int(height))
-    except ValueError:
-        size = (0, 0)
+def check_size(size: tuple[int, int]) -> None:
+    """Raise UsageError for a width and height that pictures cannot be resized to."""
     if min(size) < 1 or max(size) > MAX_SIDE_PX:
-        raise UsageError(f"--resize is WIDTHxHEIGHT, such as 640x480, or none, not {text!r}")
-    return size
+        width, height = size
+        raise UsageError(f"--resize must be 1 to {MAX_SIDE_PX:,} pixels, not {width}x{height}")
 
 
 def picture_quality(picture: np.ndarray, models: Sequence[NiqeModel]) -> PictureQuality:

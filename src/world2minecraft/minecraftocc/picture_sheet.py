@@ -1,16 +1,21 @@
 """Draw contact sheets: many images side by side, each with a caption under it."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.core.errors import UsageError
+from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_camera
+from world2minecraft.minecraftocc.sample_figure import overlay_labels
+from world2minecraft.minecraftocc.scene_sources import open_scene_source
+from world2minecraft.minecraftocc.store import open_store
+from world2minecraft.minecraftocc.tours import read_views
 from world2minecraft.rendering.light import LightSettings
 from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_frames
-from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.shading_parameters import DAY
 
 GAP_PX, LINE_PX = 6, 16
@@ -59,6 +64,68 @@ def spread_indices(count: int, limit: int) -> list[int]:
     if count <= limit:
         return list(range(count))
     return [int(n) for n in np.round(np.linspace(0, count - 1, limit))]
+
+
+def select_indices(count: int, limit: int, first: bool) -> list[int]:
+    """Return up to ``limit`` numbers below ``count``: the first ones, or spread over all."""
+    return list(range(min(count, limit))) if first else spread_indices(count, limit)
+
+
+def pictures_of_dataset(
+    folder: Path, limit: int, *, first: bool = False, split: str = "", labels: bool = False
+) -> Iterable[tuple[np.ndarray, str]]:
+    """Yield pictures of a data set with their captions.
+
+    Args:
+        folder: the data set.
+        limit: how many samples at most.
+        first: take the first ones, not some spread over all.
+        split: train or test; all samples where empty.
+        labels: yield each picture a second time with its labels drawn over it.
+
+    Raises:
+        InputError: the data set has no pictures and ``labels`` is not given.
+    """
+    store = open_store(folder)
+    keys = store.keys(split or None)
+    for number in select_indices(len(keys), limit, first):
+        sample = store[keys[number]]
+        if sample.colour is not None:
+            yield sample.colour, keys[number]
+        elif not labels:
+            raise InputError(folder, "has labels and no pictures; add --labels to see the labels")
+        if labels:
+            yield overlay_labels(sample), f"{keys[number]} labels"
+
+
+def pictures_of_tour(
+    tour: Path,
+    world: Path,
+    limit: int,
+    *,
+    width_px: int,
+    first: bool = False,
+    hour: float | None = None,
+) -> Iterable[tuple[np.ndarray, str]]:
+    """Draw views of a tour file in its world; yield them with their captions.
+
+    Args:
+        tour: the file.
+        world: what it is a tour of.
+        limit: how many views at most.
+        width_px: the width of each picture.
+        first: take the first ones, not some spread over all.
+        hour: the time of day that lights them; that of ``LightSettings`` where None.
+    """
+    volume = open_scene_source(world).volume()
+    views = read_views(tour, volume.block_to_room)
+    chosen = [views[number] for number in select_indices(len(views), limit, first)]
+    light = LightSettings() if hour is None else LightSettings(hour=hour)
+    shots = [(view.camera, view.camera_to_room) for view in chosen]
+    pictures = draw_views(prepare_scene(volume), shots, width_px, light)
+    for view, colour in zip(chosen, pictures, strict=True):
+        yaw, pitch = f"{view.pose.yaw_deg:.0f}", f"{view.pose.pitch_deg:.0f}"
+        yield colour, f"{view.tour_id} {view.frame}  {view.kind} {yaw} {pitch}"
 
 
 def draw_views(

@@ -205,7 +205,7 @@ def test_a_hostile_npz_is_refused(folders, tmp_path):
 def test_wrong_folders_are_named(tmp_path, folders):
     with pytest.raises(InputError, match="is no occupancy data set"):
         open_occupancy(tmp_path)
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="not found"):
         open_occupancy(tmp_path / "none")
     with pytest.raises(UnknownNameError, match="did you mean 'nyu'"):
         open_occupancy(tmp_path, "nyuv2")

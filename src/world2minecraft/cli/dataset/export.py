@@ -1,12 +1,14 @@
-"""``w2m dataset export``: a data set in the formats that the loaders of others read."""
+"""``w2m dataset export``: a data set in the formats that other loaders read."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.cli.dataset.options import MORE
+
 if TYPE_CHECKING:
-    from world2minecraft.minecraftocc.exporters import ExportReport
+    from world2minecraft.api.datasets import ExportReport
 
 EXAMPLES = """\
 w2m dataset export DATA --format nyu --out NYU             for MonoScene, NDC-Scene, ISO, Symphonies
@@ -16,64 +18,84 @@ w2m dataset export DATA --format npz --out NPZ             plain arrays, for any
 w2m dataset export DATA --format nyu --out NYU --limit 20  a few, to try
 """
 
+ShortBin = Annotated[
+    bool,
+    typer.Option(
+        "--short-bin",
+        help="Of nyu, write only the headers of the .bin files.",
+        rich_help_panel=MORE,
+    ),
+]
+DataRoot = Annotated[
+    str | None,
+    typer.Option(
+        "--data-root",
+        help="Of occscannet and embodied, what the paths in files begin with.",
+        show_default="./data/occscannet",
+        rich_help_panel=MORE,
+    ),
+]
+FramesPerScene = Annotated[
+    int | None,
+    typer.Option(
+        "--frames-per-scene",
+        min=0,
+        help="Of embodied, frames of each scene; 0 for all.",
+        show_default="30",
+        rich_help_panel=MORE,
+    ),
+]
+
 
 def run(
     source: Annotated[
         Path, typer.Argument(help="A data set, or a folder that w2m dataset import reads.")
     ],
     format: Annotated[str, typer.Option("--format", help="nyu, occscannet, embodied or npz.")],
-    out: Annotated[Path, typer.Option("--out", help="The folder to write.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The folder to write.")],
     split: Annotated[
-        str | None, typer.Option("--split", help="train or test alone; all by default.")
+        str | None, typer.Option("--split", help="train or test.", show_default="all")
     ] = None,
     limit: Annotated[
-        int | None, typer.Option("--limit", min=1, help="At most so many samples.")
+        int | None, typer.Option("--limit", min=1, help="Export this many samples at most.")
     ] = None,
     unknown: Annotated[
-        str, typer.Option("--unknown", help="Unknown cells: keep (255) or empty (0).")
+        str, typer.Option("--unknown", help="Write unknown cells as keep (255) or empty (0).")
     ] = "keep",
     in_view: Annotated[
-        bool, typer.Option("--in-view", help="Make cells outside the picture unknown.")
+        bool, typer.Option("--in-view", help="Make cells outside the image unknown.")
     ] = False,
-    short_bin: Annotated[
-        bool, typer.Option("--short-bin", help="nyu: only the heads of the .bin files.")
-    ] = False,
-    data_root: Annotated[
-        str | None,
-        typer.Option("--data-root", help="occscannet, embodied: what paths in files begin with."),
-    ] = None,
-    frames_per_scene: Annotated[
-        int | None,
-        typer.Option("--frames-per-scene", min=0, help="embodied: 30 by default; 0 for all."),
-    ] = None,
+    short_bin: ShortBin = False,
+    data_root: DataRoot = None,
+    frames_per_scene: FramesPerScene = None,
 ) -> None:
     """Write a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as plain npz.
 
-    Pictures are cropped and resampled where a format asks for a certain camera. An export that was
-    stopped goes on when the same command is given again. docs/occupancy-formats.md has every file.
+    Images are cropped and resampled where a format requires a certain camera. An export that was
+    interrupted continues with the same command. docs/occupancy-formats.md describes every file.
     """
+    from world2minecraft.api import export_dataset
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
-    from world2minecraft.minecraftocc.exporters.options import DATA_ROOT, FRAMES_PER_SCENE
-    from world2minecraft.minecraftocc.importers import open_occupancy
 
-    rule = ExportRule(
-        unknown=unknown,
-        in_view=in_view,
-        short_bin=short_bin,
-        data_root=DATA_ROOT if data_root is None else data_root.rstrip("/"),
-        frames_per_scene=FRAMES_PER_SCENE if frames_per_scene is None else frames_per_scene,
-    )
-    samples = open_occupancy(source)
     with show_progress() as progress:
-        report = export_samples(
-            samples, format, out, rule, split=split, limit=limit, progress=progress
+        report = export_dataset(
+            source,
+            out,
+            format,
+            split=split,
+            limit=limit,
+            unknown=unknown,
+            in_view=in_view,
+            short_bin=short_bin,
+            data_root=data_root,
+            frames_per_scene=frames_per_scene,
+            progress=progress,
         )
     _print_summary(report, format)
 
 
 def _print_summary(report: "ExportReport", format: str) -> None:
-    before = f", {report.passed_over} were there already" if report.passed_over else ""
+    before = f", {report.passed_over} exist already" if report.passed_over else ""
     print(f"{report.written} samples written to {report.out}{before}")
     for note in report.notes:
         print(f"note: {note}")

@@ -1,12 +1,9 @@
-"""``w2m dataset import``: an occupancy data set of others becomes one of ours."""
+"""``w2m dataset import``: convert a published occupancy data set into one of ours."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from world2minecraft.core.progress import Progress
 
 EXAMPLES = """\
 w2m dataset import depthbin --labels preprocess --out NYU     NYUv2 as MonoScene has it
@@ -20,52 +17,32 @@ def run(
     source: Annotated[
         Path, typer.Argument(help="A folder of NYUv2, OccScanNet, EmbodiedOcc-ScanNet or npz.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="The data set to write, a new folder.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The data set to write, a new folder.")],
     format: Annotated[
-        str | None, typer.Option("--format", help="Found out by default; nyu, occscannet ...")
+        str | None,
+        typer.Option("--format", help="nyu, occscannet, embodied or npz.", show_default="detected"),
     ] = None,
     labels: Annotated[
         Path | None,
-        typer.Option("--labels", help="nyu: where MonoScene's base/ lies, if elsewhere."),
+        typer.Option("--labels", help="Of nyu, the folder of MonoScene's base/, if elsewhere."),
     ] = None,
     split: Annotated[
-        str | None, typer.Option("--split", help="train or test alone; all by default.")
+        str | None, typer.Option("--split", help="train or test.", show_default="all")
     ] = None,
     limit: Annotated[
-        int | None, typer.Option("--limit", min=1, help="At most so many samples.")
+        int | None, typer.Option("--limit", min=1, help="Import this many samples at most.")
     ] = None,
 ) -> None:
-    """Read an occupancy data set of others into a data set that w2m trains on, scores and shows.
+    """Convert a published occupancy data set into one that w2m trains on, scores and shows.
 
-    Pickles are read without running anything: one that asks for more than arrays is refused.
+    Pickles are read without executing anything: one that asks for more than arrays is refused.
     """
-    from itertools import islice
-
+    from world2minecraft.api import import_dataset, open_dataset
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.core.errors import UsageError
-    from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.minecraftocc.store import write_store
 
-    found = open_occupancy(source, format, labels=labels)
-    count = len(found.keys(split)) if limit is None else min(limit, len(found.keys(split)))
-    if not count:
-        raise UsageError(f"{source} has no sample in {split}: {found.describe()}")
+    found = open_dataset(source, format=format, labels=labels)
     print(f"{source}: {found.describe()}")
     with show_progress() as progress:
-        write_store(
-            out,
-            islice(found.samples(split), count),
-            {"imported": {"format": found.format, "samples": count}},
-            progress=_of(progress, count),
-        )
-    print(f"{count:,} samples written to {out}")
+        made = import_dataset(found, out, split=split, limit=limit, progress=progress)
+    print(f"{len(made):,} samples written to {out}")
     print(f"next: w2m dataset show {out}")
-
-
-def _of(progress: "Progress", count: int) -> "Progress":
-    """Return a progress that knows how many samples there are."""
-
-    def told(stage: str, done: int, total: int, note: str = "") -> None:
-        progress(stage, done, total or count, note)
-
-    return told

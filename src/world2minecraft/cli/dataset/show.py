@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 
 EXAMPLES = """\
-w2m dataset show DATA                                 what it holds, and its first sample
+w2m dataset show DATA                                 the data set, and its first sample
 w2m dataset show DATA house_0001-t0-00012             one sample, by its key
 w2m dataset show depthbin --labels preprocess         NYUv2 as MonoScene has it
-w2m dataset show OccScanNet --picture look.png        the picture elsewhere
+w2m dataset show OccScanNet --out look.png            write the picture elsewhere
 """
 
 
@@ -17,34 +17,42 @@ def run(
     source: Annotated[
         Path, typer.Argument(help="A data set, or NYUv2, OccScanNet, EmbodiedOcc-ScanNet, npz.")
     ],
-    key: Annotated[str | None, typer.Argument(help="Which sample; the first by default.")] = None,
-    picture: Annotated[
-        Path | None, typer.Option("--picture", help="Where it goes; KEY.png here by default.")
+    key: Annotated[
+        str | None,
+        typer.Argument(help="The key of the sample.", show_default="the first"),
     ] = None,
-    format: Annotated[str | None, typer.Option("--format", help="Found out by default.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", "--picture", help="The PNG file to write.", show_default="KEY.png"
+        ),
+    ] = None,
+    format: Annotated[
+        str | None,
+        typer.Option("--format", help="nyu, occscannet, embodied or npz.", show_default="detected"),
+    ] = None,
     labels: Annotated[
         Path | None,
-        typer.Option("--labels", help="nyu: where MonoScene's base/ lies, if elsewhere."),
+        typer.Option("--labels", help="Of nyu, the folder of MonoScene's base/, if elsewhere."),
     ] = None,
 ) -> None:
-    """Draw one sample: its picture, its depth, its labels cast into the picture, and from above.
+    """Draw one sample: its image, its depth, its labels in the image, and from above.
 
-    Where the labels' colours lie on the things that they name, camera, axes and labels fit.
+    Where the colours of the labels lie on the things that they name, camera, axes and labels fit.
     """
-    from world2minecraft.core.files import write_bytes
-    from world2minecraft.minecraftocc.importers import open_occupancy
-    from world2minecraft.minecraftocc.sample_figure import draw_sample, share_of_depth_in_cells
-    from world2minecraft.rendering.output.images import colour_bytes
+    from world2minecraft.api import open_dataset
+    from world2minecraft.api.dataset_contents import draw_sample
 
-    found = open_occupancy(source, format, labels=labels)
+    found = open_dataset(source, format=format, labels=labels)
     print(f"{source}: {found.describe()}")
-    sample = found[key or found.keys()[0]]
-    share = share_of_depth_in_cells(sample)
-    if share is not None:
+    keys = found.keys()
+    chosen = key or keys[0]
+    path = out or Path(f"{chosen}.png")
+    figure = draw_sample(found, chosen, out=path)
+    if figure.depth_in_cells is not None:
+        share = figure.depth_in_cells
         print(f"{share:.1%} of the depth within the region lies in labelled cells")
-    path = picture or Path(f"{sample.key}.png")
-    write_bytes(path, colour_bytes(draw_sample(sample), ".png"))
     print(f"picture: {path}")
-    more = found.keys()[1:2]
+    more = keys[1:2]
     print(f"next: w2m dataset show {source} {more[0]}" if more and key is None else
           f"next: w2m dataset export {source} --format npz --out OUT")  # fmt: skip

@@ -1,46 +1,33 @@
-"""``w2m dataset tour``: which pictures of a world are taken, as a file of poses."""
+"""``w2m dataset tour``: plan which images of a world are taken, as a file of poses."""
 
-from collections import Counter
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from world2minecraft.cli.dataset.options import (
-    At,
-    BlockMap,
-    CameraName,
-    Fov,
-    Scale,
-    Seed,
-    Size,
-    check_seed,
-    parse_at,
-    parse_camera,
-)
+from world2minecraft.cli.dataset.options import At, BlockMap, CameraName, Fov, Scale, Seed, Size
 
 if TYPE_CHECKING:
-    from world2minecraft.minecraftocc.scene_sources import SceneSource
-    from world2minecraft.minecraftocc.tours import PlannedView
+    from world2minecraft.api.tours import TourFile
 
 EXAMPLES = """\
 w2m dataset tour WORLDS/house_0001                        100 views, to tour.jsonl
 w2m dataset tour WORLDS/house_0001 --count 640 --seed 2 --out more.jsonl
 w2m dataset tour house.schem --blocks-per-metre 1 --camera paper
-w2m dataset tour OUT --reachable                          only where the player can walk to
+w2m dataset tour OUT --reachable                          only where the player can walk
 w2m dataset tour WORLD --screenshots FOLDER --at feet     poses of real screenshots
 w2m dataset tour WORLD --screenshots FOLDER --at feet --pattern "{x}_{y}_{z}_{yaw}_{pitch}"
 """
-GAME_FOV_DEG = 70.0
 
 World = Annotated[
-    Path, typer.Argument(metavar="WORLD", help="A world, a run's folder, or a file of blocks.")
+    Path, typer.Argument(metavar="WORLD", help="A world, a run's folder, or a block file.")
 ]
-Count = Annotated[int, typer.Option("--count", metavar="N", help="How many views.")]
-Out = Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The tour file, JSONL.")]
+Count = Annotated[int, typer.Option("--count", metavar="N", help="Number of views.")]
+Out = Annotated[
+    Path, typer.Option("--out", "-o", metavar="FILE", help="The tour file to write, JSONL.")
+]
 Reachable = Annotated[
-    bool, typer.Option("--reachable", help="Leave out rooms that no way from the spawn leads to.")
+    bool, typer.Option("--reachable", help="Leave out rooms that cannot be reached from the spawn.")
 ]
 Shots = Annotated[
     Path | None,
@@ -50,7 +37,7 @@ Poses = Annotated[
     Path | None, typer.Option("--poses", metavar="FILE", help="Their poses, as JSONL or CSV.")
 ]
 Pattern = Annotated[
-    str | None, typer.Option("--pattern", metavar="TEXT", help="How their names hold poses.")
+    str | None, typer.Option("--pattern", metavar="TEXT", help="How their names hold the poses.")
 ]
 
 
@@ -70,92 +57,68 @@ def run(
     poses: Poses = None,
     pattern: Pattern = None,
 ) -> None:
-    """Plan smooth walks through all rooms of a world, with views that are worth a picture.
+    """Plan smooth walks through all rooms of a world, with views that are worth an image.
 
-    Rooms share the views by their size and by what stands in them. Views look along the axes,
-    along the diagonals and freely; blocked, empty, flat and dark ones and those nearly like another
-    are left out. Doors are opened on the way.
+    Rooms share the views by their size and furniture. Views look along the axes, along the
+    diagonals and freely; blocked, empty, flat and dark ones, and near duplicates, are left out.
+    Doors are opened on the way.
 
     With --screenshots, the poses of real screenshots become a tour file instead: they come from
     --poses, from the names by --pattern, or from a poses.jsonl or .csv beside them, the PNG's texts
-    or the usual names. --at says whether x, y, z is at the feet, as F3 shows it, or at the eye.
+    or the usual names. --at states whether x, y, z are at the feet, as F3 shows, or at the eye.
 
     Raises:
-        UsageError: the words contradict each other, or nobody can stand in the world.
+        UsageError: the options contradict each other, or nobody can stand in the world.
         InputError: the world or a screenshot cannot be read.
     """
+    from world2minecraft.api.datasets import check_seed
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.api.tours import plan_tour, tour_of_screenshots
+    from world2minecraft.cli.arguments import size_of
+    from world2minecraft.cli.outcome import with_compile_note
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.minecraftocc.scene_sources import open_scene_source
-    from world2minecraft.minecraftocc.tours import write_views
 
     if screenshots is None and (at or poses is not None or pattern is not None):
-        raise UsageError("--at, --poses and --pattern tell of --screenshots DIR; name them")
+        raise UsageError("--at, --poses and --pattern need --screenshots DIR")
     check_seed(seed)
-    source = open_scene_source(world, block_map=block_map, blocks_per_metre=blocks_per_metre)
+    scene: dict[str, Any] = {
+        "block_map": block_map,
+        "blocks_per_metre": blocks_per_metre,
+        "fov_deg": fov,
+    }
     if screenshots is not None:
-        _write_recorded(source, screenshots, at, poses, pattern, fov, out)
-        return
-    wanted = parse_camera(camera, size, fov)
-    views = _plan(source, count, seed, wanted, reachable)
-    write_views(out, views, source.volume().block_to_room, source.scene_id)
-    for note in source.notes():
-        print(f"note: {note}")
-    _print_summary(views, count, out, world)
-
-
-def _plan(
-    source: "SceneSource", count: int, seed: int, camera, reachable: bool
-) -> "list[PlannedView]":
-    from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.core.errors import UsageError
-    from world2minecraft.minecraftocc.tours import TourRule, find_layouts, plan_views
-
-    start = source.start()
-    if reachable and start is None:
-        raise UsageError("--reachable needs a world that says its spawn; this one does not")
-    rule = TourRule(
-        camera=camera,
-        start=start,
-        reachable_only=reachable,
-        layouts=find_layouts(source.path),
-    )
-    print_compile_note()
-    with show_progress() as progress:
-        return plan_views(source.volume(), count, seed, rule, progress=progress)
-
-
-def _write_recorded(
-    source: "SceneSource",
-    folder: Path,
-    at: str,
-    poses: Path | None,
-    pattern: str | None,
-    fov_deg: float | None,
-    out: Path,
-) -> None:
-    from world2minecraft.minecraftocc.screenshots import read_screenshots
-    from world2minecraft.minecraftocc.tours.pose_files import write_recorded_views
-
-    told = parse_at(at)
-    views = read_screenshots(
-        folder, at=told, poses=poses, pattern=pattern, vertical_fov_deg=fov_deg or GAME_FOV_DEG
-    )
-    write_recorded_views(out, views, source.volume().block_to_room, source.scene_id)
-    kinds = Counter(view.pose_source for view in views)
-    by = ", ".join(f"{number} by {kind}" for kind, number in kinds.items())
-    print(f"{out}: {len(views)} screenshots ({by}), x, y, z taken as that of the {at}")
-    print(f"  look   w2m dataset sheet {out} --world {source.path}      pictures of the same poses")
-
-
-def _print_summary(views: "Sequence[PlannedView]", count: int, out: Path, world: Path) -> None:
-    kinds = Counter(view.kind for view in views)
-    told = ", ".join(f"{kinds[kind]} {kind}" for kind in ("axis", "diagonal", "free"))
-    tours, rooms = len({view.tour_id for view in views}), len({view.room for view in views})
-    print(f"{out}: {len(views)} views ({told}) in {tours} tours of {rooms} rooms")
-    if len(views) < count:
-        print(
-            f"note: {count} were asked for; the rooms give no more that differ and show something"
+        tour = tour_of_screenshots(
+            world, screenshots, out, at=at, poses=poses, pattern=pattern, **scene
         )
-    print(f"  look   w2m dataset sheet {out} --world {world}")
-    print(f"  draw   w2m render {world} --poses {out} --out pictures")
+        _print_recorded(tour, at, world)
+        return
+    with show_progress() as progress:
+        tour = plan_tour(
+            world,
+            out,
+            count=count,
+            seed=seed,
+            camera=camera,
+            size=size_of(size),
+            reachable=reachable,
+            progress=with_compile_note(progress),
+            **scene,
+        )
+    for note in tour.notes:
+        print(f"note: {note}")
+    _print_planned(tour, count, world)
+
+
+def _print_recorded(tour: "TourFile", at: str, world: Path) -> None:
+    by = ", ".join(f"{number} by {kind}" for kind, number in tour.kinds.items())
+    print(f"{tour.path}: {tour.views} screenshots ({by}), x, y, z taken as those of the {at}")
+    print(f"  look   w2m dataset sheet {tour.path} --world {world}      images from the same poses")
+
+
+def _print_planned(tour: "TourFile", count: int, world: Path) -> None:
+    kinds = ", ".join(f"{tour.kinds.get(kind, 0)} {kind}" for kind in ("axis", "diagonal", "free"))
+    print(f"{tour.path}: {tour.views} views ({kinds}) in {tour.tours} tours of {tour.rooms} rooms")
+    if tour.views < count:
+        print(f"note: {count} were requested; the rooms give no more that differ")
+    print(f"  look   w2m dataset sheet {tour.path} --world {world}")
+    print(f"  draw   w2m render {world} --poses {tour.path} --out pictures")

@@ -1,35 +1,51 @@
 """``w2m dataset verify``: every byte of a data set against its index."""
 
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
 from world2minecraft.cli.dataset import options as option
 
 EXAMPLES = """\
-w2m dataset verify DATA      reads all shards and compares all sums
+w2m dataset verify DATA             read all shards and compare all checksums
+w2m dataset verify DATA --json      the same for another program
 """
 MAX_SHOWN = 20
 
 
-def run(folder: option.Folder) -> None:
-    """Read a whole data set and tell what is missing, damaged, or does not belong to it.
+def run(
+    folder: option.Folder,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Read a whole data set and list what is missing, damaged or unexpected.
+
+    The exit code is 3 where there is a fault, with --json too.
 
     Raises:
-        InputError: it is no data set, or not finished. DamagedFileError: something is wrong.
+        InputError: it is not a data set, or not finished. DamagedFileError: it has faults.
     """
+    from world2minecraft.api import verify_dataset
     from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.json_output import print_json
     from world2minecraft.core.errors import DamagedFileError
-    from world2minecraft.minecraftocc.store import verify_store
 
     with show_progress() as progress:
-        verdict = verify_store(folder, progress)
-    for fault in verdict.faults[:MAX_SHOWN]:
+        report = verify_dataset(folder, progress=progress)
+    if as_json:
+        print_json(asdict(report))
+    for fault in report.faults[:MAX_SHOWN] if not as_json else ():
         print(f"fault: {fault}")
-    if verdict.faults:
-        more = len(verdict.faults)
+    if report.faults:
+        count = len(report.faults)
         raise DamagedFileError(
             folder,
-            f"has {more:,} fault{'s' * (more > 1)}; delete the shards that are named and run the "
-            "same w2m dataset build again",
+            f"has {count:,} fault{'s' * (count > 1)}; delete the shards that are listed and run "
+            "the same w2m dataset build again",
         )
-    size = verdict.bytes / 1e6
-    print(f"{folder}: {verdict.samples:,} samples in {verdict.shards:,} shards, {size:,.0f} MB: ok")
-    print(f"  sum    {verdict.sha256}")
-    print("  next   w2m dataset stats DATA".replace("DATA", str(folder)))
+    if as_json:
+        return
+    size = report.bytes / 1e6
+    print(f"{folder}: {report.samples:,} samples in {report.shards:,} shards, {size:,.0f} MB: ok")
+    print(f"  sum    {report.sha256}")
+    print(f"  next   w2m dataset stats {folder}")

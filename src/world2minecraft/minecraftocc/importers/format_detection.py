@@ -58,7 +58,7 @@ def open_occupancy(
     """
     place = Path(path)
     if not place.exists():
-        raise InputError(place, "is not there")
+        raise InputError(place, "not found")
     if format is None:
         format = next((name for name, kind in IMPORTED.items() if kind.is_at(place)), None)
         if format is None:

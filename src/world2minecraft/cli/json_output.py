@@ -1,0 +1,40 @@
+"""``--json`` of verbs that print figures: to the screen, or to the file whose name follows."""
+
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+OPTION, FILE = "--json", "[FILE]"
+STDOUT = Path("-")
+JsonOutput = Annotated[
+    Path | None,
+    typer.Option(OPTION, metavar=FILE, help="Print every figure as JSON, or write it to FILE."),
+]
+
+
+def prints_json(json_file: Path | None) -> bool:
+    """Return whether JSON, and nothing else, goes to the screen."""
+    return json_file == STDOUT
+
+
+def print_json(value: Any) -> None:
+    """Print a value as one JSON document."""
+    print(json.dumps(value, indent=1, sort_keys=True, allow_nan=False))
+
+
+def complete_json_option(words: Sequence[str], options: Iterable[Any]) -> list[str]:
+    """Give a ``--json`` without a file the name ``-``, for a verb with ``JsonOutput``.
+
+    Args:
+        words: those after the verb.
+        options: the parameters of the verb.
+    """
+    if not any(OPTION in one.opts and one.metavar == FILE for one in options):
+        return list(words)
+    return [
+        f"{OPTION}={STDOUT}" if word == OPTION and after[:1] == "-" != after else word
+        for word, after in zip(words, [*words[1:], "--"], strict=False)
+    ]
