@@ -139,14 +139,14 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "text"),
     [
-        (["nowhere", "--grid", "GRID"], 3, "is not there; give a depth PNG, a photo or a capture"),
-        (["DEPTH"], 2, "is a depth picture; --grid tells where its cells lie"),
+        (["nowhere", "--grid", "GRID"], 3, "not found; give a depth PNG, a photo or a capture"),
+        (["DEPTH"], 2, "is a depth picture; add --grid, which places its cells"),
         (["PHOTO", "--grid", "GRID"], 3, "is a photo; give its depth picture, or a network"),
-        (["DEPTH", "--grid", "GRID", "--predictor", "mono:NET"], 3, "mono looks at the photo"),
+        (["DEPTH", "--grid", "GRID", "--predictor", "mono:NET"], 3, "mono needs the photo"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mano:NET"], 2, "did you mean 'mono'"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mono:SMALL"], 2, "says 8x8x8 cells of 0.16 m"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mono:DEEP"], 2, "wants depth; give a network"),
-        (["CAPTURE", "--colour", "PHOTO"], 2, "--colour goes with one depth picture"),
+        (["CAPTURE", "--colour", "PHOTO"], 2, "--colour needs one depth picture"),
         (["PHOTO"], 3, "--predictor mono"),
         (["EMPTY"], 3, "EMPTY"),
     ],

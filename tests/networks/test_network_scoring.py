@@ -197,6 +197,9 @@ def test_onnx_files_and_saved_predictions_from_the_command_line(store, tmp_path,
     scores = json.loads(found.read_text())
     assert scores["split"] == "test" and SCENES in scores["protocols"]
     assert scores["protocols"]["embodied"]["micro"]["iou"] == 1
+    words = ["evaluate", "occupancy", saved, store, "--json"]
+    code, out = told(words, capsys)
+    assert code == 0 and json.loads(out.out)["protocols"] == scores["protocols"]
 
 
 def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
@@ -227,7 +230,7 @@ def test_single_files_and_folders_of_bins_are_scored(tmp_path, capsys):
         (["train", "monoscene"], 2, "nothing to train on; give --data DIR"),
         (["train", "x", "--data", "d", "--image", "big"], 2, "--image is WIDTHxHEIGHT"),
         (["train", "x", "--data", "d", "--preset", "8"], 2, "no preset is named '8'"),
-        (["evaluate", "occupancy", "gone", "."], 3, "gone: is not there"),
+        (["evaluate", "occupancy", "gone", "."], 3, "gone: not found"),
     ],
 )
 def test_command_line_mistakes_are_reported(words, code, text, capsys):

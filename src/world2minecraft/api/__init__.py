@@ -29,6 +29,12 @@ if TYPE_CHECKING:
         scan_room,
     )
     from world2minecraft.api.navigation import make_env
+    from world2minecraft.api.networks import (
+        evaluate_network,
+        export_network,
+        predict_occupancy,
+        train_network,
+    )
     from world2minecraft.api.parameters import settings
     from world2minecraft.api.progress import show_progress
     from world2minecraft.api.results import Room, RoomObject, Run, load
@@ -51,7 +57,9 @@ __all__ = [
     "dataset_statistics",
     "demo",
     "evaluate",
+    "evaluate_network",
     "export_dataset",
+    "export_network",
     "generate_house",
     "generate_room",
     "generate_worlds",
@@ -60,12 +68,14 @@ __all__ = [
     "make_env",
     "open_dataset",
     "open_editor",
+    "predict_occupancy",
     "reconstruct",
     "render",
     "save_room",
     "scan_room",
     "settings",
     "show_progress",
+    "train_network",
     "verify_dataset",
 ]
 
@@ -97,6 +107,12 @@ _MODULES = {
         "scan_room",
     ),
     "navigation": ("make_env",),
+    "networks": (
+        "evaluate_network",
+        "export_network",
+        "predict_occupancy",
+        "train_network",
+    ),
     "parameters": ("settings",),
     "progress": ("show_progress",),
     "results": (

@@ -6,67 +6,56 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.networks.onnx_export import ExportReport
+    from world2minecraft.api.networks import ExportedNetwork
 
 EXAMPLES = """\
 w2m export RUN --out net.onnx                              the best weights of a run
-w2m export RUN/last.safetensors --out last.onnx            or others
+w2m export RUN/last.safetensors --out last.onnx            the last weights
 w2m export RUN --out net.onnx --weights int8               a quarter of the size
 w2m reconstruct my_scan --out OUT --predictor mono:net.onnx
 """
 
 
 def run(
-    weights: Annotated[Path, typer.Argument(help="A run's folder, or weights of w2m train.")],
-    out: Annotated[Path, typer.Option("--out", help="The ONNX file to write.")],
-    name: Annotated[str, typer.Option("--name", help="What reports call it.")] = "",
+    weights: Annotated[
+        Path, typer.Argument(metavar="RUN", help="A run's folder, or weights of w2m train.")
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The ONNX file to write.")],
+    name: Annotated[
+        str,
+        typer.Option(
+            "--name", help="The network's name in reports.", show_default="network and size"
+        ),
+    ] = "",
     stored: Annotated[
-        str, typer.Option("--weights", help="How they are stored: float, half or int8.")
+        str, typer.Option("--weights", help="How weights are stored: float, half or int8.")
     ] = "float",
 ) -> None:
-    """Write a trained occupancy network as ONNX, by the contract of docs/networks-onnx.md.
+    """Write a trained occupancy network as ONNX, as docs/networks-onnx.md describes.
 
-    The file is asked about one picture beside the network, and written only where both agree.
-    Weights stored as half or int8 are made whole again as the file is loaded: the file shrinks,
-    nothing gets faster, and what it says moves a little. Score it before you trust it.
+    The file and the network are compared on one image, and the file is written only if they agree.
+    Weights stored as half or int8 are expanded as the file is loaded: the file is smaller, nothing
+    is faster, and predictions change a little. Score the file before you use it.
     """
-    from world2minecraft.cli.train.options import check_extra
-    from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
+    from world2minecraft.api import export_network
 
-    check_extra()
-    from world2minecraft.networks.callbacks import WEIGHTS
-    from world2minecraft.networks.checkpoints import load_weights, read_weights_config
-    from world2minecraft.networks.onnx_export import export_network
-    from world2minecraft.networks.training import build_network
-
-    path = weights / WEIGHTS if weights.is_dir() else weights
-    config = read_weights_config(path)
-    network = build_network(config)
-    load_weights(path, network)
-    facts = NetworkFacts(
-        name or f"{config.network}-{config.size}",
-        config.cells.shape,
-        config.cells.voxel_m,
-        config.image,
-        wants_depth=config.depth == "given",
-    )
-    written = export_network(network, out, facts, weights=stored)
-    OccupancyNetwork(out)
-    for line in summary_lines(out, facts.name, stored, written):
+    written = export_network(weights, out, name=name, weights=stored)
+    for line in summary_lines(written):
         print(line)
 
 
-def summary_lines(out: Path, name: str, stored: str, written: "ExportReport") -> list[str]:
+def summary_lines(written: "ExportedNetwork") -> list[str]:
     """Return what is printed of a file."""
+    out = written.path
     lines = [
-        f"{out}: {name}, {written.size / 1e6:.1f} MB; "
+        f"{out}: {written.name}, {written.bytes / 1e6:.1f} MB; "
         f"its logits differ by {written.difference:.1g} at most"
     ]
-    if stored != "float":
+    if written.weights != "float":
         lines.append(
-            f"weights as {stored} move a logit by {written.moved_mean:.2g} on the mean, "
+            f"weights as {written.weights} move a logit by {written.moved_mean:.2g} on average, "
             f"{written.moved:.2g} at most (all have a spread of {written.spread:.2g}); "
-            f"{written.renamed:.1%} of the cells take another class"
+            f"{written.relabelled:.1%} of the cells get another class"
         )
         lines.append(f"next: w2m evaluate occupancy {out} DATA      to see what that costs")
     lines.append(f"next: w2m reconstruct CAPTURE --out OUT --predictor mono:{out}")

@@ -38,6 +38,7 @@ from world2minecraft.networks.checkpoints import (
     load_checkpoint,
     load_weights,
     read_facts,
+    read_weights_config,
     write_weights,
 )
 from world2minecraft.networks.config import DEFAULT_FRAMES, RunConfig, read_config, write_config
@@ -263,6 +264,19 @@ def load_trained_network(
     network = build_network(config)
     load_weights(folder / (LAST if last else WEIGHTS), network)
     return network.to(resolve_device(device)).eval()
+
+
+def load_weights_file(path: Path) -> tuple[nn.Module, RunConfig]:
+    """Return the network of a run's folder or of a file of weights, and its settings.
+
+    Raises:
+        InputError: there are no weights. DamagedFileError: they are not those of a network.
+    """
+    file = path / WEIGHTS if path.is_dir() else path
+    config = read_weights_config(file)
+    network = build_network(config)
+    load_weights(file, network)
+    return network, config
 
 
 def _write_facts(

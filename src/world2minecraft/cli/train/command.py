@@ -1,17 +1,17 @@
 """``w2m train``: an occupancy network from data sets to weights and scores."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from world2minecraft.cli.train import options
 
 if TYPE_CHECKING:
-    from world2minecraft.networks.config import RunConfig
+    from world2minecraft.api.networks import TrainedNetwork
 
 EXAMPLES = """\
 w2m dataset build DATA --houses 40 --images 1000               something to train on
 w2m train monoscene --data DATA --out RUN                      2,000 steps at 0.16 m
-w2m train monoscene --data DATA --out TRY --preset smoke       does it run? some seconds
+w2m train monoscene --data DATA --out TRY --preset smoke       a test of some seconds
 w2m train iso --data PHOTO --data BLOCKS:3 --out JOINT         two sets; the first is the target
 w2m train symphonies --data NYU --preset 8k --out FULL         the papers' grid and size, for a GPU
 w2m train --config RUN/run.yaml --out AGAIN                    the same run again
@@ -43,46 +43,39 @@ def run(
 ) -> None:
     """Train an occupancy network, keep its best weights and score them.
 
-    A run that was stopped goes on with the same command. RUN/run.yaml holds every setting; others
-    than the options here are set there, and trained with --config.
+    A run that was interrupted continues with the same command. RUN/run.yaml holds every setting;
+    edit it and train with --config to change those without an option.
     """
+    from world2minecraft.api import train_network
     from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.arguments import size_of
 
-    given = {
-        "size": size, "backbone": backbone, "grid": grid, "depth": depth, "steps": steps,
-        "batch": batch, "learning_rate": lr, "precision": precision, "val_share": val_share,
-        "patience": patience, "seed": seed, "threads": threads, "workers": workers,
-    }  # fmt: skip
-    changes = {name: value for name, value in given.items() if value is not None}
-    if image:
-        changes["image"] = options.image_size(image)
-    chosen = options.run_config(network, data or [], config, preset, changes)
-    options.check_extra()
-    from world2minecraft.networks.data.training_data import CacheLocation
-    from world2minecraft.networks.training import score_run, train_run
-
+    image_px = size_of(image, "--image")
     with show_progress() as progress:
-        trained = train_run(
-            chosen, out, device=device, cache=CacheLocation.parse(cache), progress=progress
-        )
-        scores = score_run(trained, chosen, device, progress)
-    for line in trained.data.descriptions:
+        trained = train_network(
+            network, data or [], out, config=config, preset=preset, size=size, backbone=backbone,
+            grid=grid, image=image_px, depth=depth, steps=steps, batch=batch, learning_rate=lr,
+            precision=precision, val_share=val_share, patience=patience, seed=seed,
+            threads=threads, workers=workers, device=device, cache=cache, progress=progress,
+        )  # fmt: skip
+    for line in trained.data:
         print(line)
-    print_summary(out, chosen, trained.state, scores)
+    print_summary(trained)
 
 
-def print_summary(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> None:
-    """Say what came of a run and what to do next."""
+def print_summary(trained: "TrainedNetwork") -> None:
+    """Print the result of a run and the next steps."""
     from world2minecraft.api.progress import format_duration
 
+    out, scores = trained.folder, trained.scores
     micro = scores["protocols"]["monoscene"]["micro"]
-    stopped = ", stopped early" if state.stopped else ""
-    seconds = format_duration(state.seconds)
-    print(f"{state.step:,} steps in {seconds}{stopped}; best at {state.best_step:,}")
+    stopped = ", stopped early" if trained.stopped_early else ""
+    seconds = format_duration(trained.seconds)
+    print(f"{trained.steps:,} steps in {seconds}{stopped}; best at {trained.best_step:,}")
     print(
         f"IoU {100 * micro['iou']:.2f}, mIoU {100 * micro['miou']:.2f} by monoscene on the "
         f"{scores['split']} frames ({out / 'scores.json'} has all protocols)"
     )
-    data = config.data[0].path
+    data = trained.config.data[0].path
     print(f"next: w2m evaluate occupancy {out} {data}    every protocol, class and interval")
     print(f"then: w2m export {out} --out net.onnx    to run it without torch")
