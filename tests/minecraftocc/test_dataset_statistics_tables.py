@@ -67,18 +67,18 @@ classes          2 of 3 fine classes are seen by 100 pixels in 3 pictures or mor
                  8 of the 11 classes that are not empty are there
 splits           test 2, train 6
 
-class    voxels  share  NYUv2 train
-ceiling   5,000   8.2%         1.3%  ######
-floor    20,000  32.7%        17.8%  ########################
-wall     20,234  33.0%        15.1%  ########################
-window        0   0.0%         1.9%
-chair     5,000   8.2%         3.0%  ######
-bed       1,000   1.6%         7.3%  #
-sofa          0   0.0%         4.7%
-table     4,000   6.5%         4.2%  #####
-tvs           0   0.0%         0.5%
-furn      5,000   8.2%        30.0%  ######
-objs      1,000   1.6%        14.2%  #
+class       voxels  share  NYUv2 train
+ceiling      5,000   8.2%         1.3%  ######
+floor       20,000  32.7%        17.8%  ########################
+wall        20,234  33.0%        15.1%  ########################
+window           0   0.0%         1.9%
+chair        5,000   8.2%         3.0%  ######
+bed          1,000   1.6%         7.3%  #
+sofa             0   0.0%         4.7%
+table        4,000   6.5%         4.2%  #####
+television       0   0.0%         0.5%
+furniture    5,000   8.2%        30.0%  ######
+object       1,000   1.6%        14.2%  #
 
 fine class            pixels  pictures
 minecraft:oak_planks  90,000         8
@@ -117,7 +117,7 @@ def test_a_set_without_fine_classes_rooms_and_cells_says_so():
     )
     text = statistics_text(bare)
     assert "the 12 and unknown; this set names no fine classes" in text
-    assert "rooms            not told by every scene" in text
+    assert "rooms            not known of every scene" in text
     assert "resolutions      9x9 (5), 8x8 (3)" in text
     assert "distinct cells" not in text
 

@@ -7,7 +7,7 @@ labels belong together. A figure beside states the same of the depth.
 import numpy as np
 
 from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
-from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN, display_name
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.geometry.unprojection import unproject_depth
 from world2minecraft.minecraftocc.types import OccSample
@@ -185,10 +185,10 @@ def _draw_view(sheet: Sheet, sample: OccSample, corner: tuple[float, float], sca
 def _legend(sheet: Sheet, sample: OccSample, corner: tuple[float, float]) -> None:
     left, top = corner
     counts = np.bincount(sample.occ.labels.reshape(-1), minlength=256)
-    for number, name in enumerate(CLASS_NAMES[1:], 1):
+    for number in range(1, len(CLASS_NAMES)):
         fill = CLASS_COLOURS[number] if counts[number] else PANEL
         sheet.box((left, top), (14, 14), fill, RULE, 3)
-        sheet.text((left + 22, top), name, 13, INK if counts[number] else FAINT)
+        sheet.text((left + 22, top), display_name(number), 13, INK if counts[number] else FAINT)
         sheet.text((left + 150, top), f"{counts[number]:,}", 13, FAINT, anchor="ra")
         top += LINE_PX
     for line in _lines(sample, counts):

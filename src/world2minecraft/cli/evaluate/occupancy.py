@@ -184,10 +184,16 @@ def _table(title: str, head: tuple[str, ...], rows: list[tuple[str, ...]]) -> "T
 
 def class_table(scores: dict[str, Any]) -> "Table":
     """Return the IoU of each class by protocol."""
+    from world2minecraft.core.classes import CLASS_NAMES, display_name
+
     names = list(scores["protocols"])
     micro = {name: scores["protocols"][name]["micro"]["class_iou"] for name in names}
     rows = [
-        (label, *(_per_cent(micro[name][label]) for name in names)) for label in micro[names[0]]
+        (
+            display_name(CLASS_NAMES.index(label)),
+            *(_per_cent(micro[name][label]) for name in names),
+        )
+        for label in micro[names[0]]
     ]
     heads = ("class", *(name.replace(" ", "\n") for name in names))
     return _table("IoU of each class", heads, rows)

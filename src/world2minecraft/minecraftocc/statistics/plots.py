@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.classes import CLASS_COLOURS, display_name
 from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.minecraftocc.statistics.published_figures import NYU_TRAIN_VOXELS
@@ -67,7 +67,7 @@ def class_plot(statistics: DatasetStatistics) -> "Figure":
     rows = np.arange(len(order))
     axes.barh(rows, [ours[n] for n in order], color=colours)
     axes.vlines([theirs[n] for n in order], rows - 0.45, rows + 0.45, colors="black", linewidths=1)
-    axes.set_yticks(rows, [CLASS_NAMES[n + 1] for n in order])
+    axes.set_yticks(rows, [display_name(n + 1) for n in order])
     axes.set_xlim(0, 1.02 * max(0.01, *ours, *theirs))
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:.0%}")

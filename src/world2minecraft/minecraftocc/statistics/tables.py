@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES, display_name
 from world2minecraft.minecraftocc.statistics.published_figures import (
     NYU_TRAIN_VOXELS,
     PAPER,
@@ -196,7 +196,7 @@ def _detail_lines(statistics: DatasetStatistics) -> list[str]:
         present = len(statistics.classes_present)
         lines.append(f"                 {present} of the 11 classes that are not empty are there")
     if statistics.rooms is None:
-        lines.append("rooms            not told by every scene")
+        lines.append("rooms            not known of every scene")
     if len(statistics.sizes_px) > 1:
         sizes = ", ".join(f"{size} ({count:,})" for size, count in statistics.sizes_px.items())
         lines.append(f"resolutions      {sizes}")
@@ -209,9 +209,9 @@ def _class_lines(statistics: DatasetStatistics) -> list[str]:
     largest = max([*ours, 1e-9])
     rows = [("class", "voxels", "share", "NYUv2 train")]
     rows += [
-        (name, f"{count:,}", f"{share:.1%}", f"{nyu:.1%}")
-        for name, count, share, nyu in zip(
-            CLASS_NAMES[1:], statistics.class_voxels[1:], ours, theirs, strict=True
+        (display_name(number), f"{count:,}", f"{share:.1%}", f"{nyu:.1%}")
+        for number, (count, share, nyu) in enumerate(
+            zip(statistics.class_voxels[1:], ours, theirs, strict=True), 1
         )
     ]
     bars = ["", *("#" * round(BAR * share / largest) for share in ours)]
