@@ -59,11 +59,11 @@ def run(
     from world2minecraft.api import demo
     from world2minecraft.api.progress import show_progress
     from world2minecraft.api.time_left import DEMO
-    from world2minecraft.cli.outcome import print_compile_note, print_outcome
+    from world2minecraft.cli.outcome import print_outcome, with_compile_note
 
     print_style_note(blocks_per_metre, style)
-    print_compile_note()
-    with show_progress(stages=DEMO) as progress:
+    with show_progress(stages=DEMO) as shown:
+        progress = with_compile_note(shown)
         made = demo(
             out,
             kind=kind,

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.cli.panels import MORE
+
 if TYPE_CHECKING:
     from world2minecraft.api.networks import PredictedCells
 
@@ -16,7 +18,6 @@ w2m occupy NYU0001_0000_color.jpg --grid NYU0001_0000.bin --out pred.npz --predi
 w2m occupy my_scan --out room.npz                                        a whole captured room
 w2m occupy photo.jpg --out room.npz --predictor mono --fov 55
 """
-MORE = "More options"
 
 
 Source = Annotated[

@@ -1,5 +1,6 @@
 """Print the result of a finished run and the next steps."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ def print_compile_note() -> None:
     from world2minecraft.core.jit import KERNEL_CACHE
 
     if not any(KERNEL_CACHE.iterdir()):
-        print("First run: compiling the kernels takes about 30 s; later runs reuse them.")
+        line = "First run: compiling the kernels takes about 30 s; later runs reuse them."
+        print(line, file=sys.stderr)
 
 
 def with_compile_note(progress: Progress) -> Progress:

@@ -135,12 +135,12 @@ def run(
     """
     from world2minecraft.api import reconstruct
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.outcome import with_compile_note
 
     changes = parse_settings(settings)
     print_style_note(blocks_per_metre, changes.get("build.style", style))
-    print_compile_note()
-    with show_progress() as progress:
+    with show_progress() as shown:
+        progress = with_compile_note(shown)
         made = reconstruct(
             capture,
             out,

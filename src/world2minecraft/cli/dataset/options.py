@@ -5,9 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
+from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
-
-MORE = "More options"
 
 
 def _option(*names: str, text: str, more: bool = False, **facts: Any) -> Any:

@@ -91,7 +91,7 @@ def run(
     """
     from world2minecraft.api.generation import scan_trial
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.outcome import with_compile_note
 
     figures = {
         "sensor": sensor, "frames": frames, "depth_scale_sigma": depth_scale_sigma,
@@ -101,8 +101,8 @@ def run(
     if labels:
         given["labels"] = True
     _check_source(room_dir, seed, kind, trial, given)
-    print_compile_note()
-    with show_progress() as progress:
+    with show_progress() as shown:
+        progress = with_compile_note(shown)
         if trial is not None:
             scan_trial(trial, out, progress)
         else:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-MORE = "More options"
+from world2minecraft.cli.panels import MORE
 
 
 def _option(*names: str, text: str, more: bool = False, **facts: Any) -> Any:

@@ -56,7 +56,7 @@ def lengths_of(values: Sequence[int]) -> Lengths:
     Example:
         >>> lengths_of([10, 20, 30])
         Lengths(count=3, mean=20.0, std=10.0, least=10.0, quarter=15.0, median=20.0, three_quarters=25.0, most=30.0)
-    """
+    """  # noqa: E501
     if not len(values):
         return Lengths(0, *[0.0] * 7)
     data = np.asarray(values, float)
