@@ -172,7 +172,7 @@ def test_a_box_of_blocks_is_converted(schem, volume, tmp_path, name, capsys):
     part = read_blocks(tmp_path / "part.schem")
     assert (part.corner, part.states.shape) == (volume.corner, (1, 1, 2))  # Air around is cut.
     assert convert(tmp_path / name, tmp_path / "b.schem", "--box", "1,2,3") == 2
-    assert "--box is six whole numbers" in capsys.readouterr().err
+    assert "--box must be six integers" in capsys.readouterr().err
 
 
 def test_the_same_input_gives_the_same_bytes(schem, tmp_path):

@@ -83,7 +83,7 @@ def test_a_build_is_seen_from_where_its_player_starts(build, tmp_path, capsys):
 
 def test_a_file_is_seen_from_outside(schem, tmp_path, capsys):
     assert render(schem) == 0
-    assert "this build says no spawn, so it is seen from outside" in capsys.readouterr().out
+    assert "this build has no player start and is seen from outside" in capsys.readouterr().out
     assert image(tmp_path / "room.png").shape == (36, 48, 3)
 
 
@@ -173,53 +173,54 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--pose", "1,2,3"], "--pose is x,y,z,yaw,pitch and perhaps ,eye, such as 4,64,-3,90,10; "
-                              "not '1,2,3'"),
+        (["--pose", "1,2,3"], "--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, not '1,2,3'"),
         (["--pose", "1,2,3,4,95"], "pitch is -90 (up) to 90 (down) degrees, not 95"),
-        (["--orbit", "--tour"], "--orbit and --tour are several views; give one of them a command"),
+        (["--orbit", "--tour"], "--orbit and --tour exclude each other; give one of them"),
         (["--orbit", "--pose", "1,2,3,4,5"],
-         "--orbit and --pose are several views; give one of them a command"),
+         "--orbit and --pose exclude each other; give one of them"),
         (["--pose", "1,2,3,4,5", "--frames", "3"],
          "--frames is for an orbit, a tour or a turntable, not for --pose"),
         (["--vfov", "70", "--hfov", "90"],
-         "--vfov and --hfov are two words for one thing; give one of them"),
+         "--vfov and --hfov exclude each other; give one of them"),
         (["--vfov", "0"], "a field of view must be above 0 and up to 170 degrees, not 0"),
-        (["--frames", "0"], "--frames is 1 to 1,000,000, not 0"),
-        (["--fps", "0"], "--fps is 1 to 240, not 0"),
-        (["--box", "1,2,3"], "--box is six whole numbers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
+        (["--frames", "0"], "--frames must be 1 to 1,000,000, not 0"),
+        (["--fps", "0"], "--fps must be 1 to 240, not 0"),
+        (["--box", "1,2,3"], "--box must be six integers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
         (["--box", "1,2,3,1,5,6"],
-         "--box ends after it begins on each axis; '1,2,3,1,5,6' does not"),
+         "--box must end after it begins on each axis, not '1,2,3,1,5,6'"),
         (["--box", "100,0,0,101,1,1"],
          "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
-        (["--format", "bmp"], "--format is png, jpg or webp, not 'bmp'"),
-        (["--depth-format", "tif"], "--depth-format is png, exr or npy, not 'tif'"),
-        (["--quality", "0"], "--quality is 1 to 100, not 0"),
-        (["--depth-scale", "0"], "--depth-scale is 1 to 65535, not 0"),
+        (["--format", "bmp"], "--format must be png, jpg or webp, not 'bmp'"),
+        (["--depth-format", "tif"], "--depth-format must be png, exr or npy, not 'tif'"),
+        (["--quality", "0"], "--quality must be 1 to 100, not 0"),
+        (["--depth-scale", "0"], "--depth-scale must be 1 to 65535, not 0"),
         (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
-        (["--out", "a.tiff"], "a.tiff: --out ends in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, "
-                              ".apng, .mp4, .webm, or in nothing for a folder"),
+        (["--out", "a.tiff"],
+         "a.tiff: --out must end in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, .apng, .mp4, "
+         ".webm, or have no suffix for a folder"),
         (["--orbit", "--frames", "3", "--out", "a.png"],
-         "3 pictures do not fit in a.png; give --out a folder, or a name that ends in .gif, .webp "
-         "or .mp4"),
+         "a.png holds one picture, not 3; choose a folder for --out, or a name that ends in .gif, "
+         ".webp or .mp4"),
         (["--tour", "--out", "a.gif", "--outputs", "rgb,depth"],
-         "a.gif: a moving picture holds rgb alone; give a folder for depth"),
+         "a.gif: an animation holds rgb alone; give a folder for depth"),
         (["--turntable", "--out", "a", "--outputs", "depth"],
-         "a turntable is colour alone; --orbit has depth and ids too"),
-        (["--turntable", "--photo"], "a turntable is not traced; --orbit --photo is"),
-        (["--samples", "9"], "--samples is 1 to 4, not 9"),
-        (["--textures", "24"], "--textures is 16, 32, 64 or 128, not 24"),
+         "--turntable draws rgb alone; use --orbit for depth and ids"),
+        (["--turntable", "--photo"],
+         "--turntable cannot be traced with --photo; use --orbit --photo"),
+        (["--samples", "9"], "--samples must be 1 to 4, not 9"),
+        (["--textures", "24"], "--textures must be 16, 32, 64 or 128, not 24"),
         (["--light", "disco"],
-         "no such light: preset may be shader, game, neutral, not 'disco'"),
-        (["--exposure", "0"], "no such light: exposure may be 0.01 to 100, not 0.0"),
-        (["--device", "tpu"], "--device is auto, cpu or gpu, not 'tpu'"),
-        (["--jobs", "0"], "--jobs is 1 to 256, not 0"),
+         "light: preset may be shader, game, neutral, not 'disco'"),
+        (["--exposure", "0"], "light: exposure may be 0.01 to 100, not 0.0"),
+        (["--device", "tpu"], "--device must be auto, cpu or gpu, not 'tpu'"),
+        (["--jobs", "0"], "--jobs must be 1 to 256, not 0"),
         (["--jobs", "2", "--photo"],
-         "--jobs is for plain pictures on the CPU, not for --photo"),
+         "--jobs draws on the CPU without tracing; leave out --photo"),
         (["--jobs", "2", "--device", "gpu"],
-         "--jobs is for plain pictures on the CPU, not for --device gpu"),
+         "--jobs draws on the CPU without tracing; leave out --device gpu"),
         (["--jobs", "2", "--turntable", "--out", "t.gif"],
-         "a turntable is drawn by one process; --jobs is for the other views"),
-        (["--photo-samples", "0"], "--photo-samples is 1 to 4,096, not 0"),
+         "--turntable is drawn by one process; leave out --jobs"),
+        (["--photo-samples", "0"], "--photo-samples must be 1 to 4,096, not 0"),
     ],
 )  # fmt: skip
 def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
@@ -231,8 +232,8 @@ def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
 @pytest.mark.parametrize(
     ("size", "text"),
     [
-        ("big", "--size is width and height in pixels, such as 1280x720, not 'big'"),
-        ("-3x4", "--size is width and height in pixels, such as 1280x720, not '-3x4'"),
+        ("big", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not 'big'"),
+        ("-3x4", "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not '-3x4'"),
         ("0x4", "no such camera: width_px must be 1 to 20000, not 0"),
         ("99999x4", "no such camera: width_px must be 1 to 20000, not 99999"),
         ("9000x9000", "9000x9000 with --samples 2 is too large; a picture may have 64,000,000 "
@@ -246,7 +247,7 @@ def test_a_wrong_size_is_told(schem, size, text, capsys):
 
 def test_threads_are_counted(schem, capsys):
     assert cli.run(["render", str(schem), "--threads", "0"]) == 2
-    assert capsys.readouterr().err == "error: --threads is 1 to 512, not 0\n"
+    assert capsys.readouterr().err == "error: --threads must be 1 to 512, not 0\n"
 
 
 def test_bad_input_is_told(tmp_path, schem, capsys):
@@ -257,10 +258,10 @@ def test_bad_input_is_told(tmp_path, schem, capsys):
     assert capsys.readouterr().err == "error: poses.jsonl: line 1 has no x\n"
     (tmp_path / "file").write_text("")
     assert render(schem, "--poses", "poses.jsonl", "--out", "file") == 3
-    assert "is a file; --out needs a folder, or a name such as" in capsys.readouterr().err
+    assert "is a file; choose a folder, or a name such as" in capsys.readouterr().err
     (tmp_path / "a.png").mkdir()
     assert render(schem, "--out", "a.png") == 3
-    assert "error: a.png: is a folder; give another name" in capsys.readouterr().err
+    assert "error: a.png: is a folder; choose another name" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -283,8 +284,8 @@ def test_a_block_of_a_mod_is_drawn_and_told(tmp_path, capsys):
     write_blocks(replace(volume, palette=palette), tmp_path / "mod.schem")
     assert render("mod.schem") == 0
     assert (
-        "note: 1 of 3 block states (33.3%) have no look of their own and are drawn as plain "
-        "boxes: mymod:chair\n" in capsys.readouterr().out
+        "note: 1 of 3 block states (33.3%) have no model and are drawn as plain boxes: "
+        "mymod:chair\n" in capsys.readouterr().out
     )
 
 
@@ -368,3 +369,8 @@ def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsy
     assert render(build, "--device", "auto") == 0
     assert render(build, "--device", "gpu") == 2
     assert "error: device 'gpu' is not in this version; cpu is\n" in capsys.readouterr().err
+
+
+def test_json_is_the_poses_alone(build, tmp_path, capsys):
+    assert render(build, "--pose", POSE, "-o", "a.png", "--json") == 0
+    assert json.loads(capsys.readouterr().out) == lines_of(tmp_path / "a.poses.jsonl")

@@ -1,4 +1,4 @@
-"""Worlds and block files: draw them, and convert any form into any other."""
+"""Worlds and block files: convert any form into any other, install worlds, undo builds in them."""
 
 import os
 import tempfile
@@ -7,89 +7,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from world2minecraft.api.results import Run
 from world2minecraft.api.rooms import path_of
-from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
+from world2minecraft.core.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
-    from PIL.Image import Image
-
     from world2minecraft.core.types import BlockVolume
     from world2minecraft.formats.volume_crop import Box
     from world2minecraft.minecraft.file_format import Losses
 
-VIEWS = ("isometric", "plan", "inside")
 HABITAT_MARK = "*.scene_dataset_config.json"
-
-
-def render(
-    source: Run | str | Path, *, size: tuple[int, int] = (640, 480), view: str = "isometric"
-) -> "Image":
-    """Draw a build as one picture, without the game, a display or a graphics card.
-
-    Args:
-        source: a run, its folder, a world, or a block file such as ``house.schem``.
-        size: the width and the height in pixels.
-        view: ``isometric``, from outside with ceiling and near walls cut away; ``plan``, from
-            above; or ``inside``, from where the player starts.
-
-    Returns:
-        The picture, RGB.
-
-    Raises:
-        UnknownNameError: there is no such view. InputError: the build cannot be read.
-        UsageError: the size is out of range, or ``inside`` is asked of a build without a start.
-
-    Example:
-        >>> import world2minecraft as w2m
-        >>> w2m.render(run, size=(320, 240)).size
-        (320, 240)
-    """
-    from PIL import Image
-
-    from world2minecraft.formats.build_reader import read_build
-    from world2minecraft.rendering.preview import plan_view, preview
-
-    if view not in VIEWS:
-        raise UnknownNameError("view", view, VIEWS)
-    width, height = size
-    build = read_build(path_of(source))
-    volume = build.volume
-    if view == "inside":
-        if build.start is None:
-            raise UsageError(f"{path_of(source)} has no player start; use view='isometric'")
-        start = build.start
-        return _inside(volume, (start.x, start.y, start.z, start.yaw_deg), size)
-    if view == "isometric":
-        try:
-            return Image.fromarray(preview(volume, width, height))
-        except ValueError as error:
-            raise UsageError(f"size {width}x{height}: {error}") from error
-    across, along = volume.states.shape[0], volume.states.shape[2]
-    plan = Image.fromarray(plan_view(volume, max(min(width // across, height // along), 1)))
-    plan.thumbnail(size)
-    picture = Image.new("RGB", size, plan.getpixel((0, 0)))  # type: ignore[arg-type]
-    picture.paste(plan, ((width - plan.width) // 2, (height - plan.height) // 2))
-    return picture
-
-
-def _inside(
-    volume: "BlockVolume", start: tuple[float, float, float, float], size: tuple[int, int]
-) -> "Image":
-    from PIL import Image
-
-    from world2minecraft.core.coordinates import eye_height_blocks
-    from world2minecraft.rendering import render_volume
-    from world2minecraft.rendering.views import GamePose, camera_of
-    from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
-
-    camera = camera_of(*size, vertical_fov_deg=GAME_FOV_DEG, horizontal_fov_deg=None)
-    eye_blocks = eye_height_blocks(volume.blocks_per_metre)
-    pose = GamePose(*start, 0.0).camera_to_room(volume.block_to_room, eye_blocks)
-    picture = render_volume(volume, camera, pose, outputs=("colour",), samples=2)
-    return Image.fromarray(np.asarray(picture.colour))
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,5 @@
-"""The options of ``w2m render``, and the values that their words become."""
+"""The options of ``w2m render``, and how their text is read."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,15 +8,19 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.core.types import Camera
-    from world2minecraft.rendering.output import FileFormats
+    from world2minecraft.rendering.picture_files.shot_selection import CameraChoice
     from world2minecraft.rendering.views import GamePose
 
-MAX_FRAMES = 1_000_000
+
+def _option(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
+    return typer.Option(*names, help=text, metavar=metavar, show_default=default)
 
 
-def _option(*names: str, text: str, metavar: str | None = None) -> Any:
-    return typer.Option(*names, help=text, metavar=metavar)
+def _more(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
+    """Return an option that is rarely used, listed under the others."""
+    return typer.Option(
+        *names, help=text, metavar=metavar, show_default=default, rich_help_panel="More options"
+    )
 
 
 SourcePath = Annotated[
@@ -25,144 +28,135 @@ SourcePath = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    _option("--out", "-o", metavar="FILE_OR_FOLDER",
-            text="A picture (.png .jpg .webp .exr .npy), a moving one (.gif .apng .webp .mp4 "
-                 ".webm), or a folder of pictures; NAME.png beside you."),
+    _option("--out", "-o", metavar="FILE_OR_FOLDER", default="NAME.png, .gif",
+            text="A picture (.png .jpg .webp .exr .npy), an animation (.gif .apng .webp .mp4 "
+                 ".webm), or a folder of pictures."),
 ]  # fmt: skip
 Outputs = Annotated[
     str, _option("--outputs", metavar="A,B",
-                 text="rgb, depth, range, block, state, class, instance, face; id is state, class "
-                      "and instance, all is all."),
+                 text="rgb, depth, range, block, state, class, instance, face ...; id: state, "
+                      "class and instance; all."),
 ]  # fmt: skip
 Pose = Annotated[
     list[str] | None,
     _option("--pose", metavar="X,Y,Z,YAW,PITCH",
-            text="As the game's F3 screen says, at the feet; add ,eye for a camera there. "
-                 "May be given often."),
+            text="The feet, as on the game's F3 screen; add ,eye for a camera there. Repeatable."),
 ]  # fmt: skip
 Poses = Annotated[
     Path | None,
-    _option("--poses", metavar="FILE",
-            text="A tour: JSON lines or CSV with x, y, z, yaw, pitch ..."),
-]  # fmt: skip
-Orbit = Annotated[bool, _option("--orbit", text="From outside, on a circle around the build.")]
+    _option("--poses", metavar="FILE", text="JSON lines or CSV with x, y, z, yaw, pitch ..."),
+]
+Orbit = Annotated[bool, _option("--orbit", text="On a circle around the build.")]
 Tour = Annotated[bool, _option("--tour", text="A walk through the rooms at eye height.")]
-Turntable = Annotated[bool, _option("--turntable", text="The build on a plain ground, turning.")]
+Turntable = Annotated[bool, _option("--turntable", text="The build turning on a plain ground.")]
 Frames = Annotated[
     int | None,
-    _option("--frames", metavar="N",
-            text="How many pictures of an orbit, a tour or a turntable."),
-]  # fmt: skip
-Rate = Annotated[float, _option("--fps", text="Pictures a second of a moving picture.")]
+    _option("--frames", metavar="N", text="Pictures of an orbit, a tour or a turntable."),
+]
+Rate = Annotated[float, _more("--fps", text="Frames per second of an animation.")]
 Opened = Annotated[
     bool | None,
-    _option(
-        "--open/--closed",
-        text="From outside, leave ceilings and near walls out; usual for labelled rooms.",
-    ),
-]
-BoxText = Annotated[
-    str, _option("--box", metavar="X0,Y0,Z0,X1,Y1,Z1",
-                 text="Draw these blocks alone; the last ones are not included."),
+    _option("--open/--closed", text="Leave out ceilings and near walls from outside.",
+            default="open for labelled rooms"),
 ]  # fmt: skip
-Size = Annotated[str, _option("--size", metavar="WxH", text="In pixels.")]
+BoxText = Annotated[
+    str, _more("--box", metavar="X0,Y0,Z0,X1,Y1,Z1",
+                 text="Draw only these blocks; the last ones are excluded."),
+]  # fmt: skip
+Size = Annotated[str, _option("--size", metavar="WxH", text="Pixels.")]
 VerticalFov = Annotated[
     float | None,
-    _option("--vfov", text="Vertical field of view in degrees, as the game's; 70."),
+    _more("--vfov", text="Vertical field of view in degrees.", default="70; --orbit 40"),
 ]
-HorizontalFov = Annotated[float | None, _option("--hfov", text="The horizontal one in its place.")]
+HorizontalFov = Annotated[
+    float | None, _more("--hfov", text="Horizontal field of view, instead of --vfov.")
+]
 ImageFormat = Annotated[
-    str, _option("--format", metavar="png|jpg|webp", text="Of colour in a folder.")
+    str, _more("--format", metavar="png|jpg|webp", text="Format of colour in a folder.")
 ]
 DepthFormat = Annotated[
-    str, _option("--depth-format", metavar="png|exr|npy",
-                 text="png: 16 bits; exr and npy: 32-bit metres."),
+    str, _more("--depth-format", metavar="png|exr|npy",
+               text="png: 16 bits; exr and npy: float32 metres."),
 ]  # fmt: skip
-DepthScale = Annotated[int, _option("--depth-scale", text="What a metre is in a depth PNG.")]
-Quality = Annotated[int, _option("--quality", text="Of JPEG and WebP, 1 to 100.")]
+DepthScale = Annotated[int, _more("--depth-scale", text="Value of one metre in a depth PNG.")]
+Quality = Annotated[int, _more("--quality", text="JPEG and WebP quality, 1 to 100.")]
 Hour = Annotated[
-    float | None, _option("--hour", text="Of the day, 0 to 24: 6 dawn, 11 usual, 19 dusk, 0 night.")
+    float | None,
+    _option("--hour", text="Hour of the day, 0 to 24: 6 dawn, 19 dusk, 0 night.", default="11"),
 ]
 Light = Annotated[
     str | None,
     _option("--light", metavar="shader|game|neutral",
-            text="Soft light, the game's own, or even light at the camera."),
+            text="Soft light, the game's light, or even light.", default="shader"),
 ]  # fmt: skip
 Brightness = Annotated[
-    float, _option("--brightness", text="As in the game: 0 moody, 1 bright; lifts the dark.")
+    float, _more("--brightness", text="Brightness as in the game: 0 moody, 1 bright.")
 ]
-Exposure = Annotated[
-    float | None, _option("--exposure", text="Light of the whole; by itself where left out.")
-]
-SunShadow = Annotated[
-    bool, _option("--sun-shadow/--no-sun-shadow", text="Whether things shade the sun.")
-]
+Exposure = Annotated[float | None, _more("--exposure", text="Exposure.", default="automatic")]
+SunShadow = Annotated[bool, _more("--sun-shadow/--no-sun-shadow", text="Shadows of the sun.")]
 Samples = Annotated[
-    int | None, _option("--samples", text="1 to 4 rays across each pixel; stills have 2.")
+    int | None,
+    _more("--samples", text="Rays across each pixel, 1 to 4.", default="2; 1 in a folder"),
 ]
 Textures = Annotated[
     int | None,
-    _option("--textures", metavar="16|32|64|128",
-            text="Pixels a block; 16, or what a --pack has."),
+    _more("--textures", metavar="16|32|64|128", text="Pixels along a block.",
+          default="16, or that of --pack"),
 ]  # fmt: skip
 Packs = Annotated[
     list[Path] | None,
-    _option("--pack", metavar="PATH",
-            text="A resource pack or client jar of yours; given often, the last wins."),
+    _more("--pack", metavar="PATH",
+            text="A resource pack or client jar. Repeatable; the last one wins."),
 ]  # fmt: skip
 Photo = Annotated[
-    bool, _option("--photo", text="Trace the paths of light: slow, soft, real shadows.")
+    bool, _option("--photo", text="Trace the paths of light: slow, with soft shadows.")
 ]
-PhotoSamples = Annotated[int, _option("--photo-samples", text="Paths a pixel of --photo.")]
-Device = Annotated[str, _option("--device", metavar="auto|cpu|gpu", text="What draws.")]
+PhotoSamples = Annotated[int, _more("--photo-samples", text="Paths for each pixel of --photo.")]
+Device = Annotated[str, _more("--device", metavar="auto|cpu|gpu", text="Where to draw.")]
 Jobs = Annotated[
-    int, _option("--jobs", metavar="N", text="Processes that draw a folder or a video; 1.")
+    int, _more("--jobs", metavar="N", text="Processes that draw a folder or an animation.")
 ]
-Threads = Annotated[int | None, _option("--threads", text="How many; as many as there are cores.")]
+Threads = Annotated[int | None, _more("--threads", text="Threads.", default="all cores")]
+AsJson = Annotated[bool, _option("--json", text="Print the poses and their files as JSON.")]
 
 
-@dataclass(frozen=True)
-class CameraChoice:
-    """The size and the field of view; ``fov_given`` tells them from the usual ones."""
+def view_of(flags: dict[str, bool], pose: list[str] | None, poses: Path | None) -> str:
+    """Return the view that the options choose; ``start`` where they choose none.
 
-    width_px: int
-    height_px: int
-    vertical_fov_deg: float | None
-    horizontal_fov_deg: float | None
-
-    @property
-    def fov_given(self) -> bool:
-        """Whether the user chose a field of view."""
-        return self.vertical_fov_deg is not None or self.horizontal_fov_deg is not None
-
-    def camera(self, usual_fov_deg: float) -> "Camera":
-        """Return the camera, with a vertical field of view where none was chosen."""
-        from world2minecraft.rendering.views import camera_of
-
-        vertical = self.vertical_fov_deg if self.fov_given else usual_fov_deg
-        return camera_of(
-            self.width_px,
-            self.height_px,
-            vertical_fov_deg=vertical,
-            horizontal_fov_deg=self.horizontal_fov_deg,
-        )
+    Raises:
+        UsageError: they choose several.
+    """
+    given = {"pose": bool(pose), "poses": poses is not None, **flags}
+    chosen = sorted(name for name, is_given in given.items() if is_given)
+    if len(chosen) > 1:
+        listed = " and ".join(f"--{name}" for name in chosen)
+        raise UsageError(f"{listed} exclude each other; give one of them")
+    return next((name for name in chosen if name in flags), "start")
 
 
-def camera_choice(size: str, vfov: float | None, hfov: float | None) -> CameraChoice:
-    """Read ``--size``, ``--vfov`` and ``--hfov``. Raises UsageError."""
-    if vfov is not None and hfov is not None:
-        raise UsageError("--vfov and --hfov are two words for one thing; give one of them")
-    parts = size.lower().split("x")
+def poses_of(pose: list[str] | None, poses: Path | None) -> "list[GamePose] | Path | None":
+    """Return the poses of ``--pose`` or the file of ``--poses``. Raises UsageError."""
+    return [pose_of(text) for text in pose] if pose else poses
+
+
+def size_of(text: str) -> tuple[int, int]:
+    """Read ``--size``. Raises UsageError."""
+    parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.strip().isdigit() for part in parts):
-        raise UsageError(f"--size is width and height in pixels, such as 1280x720, not {size!r}")
-    choice = CameraChoice(int(parts[0]), int(parts[1]), vfov, hfov)
-    choice.camera(70.0)  # What is out of range is said now, before any work.
-    return choice
+        raise UsageError(f"--size must be WIDTHxHEIGHT in pixels, such as 1280x720, not {text!r}")
+    return int(parts[0]), int(parts[1])
+
+
+def camera_choice(size: str, vfov: float | None, hfov: float | None) -> "CameraChoice":
+    """Read ``--size``, ``--vfov`` and ``--hfov``. Raises UsageError."""
+    from world2minecraft.api.pictures import camera_choice as choose
+
+    return choose(size_of(size), vfov, hfov)
 
 
 def pose_of(text: str) -> "GamePose":
     """Read a pose. Raises UsageError."""
-    from world2minecraft.rendering.views import GamePose
+    from world2minecraft.api.pictures import game_pose
 
     words = [word.strip() for word in text.split(",")]
     at = words.pop().lower() if words and words[-1].lower() in ("feet", "eye") else "feet"
@@ -170,9 +164,9 @@ def pose_of(text: str) -> "GamePose":
         x, y, z, yaw_deg, pitch_deg = (float(word) for word in words)
     except ValueError:
         raise UsageError(
-            f"--pose is x,y,z,yaw,pitch and perhaps ,eye, such as 4,64,-3,90,10; not {text!r}"
+            f"--pose must be x,y,z,yaw,pitch or x,y,z,yaw,pitch,eye, not {text!r}"
         ) from None
-    return GamePose(x, y, z, yaw_deg, pitch_deg, at)  # type: ignore[arg-type]
+    return game_pose((x, y, z, yaw_deg, pitch_deg), at)
 
 
 def box_of(text: str) -> tuple[int, int, int, int, int, int] | None:
@@ -182,41 +176,7 @@ def box_of(text: str) -> tuple[int, int, int, int, int, int] | None:
     try:
         x0, y0, z0, x1, y1, z1 = (int(word) for word in text.split(","))
     except ValueError:
-        raise UsageError(f"--box is six whole numbers x0,y0,z0,x1,y1,z1, not {text!r}") from None
+        raise UsageError(f"--box must be six integers x0,y0,z0,x1,y1,z1, not {text!r}") from None
     if x0 >= x1 or y0 >= y1 or z0 >= z1:
-        raise UsageError(f"--box ends after it begins on each axis; {text!r} does not")
+        raise UsageError(f"--box must end after it begins on each axis, not {text!r}")
     return x0, y0, z0, x1, y1, z1
-
-
-def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileFormats":
-    """Read how layers become files. Raises UsageError."""
-    from world2minecraft.rendering.output import FileFormats
-
-    if image not in ("png", "jpg", "jpeg", "webp"):
-        raise UsageError(f"--format is png, jpg or webp, not {image!r}")
-    if depth not in ("png", "exr", "npy"):
-        raise UsageError(f"--depth-format is png, exr or npy, not {depth!r}")
-    if not 1 <= quality <= 100:
-        raise UsageError(f"--quality is 1 to 100, not {quality}")
-    if not 1 <= per_metre <= 65535:
-        raise UsageError(f"--depth-scale is 1 to 65535, not {per_metre}")
-    return FileFormats(f".{image}", f".{depth}", quality, per_metre)
-
-
-def check_count(frames: int | None, rate_hz: float) -> None:
-    """Check ``--frames`` and ``--fps``. Raises UsageError."""
-    if frames is not None and not 1 <= frames <= MAX_FRAMES:
-        raise UsageError(f"--frames is 1 to {MAX_FRAMES:,}, not {frames}")
-    if not 1 <= rate_hz <= 240:
-        raise UsageError(f"--fps is 1 to 240, not {rate_hz:g}")
-
-
-def threads_of(asked: int | None) -> int:
-    """Return how many threads to use. Raises UsageError."""
-    from world2minecraft.core.machine import usable_cores
-
-    if asked is None:
-        return usable_cores()
-    if not 1 <= asked <= 512:
-        raise UsageError(f"--threads is 1 to 512, not {asked}")
-    return asked

@@ -1,21 +1,31 @@
-"""What ``w2m render`` writes: pictures, one or a folder or moving, and the poses beside them."""
+"""Where pictures go: one file, a folder or an animation, with the poses beside them."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from world2minecraft.cli.render.shot_selection import Kind, Medium
+import numpy as np
+
 from world2minecraft.core.errors import OutputError, UsageError
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from world2minecraft.core.types import BlockVolume, Camera
-    from world2minecraft.rendering import Picture
-    from world2minecraft.rendering.output import FileFormats
-    from world2minecraft.rendering.views import Shot
+from world2minecraft.core.files import write_bytes, write_json
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.core.types.capture import MAX_SIDE_PX
+from world2minecraft.rendering import Picture
+from world2minecraft.rendering.output import (
+    ANIMATION_SUFFIXES,
+    LAYERS,
+    FileFormats,
+    animation_writer,
+    colour_bytes,
+    file_name,
+    id_names,
+)
+from world2minecraft.rendering.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
+from world2minecraft.rendering.picture import MAX_PIXELS
+from world2minecraft.rendering.picture_files.shot_selection import Kind, Medium
+from world2minecraft.rendering.views import Shot, tour_line, write_lines
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
 _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
@@ -28,7 +38,7 @@ class Target:
     path: Path
     medium: Medium
     layers: tuple[str, ...]
-    choice: "FileFormats"
+    choice: FileFormats
 
     def beside(self, name: str) -> Path:
         """Return the place of a file about the pictures: in their folder, or beside them."""
@@ -37,21 +47,16 @@ class Target:
         return self.path.with_name(f"{self.path.stem}.{name}")
 
 
-def target_of(
-    out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: "FileFormats",
+def choose_target(
+    out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: FileFormats,
     frames: int | None,
 ) -> Target:  # fmt: skip
-    """Return where pictures go.
+    """Return where pictures go, by the suffix of ``out``.
 
     Raises:
-        UsageError: the name's end says no kind of file, or one that cannot hold the layers.
-        OutputError: a folder is needed where a file is, or the other way round.
+        UsageError: the suffix is not known, or its format cannot hold the layers.
+        OutputError: ``out`` is a file where a folder is needed, or the other way round.
     """
-    from dataclasses import replace
-
-    from world2minecraft.rendering.output import ANIMATION_SUFFIXES
-    from world2minecraft.rendering.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
-
     if out is None:
         end = {"tour": ".gif", "turntable": ".gif", "poses": "_views"}.get(kind, ".png")
         out = Path(f"{name}{end}")
@@ -61,7 +66,7 @@ def target_of(
     if moving:
         if layers != ("rgb",):
             others = ", ".join(name for name in layers if name != "rgb")
-            raise UsageError(f"{out}: a moving picture holds rgb alone; give a folder for {others}")
+            raise UsageError(f"{out}: an animation holds rgb alone; give a folder for {others}")
         return Target(_file(out), "moving", layers, choice)
     if suffix in COLOUR_SUFFIXES:
         return Target(_file(out), "picture", layers, replace(choice, colour_suffix=suffix))
@@ -70,22 +75,22 @@ def target_of(
         return Target(_file(out), "picture", wanted, replace(choice, depth_suffix=suffix))
     if suffix and not out.is_dir():
         known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *ANIMATION_SUFFIXES)))
-        raise UsageError(f"{out}: --out ends in {known}, or in nothing for a folder")
+        raise UsageError(f"{out}: --out must end in {known}, or have no suffix for a folder")
     if out.exists() and not out.is_dir():
-        raise OutputError(out, "is a file; --out needs a folder, or a name such as house.png")
+        raise OutputError(out, "is a file; choose a folder, or a name such as house.png")
     return Target(out, "folder", layers, choice)
 
 
 def _file(out: Path) -> Path:
     if out.is_dir():
-        raise OutputError(out, "is a folder; give another name")
+        raise OutputError(out, "is a folder; choose another name")
     return out
 
 
 class Writer:
-    """Writes pictures as they come, and what was written as lines at the end."""
+    """Writes pictures as they come, and their poses at the end."""
 
-    def __init__(self, target: Target, block_to_room: "np.ndarray", scene_id: str, tour_id: str):
+    def __init__(self, target: Target, block_to_room: np.ndarray, scene_id: str, tour_id: str):
         """Begin with nothing written."""
         self.target, self.lines = target, []
         self._block_to_room, self._ids = block_to_room, {"scene_id": scene_id, "tour_id": tour_id}
@@ -93,20 +98,15 @@ class Writer:
 
     @contextmanager
     def open(self, rate_hz: float) -> Iterator[None]:
-        """Keep a moving picture open while the block runs; other files need nothing."""
-        from world2minecraft.rendering.output import animation_writer
-
+        """Open an animation while the block runs; other files need nothing."""
         if self.target.medium != "moving":
             yield
             return
         with animation_writer(self.target.path, rate_hz) as self._moving:
             yield
 
-    def later(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> Callable[[], None]:
-        """Name the files of a picture, and return what writes all its layers, on any thread."""
-        from world2minecraft.core.files import write_bytes
-        from world2minecraft.rendering.output import LAYERS
-
+    def later(self, shot: Shot, picture: Picture, volume: BlockVolume) -> Callable[[], None]:
+        """Name the files of a picture; return a function that writes them, on any thread."""
         moving, choice = self._moving, self.target.choice
         if moving is not None:
             self._line(shot, {"rgb": self.target.path.name})
@@ -120,11 +120,8 @@ class Writer:
 
         return write
 
-    def colour(self, shot: "Shot", colour: "np.ndarray | None") -> None:
-        """Write a picture of which there is colour alone."""
-        from world2minecraft.core.files import write_bytes
-        from world2minecraft.rendering.output import colour_bytes
-
+    def colour(self, shot: Shot, colour: np.ndarray | None) -> None:
+        """Write a picture that has colour alone."""
         if colour is None:
             raise ValueError("the picture has no colour")
         if self._moving is not None:
@@ -135,18 +132,13 @@ class Writer:
         write_bytes(path, colour_bytes(colour, choice.colour_suffix, choice.quality))
         self._line(shot, {"rgb": path.name})
 
-    def finish(self, volume: "BlockVolume") -> None:
-        """Write the poses, and what the numbers mean where there are any."""
-        from world2minecraft.core.files import write_json
-        from world2minecraft.rendering.output import id_names
-        from world2minecraft.rendering.views import write_lines
-
+    def finish(self, volume: BlockVolume) -> None:
+        """Write the poses, and the names of the ids where a layer holds ids."""
         write_lines(self.target.beside(LINES_FILE), self.lines)
         if any(name in _NUMBERS for name in self.target.layers):
             write_json(self.target.beside(NAMES_FILE), id_names(volume))
 
     def _files(self) -> dict[str, Path]:
-        from world2minecraft.rendering.output import file_name
 
         target = self.target
         folder, stem = target.path, f"{len(self.lines):06d}"
@@ -154,11 +146,10 @@ class Writer:
             folder, stem = target.path.parent, target.path.stem
         names = {name: file_name(stem, name, target.choice) for name in target.layers}
         if target.medium == "picture" and len(names) == 1:
-            names = dict.fromkeys(names, target.path.name)  # Called as the user called it.
+            names = dict.fromkeys(names, target.path.name)  # Named as given.
         return {name: folder / file for name, file in names.items()}
 
-    def _line(self, shot: "Shot", files: dict[str, str]) -> None:
-        from world2minecraft.rendering.views import tour_line
+    def _line(self, shot: Shot, files: dict[str, str]) -> None:
 
         more = {
             **self._ids,
@@ -171,19 +162,16 @@ class Writer:
 
 
 def check_many(target: Target, count: int) -> None:
-    """Refuse many pictures in one file. Raises UsageError."""
+    """Raise UsageError where several pictures would go to one picture file."""
     if target.medium == "picture" and count != 1:
         raise UsageError(
-            f"{count} pictures do not fit in {target.path.name}; give --out a folder, or "
-            "a name that ends in .gif, .webp or .mp4"
+            f"{target.path.name} holds one picture, not {count}; choose a folder for --out, or a "
+            "name that ends in .gif, .webp or .mp4"
         )
 
 
-def check_pixels(cameras: Iterable["Camera"], samples: int) -> None:
-    """Refuse pictures that are too large. Raises UsageError."""
-    from world2minecraft.core.types.capture import MAX_SIDE_PX
-    from world2minecraft.rendering.picture import MAX_PIXELS
-
+def check_pixels(cameras: Iterable[Camera], samples: int) -> None:
+    """Raise UsageError where a picture would be too large."""
     for width, height in {(camera.width_px, camera.height_px) for camera in cameras}:
         rays = width * height * samples**2
         if rays > MAX_PIXELS or max(width, height) * samples > MAX_SIDE_PX:
@@ -193,8 +181,8 @@ def check_pixels(cameras: Iterable["Camera"], samples: int) -> None:
             )
 
 
-def one_size(shots: Iterable["Shot"], target: Target) -> None:
-    """Refuse a moving picture whose frames differ in size. Raises UsageError."""
+def check_same_size(shots: Iterable[Shot], target: Target) -> None:
+    """Raise UsageError where the frames of an animation would differ in size."""
     sizes = {(shot.camera.width_px, shot.camera.height_px) for shot in shots}
     if target.medium == "moving" and len(sizes) > 1:
-        raise UsageError("the poses have several sizes; give --out a folder")
+        raise UsageError("the poses have several sizes; choose a folder for --out")

@@ -1,78 +1,105 @@
-"""From where ``w2m render`` looks: the shots of poses, an orbit, a tour or a turntable."""
+"""The shots of a view: given poses, an orbit, a tour or a turntable."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from world2minecraft.cli.render.options import CameraChoice
-from world2minecraft.cli.render.source import Source
+from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
-
-if TYPE_CHECKING:
-    from world2minecraft.core.types import BlockVolume
-    from world2minecraft.rendering.views import GamePose, Shot
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.rendering.picture_files.source import Source
+from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
+from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.rendering.views import (
+    GamePose,
+    Shot,
+    camera_of,
+    orbit_shots,
+    plan_tour,
+    read_tour,
+    with_open_doors,
+)
+from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
 Kind = Literal["pose", "poses", "orbit", "tour", "turntable", "spawn"]
 Medium = Literal["picture", "folder", "moving"]
-ORBIT_FOV_DEG = 40.0  # From outside, less bent than the game's.
-TURN_S = 5.0  # Of a moving orbit or turntable.
+ORBIT_FOV_DEG = 40.0  # From outside, with less distortion than the game's.
+TURN_S = 5.0  # Of an animated orbit or turntable.
 FOLDER_TURN, FOLDER_TOUR = 36, 24  # Pictures in a folder.
+MAX_FRAMES = 1_000_000
+
+
+@dataclass(frozen=True)
+class CameraChoice:
+    """The size of the pictures, and the field of view where one was given."""
+
+    width_px: int
+    height_px: int
+    vertical_fov_deg: float | None = None
+    horizontal_fov_deg: float | None = None
+
+    def __post_init__(self):
+        if self.vertical_fov_deg is not None and self.horizontal_fov_deg is not None:
+            raise UsageError("--vfov and --hfov exclude each other; give one of them")
+        self.camera(70.0)  # Raises where a value is out of range.
+
+    @property
+    def fov_given(self) -> bool:
+        """Whether a field of view was given."""
+        return self.vertical_fov_deg is not None or self.horizontal_fov_deg is not None
+
+    def camera(self, usual_fov_deg: float) -> Camera:
+        """Return the camera, with a vertical field of view where none was given."""
+        vertical = self.vertical_fov_deg if self.fov_given else usual_fov_deg
+        return camera_of(
+            self.width_px,
+            self.height_px,
+            vertical_fov_deg=vertical,
+            horizontal_fov_deg=self.horizontal_fov_deg,
+        )
 
 
 @dataclass(frozen=True)
 class View:
-    """What the command's words ask for; one kind of view at a time."""
+    """From where a build is seen.
+
+    Raises:
+        UsageError: ``frames`` or ``rate_hz`` is out of range, or the kind takes no ``frames``.
+    """
 
     kind: Kind
-    poses: tuple["GamePose", ...] = ()
+    poses: tuple[GamePose, ...] = ()
     poses_file: Path | None = None
     frames: int | None = None
     rate_hz: float = 24.0
     opened: bool | None = None
+
+    def __post_init__(self):
+        if self.frames is not None and not 1 <= self.frames <= MAX_FRAMES:
+            raise UsageError(f"--frames must be 1 to {MAX_FRAMES:,}, not {self.frames}")
+        if not 1 <= self.rate_hz <= 240:
+            raise UsageError(f"--fps must be 1 to 240, not {self.rate_hz:g}")
+        if self.frames is not None and self.kind in ("pose", "poses"):
+            raise UsageError(
+                f"--frames is for an orbit, a tour or a turntable, not for --{self.kind}"
+            )
 
 
 @dataclass(eq=False)
 class Plan:
     """The shots, and the volume that each one sees."""
 
-    shots: list["Shot"]
-    volume_of: Callable[["Shot"], "BlockVolume"]
+    shots: list[Shot]
+    volume_of: Callable[[Shot], BlockVolume]
     notes: list[str] = field(default_factory=list)
 
 
-def view_of(
-    poses: tuple["GamePose", ...],
-    poses_file: Path | None,
-    flags: dict[Kind, bool],
-    frames: int | None,
-    rate_hz: float,
-    opened: bool | None,
-) -> View:
-    """Return the view that the words ask for; the spawn's where they ask for none.
-
-    Raises:
-        UsageError: they ask for several kinds.
-    """
-    kinds: list[Kind] = [kind for kind, wanted in flags.items() if wanted]
-    if poses:
-        kinds.append("pose")
-    if poses_file is not None:
-        kinds.append("poses")
-    if len(kinds) > 1:
-        told = " and ".join(f"--{kind}" for kind in sorted(kinds))
-        raise UsageError(f"{told} are several views; give one of them a command")
-    kind = kinds[0] if kinds else "spawn"
-    if frames is not None and kind in ("pose", "poses"):
-        raise UsageError(f"--frames is for an orbit, a tour or a turntable, not for --{kind}")
-    return View(kind, poses, poses_file, frames, rate_hz, opened)
-
-
-def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
+def plan_shots(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
     """Return the shots of a view.
 
     Raises:
-        UsageError: a tour finds nowhere to stand. InputError: the file of poses cannot be read.
+        UsageError: a tour finds no place to stand. InputError: the poses cannot be read.
     """
     if view.kind == "tour":
         return _tour(view, source, choice, medium)
@@ -84,7 +111,7 @@ def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) ->
         return _file(view.poses_file, source, choice)
     note = ["seen from where the player starts; --tour and --orbit show more"]
     poses = view.poses if view.kind == "pose" else tuple(filter(None, [source.spawn]))
-    camera = choice.camera(_game_fov_deg())
+    camera = choice.camera(GAME_FOV_DEG)
     return Plan(
         [_shot(pose, camera, source.volume, 0.0) for pose in poses],
         lambda shot: source.volume,
@@ -93,37 +120,28 @@ def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) ->
 
 
 def resolve_view(view: View, source: Source) -> View:
-    """Return the view, with one from outside for a build that says no spawn."""
+    """Return the view, or one from outside for a build without a player start."""
     if view.kind != "spawn" or source.spawn is not None:
         return view
-    source.notes.append("this build says no spawn, so it is seen from outside; --tour walks in")
+    source.notes.append(
+        "this build has no player start and is seen from outside; --tour walks through it"
+    )
     return replace(view, kind="orbit")
 
 
 def turntable_count(view: View, medium: Medium) -> int:
-    """Return how many pictures a turn has."""
+    """Return the number of pictures of a turn."""
     usual = {"picture": 1, "folder": FOLDER_TURN, "moving": round(TURN_S * view.rate_hz)}
     return view.frames or usual[medium]
 
 
-def _game_fov_deg() -> float:
-    from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
-
-    return GAME_FOV_DEG
-
-
-def _shot(pose: "GamePose", camera, volume: "BlockVolume", t_s: float) -> "Shot":
-    from world2minecraft.core.coordinates import eye_height_blocks
-    from world2minecraft.rendering.views import Shot
-
+def _shot(pose: GamePose, camera: Camera, volume: BlockVolume, t_s: float) -> Shot:
     eye_blocks = eye_height_blocks(volume.blocks_per_metre)
     return Shot(camera, pose.camera_to_room(volume.block_to_room, eye_blocks), t_s)
 
 
 def _file(path: Path, source: Source, choice: CameraChoice) -> Plan:
-    from world2minecraft.rendering.views import read_tour
-
-    camera = choice.camera(_game_fov_deg())
+    camera = choice.camera(GAME_FOV_DEG)
     shots = [
         _shot(one.pose, one.camera or camera, source.volume, one.t_s) for one in read_tour(path)
     ]
@@ -131,10 +149,6 @@ def _file(path: Path, source: Source, choice: CameraChoice) -> Plan:
 
 
 def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
-    from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
-    from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
-    from world2minecraft.rendering.views import orbit_shots
-
     camera = choice.camera(ORBIT_FOV_DEG)
     count = turntable_count(view, medium)
     opened = has_ceiling(source.volume) if view.opened is None else view.opened
@@ -147,15 +161,13 @@ def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> 
         build.whole, camera, count, elevation_deg=OPEN_ELEVATION_DEG, start_deg=start_deg,
         rate_hz=view.rate_hz,
     )  # fmt: skip
-    note = "ceilings and near walls are left out, to show the rooms; --closed keeps them"
+    note = "ceilings and near walls are left out; --closed draws them too"
     return Plan(shots, lambda shot: build.seen_by(shot.camera_to_room), [note])
 
 
 def _tour(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
-    from world2minecraft.rendering.views import plan_tour, with_open_doors
-
     frames = view.frames or {"picture": 1, "folder": FOLDER_TOUR, "moving": None}[medium]
-    camera = choice.camera(_game_fov_deg())
+    camera = choice.camera(GAME_FOV_DEG)
     spawn = source.spawn
     start = (spawn.x, spawn.y, spawn.z) if spawn is not None and medium == "moving" else None
     tour = plan_tour(source.volume, camera, frames, rate_hz=view.rate_hz, start=start)

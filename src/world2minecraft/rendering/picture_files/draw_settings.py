@@ -1,19 +1,19 @@
-"""How ``w2m render`` draws: the light, the textures, the tier and the device that words choose."""
+"""How pictures are drawn: the light, the textures, the tracer and the device."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from world2minecraft.core.errors import UsageError
-
-if TYPE_CHECKING:
-    from world2minecraft.cli.render.shot_selection import Kind, Medium
-    from world2minecraft.rendering import BlockScene, LightSettings, Picture
-    from world2minecraft.rendering.block_elements import ModelSource
-    from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
-    from world2minecraft.rendering.resource_packs import ResourcePackModels
-    from world2minecraft.rendering.views import Shot
+from world2minecraft.rendering import DAY, BlockScene, LightSettings, Picture
+from world2minecraft.rendering.block_elements import ModelSource, ModelSourceStack
+from world2minecraft.rendering.block_models import BuiltinModels, stand_ins
+from world2minecraft.rendering.path_tracing import emitters_of, render_photo
+from world2minecraft.rendering.picture_files.shot_selection import Kind, Medium
+from world2minecraft.rendering.presentation.shot_rendering import DrawOptions, draw_shots
+from world2minecraft.rendering.resource_packs import ResourcePackModels
+from world2minecraft.rendering.shading_parameters import BACKDROP
+from world2minecraft.rendering.views import Shot
 
 TEXTURES_PX = (16, 32, 64, 128)
 MAX_SAMPLES = 4
@@ -21,21 +21,19 @@ MAX_JOBS = 256
 DEVICES = ("auto", "cpu", "gpu")
 MAX_PHOTO_SAMPLES = 4096
 STILL_SAMPLES = 2
-OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
+OWN_PX = 16  # As in the game.
 
 
 @dataclass(frozen=True, eq=False)
 class Looks:
     """Where models and textures come from, and the side of a texture."""
 
-    source: "ModelSource"
+    source: ModelSource
     side_px: int
-    packs: "ResourcePackModels | None" = None
+    packs: ResourcePackModels | None = None
 
-    def notes(self, palette: "Sequence[str]") -> list[str]:
-        """Return what a user should know: states without a look, files that cannot be read."""
-        from world2minecraft.rendering.block_models import stand_ins
-
+    def notes(self, palette: Sequence[str]) -> list[str]:
+        """Return notes on block states without a model and on files that cannot be read."""
         drawn = palette
         if self.packs is not None:
             drawn = [state for state in palette if self.packs.model(state) is None]
@@ -45,8 +43,8 @@ class Looks:
             names = ", ".join(state.partition("[")[0] for state in marked[:3])
             more = " ..." if len(marked) > 3 else ""
             notes.append(
-                f"{len(marked)} of {len(palette)} block states ({share:.1%}) have no look of "
-                f"their own and are drawn as plain boxes: {names}{more}"
+                f"{len(marked)} of {len(palette)} block states ({share:.1%}) have no model "
+                f"and are drawn as plain boxes: {names}{more}"
             )
         if self.packs is not None and self.packs.problem_count:
             notes.append(
@@ -57,8 +55,12 @@ class Looks:
 
 
 @dataclass(frozen=True)
-class Look:
-    """What the words choose; None where they leave it to the view."""
+class DrawSettings:
+    """The settings of a drawing; None leaves the choice to the view.
+
+    Raises:
+        UsageError: a value is out of range, or two of them exclude each other.
+    """
 
     light: str | None = None
     hour: float | None = None
@@ -76,29 +78,27 @@ class Look:
 
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
-            raise UsageError(f"--samples is 1 to {MAX_SAMPLES}, not {self.samples}")
+            raise UsageError(f"--samples must be 1 to {MAX_SAMPLES}, not {self.samples}")
         if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
-            raise UsageError(f"--textures is 16, 32, 64 or 128, not {self.texture_px}")
+            raise UsageError(f"--textures must be 16, 32, 64 or 128, not {self.texture_px}")
         if not 1 <= self.photo_samples <= MAX_PHOTO_SAMPLES:
             raise UsageError(
-                f"--photo-samples is 1 to {MAX_PHOTO_SAMPLES:,}, not {self.photo_samples}"
+                f"--photo-samples must be 1 to {MAX_PHOTO_SAMPLES:,}, not {self.photo_samples}"
             )
         if self.device not in DEVICES:
-            raise UsageError(f"--device is auto, cpu or gpu, not {self.device!r}")
+            raise UsageError(f"--device must be auto, cpu or gpu, not {self.device!r}")
         if not 1 <= self.jobs <= MAX_JOBS:
-            raise UsageError(f"--jobs is 1 to {MAX_JOBS}, not {self.jobs}")
+            raise UsageError(f"--jobs must be 1 to {MAX_JOBS}, not {self.jobs}")
         if self.jobs > 1 and (self.photo or self.device == "gpu"):
             other = "--photo" if self.photo else "--device gpu"
-            raise UsageError(f"--jobs is for plain pictures on the CPU, not for {other}")
+            raise UsageError(f"--jobs draws on the CPU without tracing; leave out {other}")
 
-    def light_of(self, kind: "Kind") -> "LightSettings":
-        """Return the light of a kind of view: a turntable stands in an even light of its own.
+    def light_of(self, kind: Kind) -> LightSettings:
+        """Return the light of a kind of view: neutral for a turntable unless a setting is given.
 
         Raises:
-            UsageError: a number is out of range, or there is no such light.
+            UsageError: a number is out of range, or the light is not known.
         """
-        from world2minecraft.rendering import DAY, LightSettings
-
         asked = self.hour is not None or self.sun_shadow or self.exposure is not None
         usual = "neutral" if kind == "turntable" and not asked else DAY.preset
         try:
@@ -110,32 +110,25 @@ class Look:
                 sun_shadow=self.sun_shadow,
             )
         except ValueError as error:
-            raise UsageError(f"no such light: {error}") from error
+            raise UsageError(f"light: {error}") from error
 
-    def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
-        """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
-        from world2minecraft.rendering.presentation.shot_rendering import DrawOptions
-        from world2minecraft.rendering.shading_parameters import BACKDROP
-
+    def options_of(self, kind: Kind, medium: Medium, outputs: tuple[str, ...]) -> DrawOptions:
+        """Return how pictures are drawn; single pictures get more rays than those of a data set."""
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
-        # From above one sees no sky; a build stands out best on paper, but not at night.
+        # From above no sky is seen: the backdrop is plain, except where an hour is given.
         paper = BACKDROP if kind in ("orbit", "turntable") and self.hour is None else None
         light, samples = self.light_of(kind), self.samples or usual
         return DrawOptions(outputs, light, samples, self.threads, paper, self.device, self.jobs)
 
-    def looks(self) -> "Looks":
-        """Return the user's packs, the last first, and then our own looks.
+    def looks(self) -> Looks:
+        """Return the resource packs, the last one first, then the built-in models.
 
         Raises:
             InputError: a pack cannot be read.
         """
-        from world2minecraft.rendering.block_models import BuiltinModels
-
         if not self.packs:
             side_px = self.texture_px or OWN_PX
             return Looks(BuiltinModels(side_px), side_px)
-        from world2minecraft.rendering.block_elements import ModelSourceStack
-        from world2minecraft.rendering.resource_packs import ResourcePackModels
 
         packs = ResourcePackModels(self.packs)
         side_px = self.texture_px or packs.texture_px
@@ -143,28 +136,26 @@ class Look:
 
 
 def take_pictures(
-    scene: "BlockScene",
-    shots: "Sequence[Shot]",
-    look: Look,
-    options: "DrawOptions",
+    scene: BlockScene,
+    shots: Sequence[Shot],
+    settings: DrawSettings,
+    options: DrawOptions,
     step: Callable[[int], None],
-) -> "Iterator[Picture]":
-    """Take the pictures of shots, by the tier that the look names.
+) -> Iterator[Picture]:
+    """Draw the pictures of shots, by casting rays or by tracing the paths of light.
 
     Args:
         scene: what they show.
         shots: from where.
-        look: says the tier.
+        settings: say whether light is traced.
         options: how they are drawn.
         step: called with 1 for each picture, or for each path a pixel of a photo.
 
     Raises:
-        UsageError: this version has no such tier, or it cannot do what is asked for.
+        UsageError: there is no such device, or the tracer does not support what is asked for.
     """
-    from world2minecraft.rendering.presentation.shot_rendering import draw_shots
-
-    if look.photo:
-        yield from _photos(scene, shots, look, options, step)
+    if settings.photo:
+        yield from _photos(scene, shots, settings, options, step)
         return
     for picture in draw_shots(scene, shots, options):
         step(1)
@@ -172,29 +163,27 @@ def take_pictures(
 
 
 def _photos(
-    scene: "BlockScene", shots: "Sequence[Shot]", look: Look, options: "DrawOptions",
+    scene: BlockScene, shots: Sequence[Shot], settings: DrawSettings, options: DrawOptions,
     step: Callable[[int], None],
-) -> "Iterator[Picture]":  # fmt: skip
+) -> Iterator[Picture]:  # fmt: skip
     """Trace photos; the first one's exposure is that of all."""
-    from world2minecraft.rendering.path_tracing import emitters_of, render_photo
-
     lamps, light = emitters_of(scene), options.light
     for shot in shots:
-        told = 0
+        reported = 0
 
-        def tell(stage: str, done: int, total: int, note: str = "") -> None:
-            nonlocal told
-            step(done - told)
-            told = done
+        def report(stage: str, done: int, total: int, note: str = "") -> None:
+            nonlocal reported
+            step(done - reported)
+            reported = done
 
         try:
             picture = render_photo(
                 scene, shot.camera, shot.camera_to_room, light=light, emitters=lamps,
-                samples=look.photo_samples, threads=look.threads, progress=tell,
+                samples=settings.photo_samples, threads=settings.threads, progress=report,
             )  # fmt: skip
         except ValueError as error:
-            raise UsageError(f"--photo cannot do this: {error}") from error
-        step(look.photo_samples - told)
+            raise UsageError(f"--photo: {error}") from error
+        step(settings.photo_samples - reported)
         light = replace(light, exposure=clamp_exposure(picture.exposure))
         yield picture
 

@@ -1,0 +1,308 @@
+"""Pictures of builds: one in memory, or any number as files, from any pose."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from world2minecraft.api.results import Run
+from world2minecraft.api.rooms import path_of
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from world2minecraft.core.types import BlockVolume
+    from world2minecraft.rendering.output import FileFormats
+    from world2minecraft.rendering.picture_files.draw_settings import DrawSettings
+    from world2minecraft.rendering.picture_files.drawing import DrawnFiles
+    from world2minecraft.rendering.picture_files.shot_selection import CameraChoice, View
+    from world2minecraft.rendering.views import GamePose
+
+VIEWS = ("isometric", "plan", "inside")
+FILE_VIEWS = ("start", "orbit", "tour", "turntable")
+Box = tuple[int, int, int, int, int, int]
+MAX_THREADS = 512
+
+
+def render(
+    source: Run | str | Path, *, size: tuple[int, int] = (640, 480), view: str = "isometric"
+) -> "Image":
+    """Draw a build as one picture, without the game, a display or a graphics card.
+
+    Args:
+        source: a run, its folder, a world, or a block file such as ``house.schem``.
+        size: the width and the height in pixels.
+        view: ``isometric``, from outside with ceiling and near walls cut away; ``plan``, from
+            above; or ``inside``, from where the player starts.
+
+    Returns:
+        The picture, RGB.
+
+    Raises:
+        UnknownNameError: there is no such view. InputError: the build cannot be read.
+        UsageError: the size is out of range, or ``inside`` is asked of a build without a start.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.render(run, size=(320, 240)).size
+        (320, 240)
+    """
+    from PIL import Image
+
+    from world2minecraft.formats.build_reader import read_build
+    from world2minecraft.rendering.preview import plan_view, preview
+
+    if view not in VIEWS:
+        raise UnknownNameError("view", view, VIEWS)
+    width, height = size
+    build = read_build(path_of(source))
+    volume = build.volume
+    if view == "inside":
+        if build.start is None:
+            raise UsageError(f"{path_of(source)} has no player start; use view='isometric'")
+        start = build.start
+        return _inside(volume, (start.x, start.y, start.z, start.yaw_deg), size)
+    if view == "isometric":
+        try:
+            return Image.fromarray(preview(volume, width, height))
+        except ValueError as error:
+            raise UsageError(f"size {width}x{height}: {error}") from error
+    across, along = volume.states.shape[0], volume.states.shape[2]
+    plan = Image.fromarray(plan_view(volume, max(min(width // across, height // along), 1)))
+    plan.thumbnail(size)
+    picture = Image.new("RGB", size, plan.getpixel((0, 0)))  # type: ignore[arg-type]
+    picture.paste(plan, ((width - plan.width) // 2, (height - plan.height) // 2))
+    return picture
+
+
+def _inside(
+    volume: "BlockVolume", start: tuple[float, float, float, float], size: tuple[int, int]
+) -> "Image":
+    from PIL import Image
+
+    from world2minecraft.core.coordinates import eye_height_blocks
+    from world2minecraft.rendering import render_volume
+    from world2minecraft.rendering.views import GamePose, camera_of
+    from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
+
+    camera = camera_of(*size, vertical_fov_deg=GAME_FOV_DEG, horizontal_fov_deg=None)
+    eye_blocks = eye_height_blocks(volume.blocks_per_metre)
+    pose = GamePose(*start, 0.0).camera_to_room(volume.block_to_room, eye_blocks)
+    picture = render_volume(volume, camera, pose, outputs=("colour",), samples=2)
+    return Image.fromarray(np.asarray(picture.colour))
+
+
+def render_files(
+    source: Run | str | Path,
+    out: str | Path | None = None,
+    *,
+    view: str = "start",
+    poses: "Sequence[Sequence[float] | GamePose] | str | Path | None" = None,
+    frames: int | None = None,
+    opened: bool | None = None,
+    box: Box | None = None,
+    size: tuple[int, int] = (1280, 720),
+    vertical_fov_deg: float | None = None,
+    horizontal_fov_deg: float | None = None,
+    outputs: Sequence[str] = ("rgb",),
+    image_format: str = "png",
+    depth_format: str = "png",
+    depth_scale: int = 1000,
+    quality: int = 92,
+    fps: float = 24.0,
+    light: str | None = None,
+    hour: float | None = None,
+    brightness: float = 0.5,
+    exposure: float | None = None,
+    sun_shadow: bool = False,
+    samples: int | None = None,
+    texture_px: int | None = None,
+    packs: Sequence[str | Path] = (),
+    photo: bool = False,
+    photo_samples: int = 16,
+    device: str = "auto",
+    threads: int | None = None,
+    jobs: int = 1,
+    progress: Progress = no_progress,
+) -> "DrawnFiles":
+    """Draw a build to picture files, with the pose of each, without the game or a display.
+
+    Args:
+        source: a run, its folder, a world, or a block file such as ``house.schem``.
+        out: a picture (.png .jpg .webp .exr .npy), an animation (.gif .apng .webp .mp4 .webm) or
+            a folder; by default a name from the source and the view, in the working folder.
+        view: ``start``, from where the player starts (from outside where a build has no start),
+            ``orbit``, ``tour`` (a walk through the rooms) or ``turntable``.
+        poses: instead of a view, poses (x, y, z, yaw, pitch) at the feet, as the game's F3 screen
+            shows them, or ``GamePose`` values; or a file of poses: JSON lines or CSV.
+        frames: the number of pictures of an orbit, a tour or a turntable.
+        opened: from outside, leave out ceilings and near walls; by default for labelled rooms.
+        box: draw these blocks only: x0, y0, z0, x1, y1, z1, the last ones excluded.
+        size: the width and the height in pixels.
+        vertical_fov_deg: 70 by default, as in the game; 40 for an orbit.
+        horizontal_fov_deg: in place of the vertical one.
+        outputs: ``rgb``, ``depth``, ``range``, ``block``, ``state``, ``class``, ``instance``,
+            ``face`` ...; ``id`` is state, class and instance, ``all`` is all of them.
+        image_format: of colour in a folder: ``png``, ``jpg`` or ``webp``.
+        depth_format: ``png`` (16 bits), ``exr`` or ``npy`` (float32, metres).
+        depth_scale: the value of one metre in a depth PNG.
+        quality: of JPEG and WebP, 1 to 100.
+        fps: the frames per second of an animation.
+        light: ``shader`` (soft), ``game`` or ``neutral`` (even).
+        hour: the hour of the day, 0 to 24.
+        brightness: as in the game, 0 (moody) to 1 (bright).
+        exposure: 0.01 to 100; chosen automatically by default.
+        sun_shadow: draw the shadows of the sun.
+        samples: rays across each pixel, 1 to 4.
+        texture_px: the pixels of a block's side: 16, 32, 64 or 128.
+        packs: resource packs or client jars; the last one wins.
+        photo: trace the paths of light: slow, with soft shadows.
+        photo_samples: the paths for each pixel of a photo.
+        device: ``auto``, ``cpu`` or ``gpu``.
+        threads: all cores by default.
+        jobs: the number of processes that draw a folder or an animation.
+        progress: called after each picture, or each pass of a photo.
+
+    Returns:
+        What was written: its path, the poses, and notes.
+
+    Raises:
+        UsageError: an argument is out of range, or two of them exclude each other.
+        UnknownNameError: a view or an output is not known.
+        InputError: the build, the poses or a pack cannot be read.
+        OutputError: the files cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> drawn = w2m.render_files(run, tmp / "walk", view="tour", frames=2, size=(64, 48))
+        >>> [pose["image"] for pose in drawn.poses]
+        ['000000.png', '000001.png']
+    """
+    from world2minecraft.rendering.picture_files.draw_settings import DrawSettings
+
+    choice = camera_choice(size, vertical_fov_deg, horizontal_fov_deg)
+    seen = _view_of(view, poses, frames, fps, opened)
+    files = _file_formats(image_format, depth_format, quality, depth_scale)
+    settings = DrawSettings(
+        light, hour, brightness, exposure, sun_shadow, samples, texture_px,
+        tuple(Path(pack) for pack in packs), photo, photo_samples, device,
+        _thread_count(threads), jobs,
+    )  # fmt: skip
+    return _draw(path_of(source), out, seen, choice, outputs, files, settings, box, progress)
+
+
+def _draw(
+    source: Path,
+    out: str | Path | None,
+    view: "View",
+    choice: "CameraChoice",
+    outputs: Sequence[str],
+    files: "FileFormats",
+    settings: "DrawSettings",
+    box: Box | None,
+    progress: Progress,
+) -> "DrawnFiles":
+    """Check what can be checked before any work, then read the build and draw it."""
+    from world2minecraft.rendering.output import parse_layers
+    from world2minecraft.rendering.picture_files.destination import choose_target
+    from world2minecraft.rendering.picture_files.drawing import draw_files
+    from world2minecraft.rendering.picture_files.source import read_source
+
+    target = choose_target(
+        None if out is None else Path(out),
+        source.resolve().stem,
+        view.kind,
+        parse_layers(",".join(outputs)),
+        files,
+        view.frames or len(view.poses) or None,
+    )
+    settings.light_of(view.kind)  # Raises where a value is out of range.
+    return draw_files(read_source(source, box), view, choice, target, settings, progress)
+
+
+def _thread_count(asked: int | None) -> int:
+    from world2minecraft.core.machine import usable_cores
+
+    if asked is None:
+        return usable_cores()
+    if not 1 <= asked <= MAX_THREADS:
+        raise UsageError(f"--threads must be 1 to {MAX_THREADS}, not {asked}")
+    return asked
+
+
+def _view_of(
+    view: str,
+    poses: "Sequence[Sequence[float] | GamePose] | str | Path | None",
+    frames: int | None,
+    fps: float,
+    opened: bool | None,
+) -> "View":
+    """Return the view that the arguments describe."""
+    from world2minecraft.rendering.picture_files.shot_selection import View
+    from world2minecraft.rendering.views import GamePose
+
+    if view not in FILE_VIEWS:
+        raise UnknownNameError("view", view, FILE_VIEWS)
+    if poses is None:
+        return View("spawn" if view == "start" else view, (), None, frames, fps, opened)  # type: ignore[arg-type]
+    if view != "start":
+        raise UsageError(f"poses and view={view!r} exclude each other; give one of them")
+    if isinstance(poses, str | Path):
+        return View("poses", (), Path(poses), frames, fps, opened)
+    given = tuple(one if isinstance(one, GamePose) else game_pose(one) for one in poses)
+    if not given:
+        raise UsageError("poses is empty; give at least one pose")
+    return View("pose", given, None, frames, fps, opened)
+
+
+def _file_formats(image: str, depth: str, quality: int, per_metre: int) -> "FileFormats":
+    """Return how layers become files."""
+    from world2minecraft.rendering.output import FileFormats
+
+    if image not in ("png", "jpg", "jpeg", "webp"):
+        raise UsageError(f"--format must be png, jpg or webp, not {image!r}")
+    if depth not in ("png", "exr", "npy"):
+        raise UsageError(f"--depth-format must be png, exr or npy, not {depth!r}")
+    if not 1 <= quality <= 100:
+        raise UsageError(f"--quality must be 1 to 100, not {quality}")
+    if not 1 <= per_metre <= 65535:
+        raise UsageError(f"--depth-scale must be 1 to 65535, not {per_metre}")
+    return FileFormats(f".{image}", f".{depth}", quality, per_metre)
+
+
+def camera_choice(
+    size: tuple[int, int],
+    vertical_fov_deg: float | None = None,
+    horizontal_fov_deg: float | None = None,
+) -> "CameraChoice":
+    """Return the size of pictures in pixels with the field of view that was given, if any.
+
+    Raises:
+        UsageError: a value is out of range, or both fields of view are given.
+    """
+    from world2minecraft.rendering.picture_files.shot_selection import CameraChoice
+
+    return CameraChoice(*size, vertical_fov_deg, horizontal_fov_deg)
+
+
+def game_pose(values: Sequence[float], at: str = "feet") -> "GamePose":
+    """Return a pose of the game.
+
+    Args:
+        values: x, y, z in blocks, then yaw and pitch in degrees, as the F3 screen shows them.
+        at: where x, y, z is: ``feet`` or ``eye``.
+
+    Raises:
+        UsageError: a value is out of range.
+
+    Example:
+        >>> game_pose((4, 64, -3, 90, 10)).yaw_deg
+        90
+    """
+    from world2minecraft.rendering.views import GamePose
+
+    x, y, z, yaw_deg, pitch_deg = values
+    return GamePose(x, y, z, yaw_deg, pitch_deg, at)  # type: ignore[arg-type]
