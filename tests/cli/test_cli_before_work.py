@@ -46,7 +46,7 @@ def test_wrong_options_are_refused_before_any_work(
 def test_a_world_without_steps_says_so_when_they_are_listed(tmp_path, capsys):
     (tmp_path / "level.dat").write_bytes(b"")
     assert cli.run(["undo", str(tmp_path), "--list"]) == 0
-    told = f"{tmp_path}: nothing of World2Minecraft is there to undo.\n"
+    told = f"{tmp_path}: no build by World2Minecraft to undo.\n"
     assert capsys.readouterr().out == told
 
 

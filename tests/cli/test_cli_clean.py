@@ -1,4 +1,6 @@
-"""``w2m clean``: mends are done, listed, taken back and done again; played worlds stay."""
+"""``w2m clean``: repairs are made, listed, undone and redone; played worlds stay."""
+
+import json
 
 import numpy as np
 import pytest
@@ -68,16 +70,18 @@ def test_repairs_are_made_listed_undone_and_redone(out, capsys):
     assert [e.id for e in world.block_entities] == ["minecraft:sign"]
     assert read_level(out / "build" / "world")["LevelName"] == "My room"
     assert clean(out) == 0
-    assert capsys.readouterr().out == "Nothing is left to mend.\n"
+    assert capsys.readouterr().out == "Nothing to repair.\n"
     assert clean(out, "--undo", 1) == 0
     assert clean(out, "--list") == 0
     said = capsys.readouterr().out
-    assert "a hole in the wall  (taken back)\n" in said
+    assert clean(out, "--list", "--json") == 0
+    assert [one["is_done"] for one in json.loads(capsys.readouterr().out)] == [False, True]
+    assert "a hole in the wall  (undone)\n" in said
     assert texts(read_built(out / "build"))[0, 5, 6] == AIR
     assert clean(out, "--redo", 1) == 0
     assert (texts(read_built(out / "build")) == after).all()
     assert clean(out, "--undo-all") == 0
-    assert "2 mends taken back." in capsys.readouterr().out
+    assert "2 repairs undone." in capsys.readouterr().out
     assert (texts(read_built(out / "build")) == before).all()
 
 
@@ -107,7 +111,7 @@ def test_a_journal_of_another_build_is_told(out, capsys):
     capsys.readouterr()
     assert clean(out, "--list") == 3
     err = capsys.readouterr().err
-    assert "edits.journal: is of another build than the one beside it" in err
+    assert "edits.journal: belongs to another build than the one beside it" in err
     assert err.endswith("remove it, or build again\n")
     write_edits(out / "build", ())
     assert clean(out, "--list") == 0
@@ -117,7 +121,8 @@ def test_a_journal_of_another_build_is_told(out, capsys):
     ("words", "code", "reason"),
     [
         (["nowhere"], 3, "nowhere: holds no build (build/scene.json)"),
-        (["{out}", "--list", "--undo", "1"], 2, "go one at a time"),
+        (["{out}", "--list", "--undo", "1"], 2, "exclude each other; give one"),
+        (["{out}", "--json"], 2, "--json needs --list"),
         (["{out}", "--undo", "1"], 2, "there is nothing to undo"),
         (["{out}", "--redo", "4"], 2, "edit 4 was not taken back"),
         (["{out}", "--only", "hole"], 2, "no clean-up rule is named 'hole'; did you mean 'holes'?"),

@@ -1,5 +1,6 @@
 """``w2m install``: where it goes, what to click, and when it asks."""
 
+import json
 import os
 from pathlib import Path
 
@@ -55,7 +56,7 @@ def test_the_world_goes_to_the_only_game(out, home, capsys):
         "  1. start Minecraft launcher\n"
         "  2. Singleplayer\n"
         "  3. Kitchen, then Play Selected World\n\n"
-        "From 1.20.5 on, /function w2m:human_size makes you as large as a person there.\n"
+        "From 1.20.5 on, /function w2m:human_size gives you the size of a person there.\n"
     )
 
 
@@ -65,7 +66,7 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     pack(home, "Old", "1.20")
     assert cli.run(["install", str(out)]) == 2
     assert capsys.readouterr().err == (
-        "error: 3 games were found; choose with --game NUMBER: 1 Minecraft launcher, "
+        "error: 3 games found; choose one with --game NUMBER: 1 Minecraft launcher, "
         "2 Prism: Fabric, 3 Prism: Old\n"
     )
     assert cli.run(["install", str(out), "--game", "fab"]) == 0
@@ -79,15 +80,22 @@ def test_of_several_games_one_is_chosen(out, home, capsys):
     ) in capsys.readouterr().out
     assert cli.run(["install", "--list"]) == 0
     assert capsys.readouterr().out.splitlines()[1] == f" 2  Prism: Fabric (1.21.1)  {saves}"
+    assert cli.run(["install", "--list", "--json"]) == 0
+    fabric = {"number": 2, "name": "Prism: Fabric", "version": "1.21.1", "saves": str(saves)}
+    assert json.loads(capsys.readouterr().out)[1] == fabric
 
 
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["install"], 2, "say what to install: w2m install OUT"),
-        (["install", "{out}"], 2, "no game was found here; give its saves folder with --saves"),
+        (["install"], 2, "no world given; add the folder of a run, as in w2m install OUT"),
+        (["install", "{out}"], 2, "no game found; give the saves folder of one with --saves"),
         (["install", "{home}", "--saves", "{home}"], 3, "holds no world (build/world/level.dat)"),
-        (["install", "{out}", "--saves", "{home}/a/b"], 3, "is no saves folder, nor is there one"),
+        (
+            ["install", "{out}", "--saves", "{home}/a/b"],
+            3,
+            "not found, nor a folder to create it in",
+        ),
         (["install", "{out}", "--saves", "{home}", "--name", "/"], 2, "a world cannot be named"),
     ],
 )
@@ -101,8 +109,11 @@ def test_what_cannot_be_is_one_line(out, home, capsys, words, code, reason):
 @pytest.mark.parametrize(
     ("wanted", "reason"),
     [
-        ("7", "--game 7: there are 2 games; see w2m install --list"),
-        ("bedrock", "no game is named 'bedrock'; choose with --game NUMBER: 1 Minecraft launcher"),
+        ("7", "--game 7: only 2 games found; see w2m install --list"),
+        (
+            "bedrock",
+            "no game is named 'bedrock'; choose one with --game NUMBER: 1 Minecraft launcher",
+        ),
         ("minecraft launcher", None),
     ],
 )

@@ -1,5 +1,7 @@
 """``w2m build --into`` and ``w2m undo``: what they say, and that they refuse in time."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -78,8 +80,11 @@ def test_blocks_are_built_at_a_place_and_taken_back(schem, world, capsys):
     assert capsys.readouterr().out == (
         "0001  built at 5 70 -3, 2 files\n1 step to undo, the last one first.\n"
     )
+    assert cli.run(["undo", str(world), "--list", "--json"]) == 0
+    (step,) = json.loads(capsys.readouterr().out)
+    assert step == {"number": "0001", "what": "built at 5 70 -3", "files": 2}
     assert cli.run(["undo", str(world)]) == 0
-    assert capsys.readouterr().out == (f"{world}: 2 files brought back, byte by byte as before.\n")
+    assert capsys.readouterr().out == (f"{world}: 2 files restored, byte for byte.\n")
     assert place_of(world, "minecraft:dirt") == ([0, 60, 0], 6400)
 
 
@@ -109,14 +114,14 @@ def test_a_world_that_was_saved_since_is_not_overwritten(schem, world, capsys):
     capsys.readouterr()
     assert cli.run(["undo", str(world)]) == 3
     assert capsys.readouterr().err == (
-        f"error: {world}: region/r.0.0.mca was saved since; --blocks takes out what was built and "
-        "keeps the rest, --force brings the old files back\n"
+        f"error: {world}: region/r.0.0.mca has been saved since; add --blocks to undo "
+        "the build alone, or --force to restore the old files\n"
     )
     assert cli.run(["undo", str(world), "--blocks"]) == 0
-    assert f"{world}: 24 blocks put back as before." in capsys.readouterr().out
+    assert f"{world}: 24 blocks restored." in capsys.readouterr().out
     assert place_of(world, "minecraft:dirt") == ([0, 60, 0], 6400)
     assert cli.run(["undo", str(world)]) == 2
-    assert "nothing of World2Minecraft is there to undo" in capsys.readouterr().err
+    assert "no build by World2Minecraft to undo" in capsys.readouterr().err
 
 
 def test_force_brings_the_old_files_back(schem, world):
@@ -162,8 +167,8 @@ def test_what_cannot_be_is_one_line_and_changes_nothing(schem, world, capsys, wo
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["undo", "{world}"], 2, "nothing of World2Minecraft is there to undo"),
-        (["undo", "{world}", "--blocks", "--force"], 2, "choose one"),
+        (["undo", "{world}"], 2, "no build by World2Minecraft to undo"),
+        (["undo", "{world}", "--blocks", "--force"], 2, "exclude each other"),
         (["undo", "nowhere", "--list"], 3, "nowhere: is no world folder: it has no level.dat"),
         (["undo", "{world}/..", "--list"], 3, "/home is one"),
         (["undo", "nowhere"], 3, "nowhere: is no world folder: it has no level.dat"),

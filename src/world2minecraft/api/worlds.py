@@ -1,6 +1,7 @@
 """Worlds and block files: convert any form into any other, install worlds, undo builds in them."""
 
 import os
+import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
     from world2minecraft.formats.volume_crop import Box
     from world2minecraft.minecraft.file_format import Losses
+    from world2minecraft.minecraft.worlds.launchers import Game
 
 HABITAT_MARK = "*.scene_dataset_config.json"
 
@@ -221,3 +223,160 @@ def _put_in_place(written: Path, target: Path) -> None:
     except OSError:
         os.replace(old, target)
         raise
+
+
+@dataclass(frozen=True)
+class InstalledWorld:
+    """A world that was copied into a game.
+
+    Attributes:
+        path: its folder in the saves folder; its name is that of the world in the game.
+        game: the name of the game, such as ``Prism: Fabric``.
+        note: a warning where the game is too old for the world; empty otherwise.
+        has_player_size: whether its data pack can resize the player (``/function w2m:human_size``).
+    """
+
+    path: Path
+    game: str
+    note: str = ""
+    has_player_size: bool = False
+
+
+def find_games() -> "list[Game]":
+    """Return the games of this machine, with the saves folder and, where known, the version.
+
+    The Minecraft launcher, Prism, PolyMC and MultiMC are searched.
+
+    Example:
+        >>> from world2minecraft.api.worlds import find_games
+        >>> isinstance(find_games(), list)
+        True
+    """
+    from world2minecraft.minecraft.worlds.launchers import find_games as find
+
+    return find(sys.platform, Path.home(), os.environ)
+
+
+def install_world(
+    source: Run | str | Path,
+    *,
+    game: str = "",
+    saves: str | Path | None = None,
+    name: str = "",
+) -> InstalledWorld:
+    """Copy the world of a run into the saves folder of a game; nothing is overwritten.
+
+    Where the name of the world is taken, a number follows it.
+
+    Args:
+        source: a run, its folder, or a world.
+        game: of several games, the number in ``find_games()``, from 1, or a part of the name.
+        saves: a saves folder, instead of searching for games.
+        name: the name of the world; its own by default.
+
+    Raises:
+        UsageError: no game is found, or several match. InputError: the source holds no world, or
+        the saves folder is not found. OutputError: the saves folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.install_world(run, saves=tmp / "saves", name="Study").path.name
+        'Study'
+    """
+    from world2minecraft.minecraft.worlds import installation
+    from world2minecraft.minecraft.worlds.launchers import Game, choose_game
+
+    world = installation.find_world(path_of(source))
+    chosen = Game("the game", Path(saves)) if saves else choose_game(find_games(), game)
+    if not chosen.saves.parent.is_dir():
+        reason = "not found, nor a folder to create it in; give the saves folder of a game"
+        raise InputError(chosen.saves, f"{reason} with --saves DIR")
+    target = installation.install_world(world, chosen.saves, name or None)
+    return InstalledWorld(
+        target,
+        chosen.name,
+        installation.age_note(world, chosen),
+        (target / "datapacks" / "player_size.zip").is_file(),
+    )
+
+
+@dataclass(frozen=True)
+class UndoStep:
+    """A build into a world that can be undone.
+
+    Attributes:
+        number: its number in the world, such as ``0001``.
+        what: what it did, such as ``built at 5 70 -3``.
+        files: how many files it changed.
+    """
+
+    number: str
+    what: str
+    files: int
+
+
+@dataclass(frozen=True)
+class Undone:
+    """What was undone.
+
+    Attributes:
+        files: how many files were restored; 0 where blocks were.
+        blocks: how many blocks were restored one by one.
+        unchanged: how many blocks were left, because they were changed since.
+        interrupted: whether the step had been interrupted, and was not complete.
+    """
+
+    files: int = 0
+    blocks: int = 0
+    unchanged: int = 0
+    interrupted: bool = False
+
+
+def undo_steps(world: str | Path) -> list[UndoStep]:
+    """Return the builds into a world that ``undo_build`` can undo, the first one first.
+
+    Raises:
+        InputError: the folder holds no world.
+    """
+    from world2minecraft.editing.file_backups import list_steps
+    from world2minecraft.minecraft.worlds.level_dat import no_world
+
+    if not (Path(world) / "level.dat").is_file():
+        raise no_world(Path(world))
+    steps = list_steps(Path(world))
+    return [UndoStep(step.folder.name, step.what, len(step.files)) for step in steps]
+
+
+def undo_build(world: str | Path, *, blocks: bool = False, force: bool = False) -> Undone:
+    """Undo the last build into a world.
+
+    Every file that the build changed is restored byte for byte, unless the game has saved the
+    world since.
+
+    Args:
+        world: the folder of the world.
+        blocks: restore the blocks one by one, and leave those that were changed since.
+        force: restore the files even where they were changed since.
+
+    Raises:
+        UsageError: there is nothing to undo, or both ``blocks`` and ``force`` are given.
+        ConflictError: the world was changed since, or the game has it open.
+        InputError: the folder holds no world.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.undo_build(run.world)
+        Traceback (most recent call last):
+        ...
+        world2minecraft.core.errors.UsageError: ...: no build by World2Minecraft to undo
+    """
+    from world2minecraft.editing.build_into_world import remove_build
+    from world2minecraft.editing.file_backups import DONE, revert_last_step
+
+    if blocks and force:
+        raise UsageError("--blocks and --force exclude each other; give one of them")
+    if blocks:
+        done = remove_build(Path(world))
+        return Undone(blocks=done.blocks, unchanged=done.kept)
+    step = revert_last_step(Path(world), force)
+    return Undone(len(step.files), interrupted=step.state != DONE)

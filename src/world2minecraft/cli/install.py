@@ -1,13 +1,13 @@
-"""``w2m install``: a built world goes where the game finds it."""
+"""``w2m install``: copy a built world to where the game finds it."""
 
-import os
-import sys
+import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.minecraft.worlds.launchers import Game
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m install OUT                       to the game of this machine
 w2m install --list                    the games that are found
-w2m install OUT --game Fabric         to the one whose name has this word, or by its number
+w2m install OUT --game Fabric         to the one whose name contains this, or by its number
 w2m install OUT --saves D:/games/saves --name Kitchen
 """
 
@@ -25,80 +25,58 @@ def run(
         Path | None, typer.Argument(metavar="OUT", help="A run's folder, or a world.")
     ] = None,
     game: Annotated[
-        str, typer.Option("--game", help="Number or part of the name of a game of --list.")
+        str, typer.Option("--game", help="Number or part of the name of a game in --list.")
     ] = "",
     saves: Annotated[
-        Path | None, typer.Option("--saves", metavar="DIR", help="This saves folder instead.")
+        Path | None, typer.Option("--saves", metavar="DIR", help="A saves folder instead.")
     ] = None,
-    name: Annotated[str, typer.Option("--name", help="What the world is called.")] = "",
+    name: Annotated[
+        str, typer.Option("--name", help="Name of the world.", show_default="its own")
+    ] = "",
     list_: Annotated[bool, typer.Option("--list", help="List the games that are found.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the --list as JSON.")] = False,
 ) -> None:
-    """Copy the world of a run into the game's saves folder, and say what to click.
+    """Copy the world of a run into the game's saves folder, and print how to open it.
 
-    The Minecraft launcher (and the game directories of its installations), Prism, PolyMC and
-    MultiMC are looked for. Nothing is ever overwritten: where the name is taken, a number
-    follows it.
-
-    Args:
-        source: what to install.
-        game: which of several games.
-        saves: a saves folder, instead of looking for games.
-        name: what the world is called; its own name where left out.
-        list_: whether to list the games, and do nothing.
+    Searches the Minecraft launcher (and the game directories of its installations), Prism, PolyMC
+    and MultiMC. Nothing is overwritten: where the name is taken, a number follows it.
 
     Raises:
         UsageError: no game is found, or several. InputError: there is no world.
         OutputError: the saves folder cannot be written.
     """
-    from world2minecraft.minecraft.worlds.launchers import Game, find_games
+    from world2minecraft.api.worlds import find_games, install_world
 
-    games = [] if saves else find_games(sys.platform, Path.home(), os.environ)
+    if as_json and not list_:
+        raise UsageError("--json needs --list")
     if list_:
-        print(format_games(games) or "No game was found; give its saves folder with --saves DIR.")
+        games = [] if saves else find_games()
+        none = "No game found; give the saves folder of one with --saves DIR."
+        print(games_to_json(games) if as_json else format_games(games) or none)
         return
     if source is None:
-        raise UsageError("say what to install: w2m install OUT")
-    from world2minecraft.minecraft.worlds.installation import age_note, find_world, install_world
-
-    world = find_world(source)
-    chosen = Game("the game", saves) if saves else choose_game(games, game)
-    if not chosen.saves.parent.is_dir():
-        reason = "is no saves folder, nor is there one to make it in"
-        raise InputError(chosen.saves, f"{reason}; give --saves DIR, the folder of a game's worlds")
-    target = install_world(world, chosen.saves, name or None)
-    print(f"Copied to {target}")
-    if note := age_note(world, chosen):
-        print(f"note: {note}")
-    print(f"\n  1. start {chosen.name}")
+        raise UsageError("no world given; add the folder of a run, as in w2m install OUT")
+    done = install_world(source, game=game, saves=saves, name=name)
+    print(f"Copied to {done.path}")
+    if done.note:
+        print(f"note: {done.note}")
+    print(f"\n  1. start {done.game}")
     print("  2. Singleplayer")
-    print(f"  3. {target.name}, then Play Selected World")
-    if (target / "datapacks" / "player_size.zip").is_file():
-        print("\nFrom 1.20.5 on, /function w2m:human_size makes you as large as a person there.")
+    print(f"  3. {done.path.name}, then Play Selected World")
+    if done.has_player_size:
+        print("\nFrom 1.20.5 on, /function w2m:human_size gives you the size of a person there.")
 
 
-def choose_game(games: "list[Game]", wanted: str) -> "Game":
-    """Return the game that ``wanted`` says: a number of the list or a part of a name.
-
-    Raises:
-        UsageError: none is found, or several and none of them is meant.
-    """
-    if not games:
-        raise UsageError("no game was found here; give its saves folder with --saves DIR")
-    if wanted.isdecimal():
-        if not 1 <= int(wanted) <= len(games):
-            raise UsageError(
-                f"--game {wanted}: there are {len(games)} games; see w2m install --list"
-            )
-        return games[int(wanted) - 1]
-    named = [game for game in games if wanted.casefold() in game.name.casefold()]
-    if len(named) == 1:
-        return named[0]
-    names = ", ".join(f"{games.index(g) + 1} {g.name}" for g in (named or games))
-    what = f"no game is named {wanted!r}" if not named else f"{len(named)} games were found"
-    raise UsageError(f"{what}; choose with --game NUMBER: {names}")
+def games_to_json(games: "Sequence[Game]") -> str:
+    """Return the games as a JSON list."""
+    rows = [
+        {"number": number, "name": one.name, "version": one.version, "saves": str(one.saves)}
+        for number, one in enumerate(games, 1)
+    ]
+    return json.dumps(rows, indent=1)
 
 
-def format_games(games: "list[Game]") -> str:
+def format_games(games: "Sequence[Game]") -> str:
     """Return the games as lines: number, name, version, saves folder."""
     return "\n".join(
         f"{number:2}  {game.name}{f' ({game.version})' if game.version else ''}  {game.saves}"

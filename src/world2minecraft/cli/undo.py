@@ -1,15 +1,17 @@
-"""``w2m undo``: take back what was last built into a world."""
+"""``w2m undo``: undo the last build into a world."""
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from world2minecraft.core.errors import ConflictError, UsageError
+from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
-w2m undo saves/Home             every byte as it was before the last build
-w2m undo saves/Home --blocks    the blocks alone, in a world that was played in since
+w2m undo saves/Home             restore every file from before the last build
+w2m undo saves/Home --blocks    restore the blocks alone, in a world played in since
 w2m undo saves/Home --list      what can be undone
 """
 
@@ -17,82 +19,50 @@ w2m undo saves/Home --list      what can be undone
 def run(
     world: Annotated[Path, typer.Argument(metavar="WORLD", help="The world's folder.")],
     blocks: Annotated[
-        bool, typer.Option("--blocks", help="Block by block; keep what was done since.")
+        bool, typer.Option("--blocks", help="Undo block by block; later changes stay.")
     ] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="Bring the files back, whatever was done since.")
+        bool, typer.Option("--force", help="Restore the files even if they changed since.")
     ] = False,
     list_: Annotated[bool, typer.Option("--list", help="List what can be undone.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the --list as JSON.")] = False,
 ) -> None:
-    """Take back what `w2m build --into` last did to a world.
+    """Undo the last `w2m build --into` in a world.
 
-    Every file that it touched comes back byte by byte. Where the game has saved the world since,
-    that would destroy what was done there: then --blocks takes the blocks out one by one, and
-    leaves those that someone has changed.
-
-    Args:
-        world: the world's folder.
-        blocks: whether to undo block by block.
-        force: whether to bring files back that were changed since.
-        list_: whether to list the steps, and do nothing.
+    Every file that it changed is restored byte for byte. If the game has saved the world since,
+    that would lose what was done there: --blocks then removes the blocks one by one, and leaves
+    those that were changed since.
 
     Raises:
         UsageError: there is nothing to undo. ConflictError: the world was changed since.
         InputError: there is no world.
     """
-    if blocks and force:
-        raise UsageError("--blocks and --force are two ways to undo; choose one")
-    from world2minecraft.editing.file_backups import list_steps
-    from world2minecraft.minecraft.worlds.level_dat import no_world
+    from world2minecraft.api.worlds import undo_build, undo_steps
 
+    if as_json and not list_:
+        raise UsageError("--json needs --list")
+    if blocks and force:
+        raise UsageError("--blocks and --force exclude each other; give one of them")
     if list_:
-        if not (world / "level.dat").is_file():
-            raise no_world(world)
-        steps = list_steps(world)
+        steps = undo_steps(world)
+        if as_json:
+            print(json.dumps([asdict(step) for step in steps], indent=1))
+            return
         if not steps:
-            print(f"{world}: nothing of World2Minecraft is there to undo.")
+            print(f"{world}: no build by World2Minecraft to undo.")
             return
         for step in steps:
-            print(f"{step.folder.name}  {step.what}, {count_text(len(step.files), 'file')}")
+            print(f"{step.number}  {step.what}, {count_text(step.files, 'file')}")
         print(f"{count_text(len(steps), 'step')} to undo, the last one first.")
         return
+    done = undo_build(world, blocks=blocks, force=force)
     if blocks:
-        from world2minecraft.editing.build_into_world import remove_build
-
-        done = remove_build(world)
-        kept = f"; {count_text(done.kept, 'block')} changed since stay" if done.kept else ""
-        print(f"{world}: {count_text(done.blocks, 'block')} put back as before{kept}.")
-        return
-    print(undo_files(world, force))
-
-
-def undo_files(world: Path, force: bool) -> str:
-    """Bring back the files of the last step; return a line that tells.
-
-    Raises:
-        UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
-    """
-    from world2minecraft.editing.file_backups import changed_since, list_steps, recover, revert_step
-    from world2minecraft.minecraft.worlds.session_lock import session_lock
-
-    with session_lock(world):
-        cut_off = [step for step in list_steps(world) if step.state != "done"]
-        if cut_off:
-            if force:
-                revert_step(cut_off[-1])
-            else:
-                recover(world)
-            return f"{world}: a step that was cut off is taken back."
-        steps = list_steps(world)
-        if not steps:
-            raise UsageError(f"{world}: nothing of World2Minecraft is there to undo")
-        changed = changed_since(steps[-1])
-        if changed and not force:
-            reason = f"{changed[0]} was saved since; --blocks takes out what was built and keeps"
-            raise ConflictError(world, f"{reason} the rest, --force brings the old files back")
-        revert_step(steps[-1])
-        files = count_text(len(steps[-1].files), "file")
-        return f"{world}: {files} brought back, byte by byte as before."
+        rest = f"; {count_text(done.unchanged, 'block')} changed since stay" * bool(done.unchanged)
+        print(f"{world}: {count_text(done.blocks, 'block')} restored{rest}.")
+    elif done.interrupted:
+        print(f"{world}: an interrupted build is undone.")
+    else:
+        print(f"{world}: {count_text(done.files, 'file')} restored, byte for byte.")
 
 
 def count_text(number: int, what: str) -> str:

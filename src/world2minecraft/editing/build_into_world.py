@@ -113,7 +113,7 @@ def remove_build(world: Path) -> BuildOutcome:
         recovered = len(recover(world))
         steps = list_steps(world)
         if not steps:
-            raise UsageError(f"{world}: nothing of World2Minecraft is there to undo")
+            raise UsageError(f"{world}: no build by World2Minecraft to undo")
         edit = edit_of_step(steps[-1])
         low, high = edit.cells.min(axis=0), edit.cells.max(axis=0) + 1
         corner = (int(low[0]), int(low[1]), int(low[2]))

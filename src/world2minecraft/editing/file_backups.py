@@ -17,11 +17,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
+from world2minecraft.core.errors import (
+    ConflictError,
+    DamagedFileError,
+    InputError,
+    OutputError,
+    UsageError,
+)
 from world2minecraft.core.files import read_bytes, read_json, write_bytes, write_json
 from world2minecraft.core.types import BlockEdit
 from world2minecraft.editing.journal import write_journal
 from world2minecraft.minecraft.worlds.level_dat import UNDO_FOLDER as FOLDER
+from world2minecraft.minecraft.worlds.session_lock import session_lock
 
 MANIFEST, JOURNAL = "manifest.json", "edit.journal"
 PREPARED, DONE, UNDOING = "prepared", "done", "undoing"
@@ -174,6 +181,35 @@ def revert_step(step: Step) -> None:
         raise _as_output_error(step.world, error) from error
     with suppress(OSError):
         (step.world / FOLDER).rmdir()
+
+
+def revert_last_step(world: Path, force: bool = False) -> Step:
+    """Restore the files of the last step, or of one that was interrupted; return that step.
+
+    Args:
+        world: its folder; its lock is held meanwhile.
+        force: restore files that were changed since, too.
+
+    Raises:
+        UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
+    """
+    with session_lock(world):
+        cut_off = [step for step in list_steps(world) if step.state != DONE]
+        if cut_off and force:
+            revert_step(cut_off[-1])
+        elif cut_off:
+            recover(world)
+        if cut_off:
+            return cut_off[-1]
+        steps = list_steps(world)
+        if not steps:
+            raise UsageError(f"{world}: no build by World2Minecraft to undo")
+        changed = changed_since(steps[-1])
+        if changed and not force:
+            reason = f"{changed[0]} has been saved since; add --blocks to undo the build alone"
+            raise ConflictError(world, f"{reason}, or --force to restore the old files")
+        revert_step(steps[-1])
+        return steps[-1]
 
 
 def discard_step(step: Step) -> None:

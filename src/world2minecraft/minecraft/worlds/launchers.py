@@ -10,12 +10,12 @@ anywhere; the usual places are looked at.
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.core.errors import InputError
+from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_bytes, read_json
 
 MAX_SETTINGS_BYTES = 4 << 20
@@ -54,6 +54,27 @@ def find_games(platform: str, home: Path, environment: Mapping[str, str]) -> lis
         for game in _instance_games(kind, root):
             found.setdefault(_real(game.saves), game)
     return list(found.values())
+
+
+def choose_game(games: Sequence[Game], wanted: str) -> Game:
+    """Return the game of a number, from 1, or of a part of its name; the only one by default.
+
+    Raises:
+        UsageError: there is none, or several match.
+    """
+    if not games:
+        raise UsageError("no game found; give the saves folder of one with --saves DIR")
+    if wanted.isdecimal():
+        if not 1 <= int(wanted) <= len(games):
+            count = f"{len(games)} games" if len(games) > 1 else "1 game"
+            raise UsageError(f"--game {wanted}: only {count} found; see w2m install --list")
+        return games[int(wanted) - 1]
+    named = [game for game in games if wanted.casefold() in game.name.casefold()]
+    if len(named) == 1:
+        return named[0]
+    names = ", ".join(f"{games.index(g) + 1} {g.name}" for g in (named or games))
+    what = f"no game is named {wanted!r}" if not named else f"{len(named)} games found"
+    raise UsageError(f"{what}; choose one with --game NUMBER: {names}")
 
 
 def _launcher_folders(platform: str, home: Path, environment: Mapping[str, str]) -> Iterator[Path]:
