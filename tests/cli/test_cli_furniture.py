@@ -1,5 +1,7 @@
 """``w2m furniture``: list, show, add and draw."""
 
+import json
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -42,10 +44,10 @@ def test_a_chair_is_added_from_any_format(suffix, own, volume, tmp_path, capsys)
     assert furniture("add", source, "--class", "chair", "--blocks-per-metre", 1) == 0
     out = capsys.readouterr().out
     assert "my_chair: 1 blocks, 1.00 x 1.00 x 1.00 m deep, wide and high" in out
-    assert "Its front looked south (seen by its blocks; else say --front)." in out
+    assert "Its front looked south (inferred from its blocks; --front sets it)." in out
     assert (own / "my_chair.json").is_file()
     assert furniture("show", "my_chair") == 0
-    assert "  at 1 a metre: 1 birch_stairs" in capsys.readouterr().out
+    assert "  1 per metre: 1 birch_stairs" in capsys.readouterr().out
 
 
 def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
@@ -54,13 +56,15 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     assert furniture(*words) == 0
     before = (own / "a.json").read_bytes()
     assert furniture(*words) == 2
-    assert "is there already; add --force to replace it, or --name another" in (
+    assert "a.json exists; add --force to replace it, or choose another --name" in (
         capsys.readouterr().err
     )
     assert furniture(*words, "--force") == 0
     assert (own / "a.json").read_bytes() == before
     assert furniture(*words, "--name", "sofa") == 2
-    assert "the library has a sofa of its own; add --name another_name" in capsys.readouterr().err
+    assert (
+        "the library already has a sofa; choose another name with --name" in capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize(
@@ -84,13 +88,21 @@ def test_what_cannot_be_is_told_in_a_line(words, code, message, own, capsys):
 def test_the_list_holds_all(own, capsys):
     assert furniture("list") == 0
     out = capsys.readouterr().out
-    assert f"{len(TEMPLATES.names())} designs; * 24 that objects are matched against." in out
+    assert f"{len(TEMPLATES.names())} designs; objects are matched against 24, marked *." in out
     assert all(f" {name} " in out for name in TEMPLATES.names())
+
+
+def test_the_list_and_each_piece_are_json(own, capsys):
+    assert furniture("list", "--json") == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert [one["name"] for one in listed] == list(TEMPLATES.names())
+    assert furniture("show", "sofa", "--json") == 0
+    assert json.loads(capsys.readouterr().out) in listed
 
 
 def test_the_list_of_a_word(own, capsys):
     assert furniture("list", "bathtub", "--class", "furn") == 0
-    assert "2 designs; * 0 that" in capsys.readouterr().out
+    assert "2 designs; objects are matched against 0" in capsys.readouterr().out
 
 
 def test_a_sheet_is_drawn(own, tmp_path, capsys):

@@ -1,5 +1,7 @@
 """``w2m palettes`` and ``w2m convert --labels``."""
 
+import json
+
 import numpy as np
 
 from world2minecraft import cli
@@ -21,10 +23,17 @@ def test_a_file_is_checked_and_shown(tmp_path, capsys):
     assert cli.run(["palettes", str(path)]) == 0
     told = capsys.readouterr().out
     assert "restricted to 3 blocks" in told
-    assert "  wall      stone, oak_planks" in told
+    assert "  wall        stone, oak_planks" in told
     path.write_text("name: mine\nblocks: [oak_plank]\n")
     assert cli.run(["palettes", str(path)]) == 3
     assert "did you mean 'minecraft:oak_planks'?" in capsys.readouterr().err
+
+
+def test_palettes_are_json(capsys):
+    assert cli.run(["palettes", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert cli.run(["palettes", "vanilla", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == listed[0]
 
 
 def test_a_world_of_a_mod_becomes_labelled_meshes(tmp_path, capsys):

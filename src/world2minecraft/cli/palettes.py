@@ -1,5 +1,6 @@
-"""``w2m palettes``: the palettes there are, and whether one of your own is sound."""
+"""``w2m palettes``: the palettes of the program, and a check of your own."""
 
+import json
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -8,8 +9,9 @@ if TYPE_CHECKING:
     from world2minecraft.construction.palettes import Palette
 
 EXAMPLES = """\
-w2m palettes                      the palettes there are
-w2m palettes mine.yaml            check one of your own, and what each class is made of
+w2m palettes                      the palettes of the program
+w2m palettes mine.yaml            check one of your own, and list the blocks of each class
+w2m palettes --json               for programs
 w2m build OUT --palette mine.yaml
 """
 MAX_SHOWN = 6
@@ -19,27 +21,27 @@ def run(
     name: Annotated[
         str, typer.Argument(metavar="PALETTE", help="A palette's name, or its file.")
     ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List the palettes, or check one and say what rooms are built of with it.
-
-    Args:
-        name: a palette's name or file; empty lists all.
+    """List the palettes, or check one and list the blocks of each class.
 
     Raises:
-        UnknownNameError: there is no such palette. InputError: the file is no palette.
+        UnknownNameError: there is no such palette. InputError: the file is not a palette.
     """
-    from world2minecraft.construction.palettes import PALETTE_FILES, load_palette
+    from world2minecraft.api.palettes import list_palettes, open_palette, palette_json
 
     if name:
-        for line in lines_of(load_palette(name)):
-            print(line)
-        return
-    for each in PALETTE_FILES:
-        print(summary_of(load_palette(each)))
+        palette = open_palette(name)
+        text = json.dumps(palette_json(palette), indent=1) if as_json else details_of(palette)
+    else:
+        palettes = list_palettes()
+        rows = [palette_json(each) for each in palettes] if as_json else []
+        text = json.dumps(rows, indent=1) if as_json else "\n".join(map(summary_of, palettes))
+    print(text)
 
 
 def summary_of(palette: "Palette") -> str:
-    """Return what a palette holds in a line."""
+    """Return one line about a palette."""
     blocks = {state for states in palette.blocks.values() for state in states}
     words = 0 if palette.meanings is None else len(palette.meanings.words)
     pieces = len(palette.furniture)
@@ -47,9 +49,9 @@ def summary_of(palette: "Palette") -> str:
     return f"{palette.name:<24}{len(blocks)} full blocks{extra}, reads blocks by {words} words"
 
 
-def lines_of(palette: "Palette") -> list[str]:
-    """Return what each class is made of, and what else there is."""
-    from world2minecraft.core.classes import CLASS_NAMES
+def details_of(palette: "Palette") -> str:
+    """Return the blocks of each class, and the furniture, in lines."""
+    from world2minecraft.core.classes import display_name
 
     lines = [summary_of(palette)]
     if palette.only is not None:
@@ -57,7 +59,7 @@ def lines_of(palette: "Palette") -> list[str]:
     for number, states in palette.blocks.items():
         names = [state.partition("[")[0].removeprefix("minecraft:") for state in states]
         more = f" and {len(names) - MAX_SHOWN} more" if len(names) > MAX_SHOWN else ""
-        lines.append(f"  {CLASS_NAMES[number]:<10}{', '.join(names[:MAX_SHOWN])}{more}")
+        lines.append(f"  {display_name(number):<12}{', '.join(names[:MAX_SHOWN])}{more}")
     for piece in palette.furniture:
         lines.append(f"  {', '.join(piece.designs)}: {', '.join(cell.id for cell in piece.cells)}")
-    return lines
+    return "\n".join(lines)

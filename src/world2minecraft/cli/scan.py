@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.core.errors import OutputError, UsageError
+
 if TYPE_CHECKING:
-    from world2minecraft.capture import CaptureSummary
+    from world2minecraft.api.captures import CaptureReport
 
 EXAMPLES = """\
 w2m scan my_photos                        a folder of photos: JPEG, PNG, HEIC
 w2m scan IMG_2041.MOV                     a phone's video
-w2m scan kitchen.r3d                      what a LiDAR app exports: zips are read in place
-w2m scan scene0000_00.sens                a data set's recording; its folders too
+w2m scan kitchen.r3d                      the export of a LiDAR app; zips are read in place
+w2m scan scene0000_00.sens                a data set's recording, or its folder
 w2m scan room.glb --set capture.unit=cm   a mesh or a point cloud
-w2m scan my_scan --picture look.png       the picture elsewhere; --no-picture for none
+w2m scan my_scan -o look.png              the picture elsewhere; --no-picture for none
 w2m scan my_scan --json                   for programs
 """
 
@@ -27,71 +29,53 @@ def run(
     ],
     picture: Annotated[
         Path | None,
-        typer.Option("--picture", help="Where the picture goes; NAME-scan.png here by default."),
+        typer.Option(
+            "--out",
+            "-o",
+            "--picture",
+            metavar="PNG",
+            help="The picture to write.",
+            show_default="NAME-scan.png",
+        ),
     ] = None,
-    no_picture: Annotated[bool, typer.Option("--no-picture", help="Draw none.")] = False,
+    no_picture: Annotated[bool, typer.Option("--no-picture", help="Write no picture.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON; no picture.")] = False,
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="capture.KEY=VALUE", help="An option of the reader."),
     ] = None,
 ) -> None:
-    """Tell what was found in a capture, what is missing, and what to do about it.
+    """Report what a capture holds, what it lacks, and what to do about it.
 
-    A few pictures are looked at, and where there are poses a first plan is laid out, in seconds.
-    Nothing but the picture is written.
+    A few pictures are read and, where there are poses, a first plan is made, in seconds. Nothing
+    but the picture is written.
 
-    Args:
-        capture: what to look at.
-        picture: where the picture goes.
-        no_picture: draw none.
-        as_json: print JSON.
-        settings: options of the reader, such as ``capture.depth_unit=mm``.
+    Raises:
+        UsageError: options exclude each other. CaptureError: the capture cannot be read.
     """
-    from world2minecraft.capture import describe_capture
-    from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
-    from world2minecraft.capture.summary import roomplan_lines, summary_lines, summary_to_json
-    from world2minecraft.core.errors import UsageError
-    from world2minecraft.formats.roomplan import read_roomplan
-    from world2minecraft.reconstruction.parameters import Parameters, with_settings
+    from world2minecraft.api import inspect_capture
+    from world2minecraft.cli.set_option import read_settings
 
     if picture is not None and (no_picture or as_json):
-        raise UsageError("--picture draws one; leave out --no-picture and --json")
-    options = with_settings(Parameters(), settings or []).capture
-    plan = find_lone_roomplan(capture)
-    if plan is not None:
-        _print_all(roomplan_lines(capture, read_roomplan(plan)), as_json)
-        return
-    summary = describe_capture(capture, options=options)
+        raise UsageError("--out writes a picture; leave out --no-picture and --json")
+    report = inspect_capture(capture, settings=read_settings(settings))
     if as_json:
-        print(json.dumps(summary_to_json(summary), indent=1))
+        print(json.dumps(report.to_json(), indent=1))
         return
-    lines = summary_lines(summary)
-    for line in lines[:-1]:
-        print(line)
-    if not no_picture:
-        print(f"picture: {_write_picture(summary, picture)}")
+    lines = report.lines
+    print("\n".join(lines[:-1]))
+    if not no_picture and report.summary is not None:
+        print(f"picture: {_save_picture(report, picture)}")
     print(lines[-1])
 
 
-def _print_all(lines: list[str], as_json: bool) -> None:
-    print(json.dumps({"lines": lines}, indent=1) if as_json else "\n".join(lines))
-
-
-def _write_picture(summary: "CaptureSummary", picture: Path | None) -> str:
-    """Write the picture and return where it is, or why there is none."""
-    from world2minecraft.capture.poster import is_poster, poster_png
-    from world2minecraft.core.errors import OutputError
-    from world2minecraft.core.files import write_bytes
-
-    chosen = picture or Path(f"{Path(summary.folder.name).stem or 'capture'}-scan.png")
-    if picture is None and chosen.exists() and not is_poster(chosen):
-        return f"none; {chosen} is here and not one of these: say --picture PATH"
-    data = poster_png(summary)
+def _save_picture(report: "CaptureReport", picture: Path | None) -> str:
+    """Write the picture; return its path, or the reason why there is none."""
+    if picture is not None:
+        return str(report.save_picture(picture))
+    name = "" if report.summary is None else Path(report.summary.folder.name).stem
+    chosen = Path(f"{name or 'capture'}-scan.png")
     try:
-        write_bytes(chosen, data)
-    except OutputError:
-        if picture is not None:
-            raise
-        return "none; this folder cannot be written: say --picture PATH"
-    return str(chosen)
+        return str(report.save_picture(chosen, replace=False))
+    except OutputError as error:
+        return f"none; {error}; choose another file with -o PNG"

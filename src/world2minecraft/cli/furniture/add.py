@@ -5,10 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.core.errors import UsageError
-
 if TYPE_CHECKING:
-    from world2minecraft.furniture.user_import import ImportedFurniture
+    from world2minecraft.api.furniture import AddedFurniture
 
 EXAMPLES = """\
 w2m furniture add my_chair.schem --class chair --blocks-per-metre 2
@@ -22,21 +20,24 @@ Source = Annotated[
 ]
 Kind = Annotated[str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")]
 Scale = Annotated[float, typer.Option(help="The scale at which it was built.")]
-Name = Annotated[str, typer.Option(help="Its name; that of the file.")]
-Title = Annotated[str, typer.Option(help="What people call it.")]
-Front = Annotated[str | None, typer.Option(help="north, east, south or west; seen by its blocks.")]
+Name = Annotated[str, typer.Option(help="Its name in the library.", show_default="FILE's name")]
+Title = Annotated[str, typer.Option(help="Its name for people.", show_default="its name")]
+Front = Annotated[
+    str | None,
+    typer.Option(help="north, east, south or west.", show_default="inferred from its blocks"),
+]
 Size = Annotated[
     tuple[float, float, float] | None,
-    typer.Option(metavar="DEPTH WIDTH HEIGHT", help="Real size in metres."),
+    typer.Option(
+        metavar="DEPTH WIDTH HEIGHT", help="Real size in metres.", show_default="of its blocks"
+    ),
 ]
 Mount = Annotated[str, typer.Option(help="floor, wall, ceiling or any.")]
 Recolour = Annotated[
     bool, typer.Option("--recolour", help="Let wood, wool and stone take an object's colour.")
 ]
-Match = Annotated[
-    bool, typer.Option("--match/--no-match", help="Whether objects are matched against it.")
-]
-Force = Annotated[bool, typer.Option("--force", help="Replace one of this name.")]
+Match = Annotated[bool, typer.Option("--match/--no-match", help="Match objects against it.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace your own piece of this name.")]
 
 
 def run(
@@ -56,71 +57,35 @@ def run(
 
     The air around it is cut off. At its own scale it is built as it is; at another its shape is
     fitted. Objects of its class and about its size are matched against it from now on. It is
-    kept in the folder that W2M_FURNITURE names, else with the user's settings.
-
-    Args: as the options say.
+    stored in the folder W2M_FURNITURE, or with the user's settings.
 
     Raises:
-        UsageError: a name or a class is none, or is taken. InputError: the file cannot be read.
+        UsageError: a name or a class is not valid, or taken. InputError: the file cannot be read.
     """
-    from world2minecraft.furniture.user_import import ImportRequest, import_blocks
-    from world2minecraft.furniture.user_library import check_name
-    from world2minecraft.minecraft.file_format import Losses
-    from world2minecraft.minecraft.formats import read_blocks
+    from world2minecraft.api import add_furniture
 
-    chosen = check_name(name or source.stem.lower().replace("-", "_").replace(" ", "_"))
-    target = check_free(chosen, force)
-    losses = Losses()
-    volume = read_blocks(source, losses)
-    losses.add("block entities", len(volume.block_entities))
-    losses.add("entities", len(volume.entities))
-    wish = ImportRequest(
-        chosen, kind, blocks_per_metre, front, size, title, mount, recolour=recolour, match=match
+    added = add_furniture(
+        source,
+        kind,
+        blocks_per_metre,
+        name=name,
+        title=title,
+        front=front,
+        size_m=size,
+        mount=mount,
+        recolour=recolour,
+        match=match,
+        force=force,
     )
-    adopted = import_blocks(volume, wish)
-    write_checked(adopted, target)
-    _print_summary(
-        adopted, target, front, [f"{count} {what} left behind" for what, count in losses]
-    )
+    _print_summary(added, inferred=front is None)
 
 
-def check_free(name: str, force: bool) -> Path:
-    """Return the file of a new piece.
-
-    Raises:
-        UsageError: the library has a piece of this name, or the user has and ``force`` is not
-            given.
-    """
-    from world2minecraft.furniture.library import builtin_design_files
-    from world2minecraft.furniture.user_library import user_design_folder
-
-    if name in builtin_design_files():
-        raise UsageError(f"the library has a {name} of its own; add --name another_name")
-    target = user_design_folder() / f"{name}.json"
-    if target.exists() and not force:
-        raise UsageError(f"{target} is there already; add --force to replace it, or --name another")
-    return target
-
-
-def write_checked(adopted: "ImportedFurniture", target: Path) -> None:
-    """Write a piece that can be read again. Raises ``OutputError``."""
-    from world2minecraft.core.files import write_json
-    from world2minecraft.furniture.user_library import template_from_json
-
-    template_from_json(adopted.content)
-    write_json(target, adopted.content)
-
-
-def _print_summary(
-    adopted: "ImportedFurniture", target: Path, front: str | None, lost: list[str]
-) -> None:
-    content = adopted.content
-    size = " x ".join(f"{content['size_m'][key][1]:.2f}" for key in ("depth", "width", "height"))
-    count = sum(length for number, length in content["blocks"]["runs"] if number)
-    seen = "" if front else " (seen by its blocks; else say --front)"
-    print(f"{content['name']}: {count} blocks, {size} m deep, wide and high")
-    print(f"Its front looked {adopted.front}{seen}.")
-    for note in (*lost, *adopted.notes):
+def _print_summary(added: "AddedFurniture", inferred: bool) -> None:
+    size = " x ".join(f"{side:.2f}" for side in added.size_m)
+    hint = " (inferred from its blocks; --front sets it)" if inferred else ""
+    print(f"{added.name}: {added.blocks} blocks, {size} m deep, wide and high")
+    print(f"Its front looked {added.front}{hint}.")
+    for note in added.notes:
         print(f"note: {note}")
-    print(f"Written to {target}")
-    print(f"  look   w2m furniture show {content['name']} --picture {content['name']}.png")
+    print(f"Written to {added.path}")
+    print(f"  look   w2m furniture show {added.name} -o {added.name}.png")

@@ -1,8 +1,11 @@
-"""``w2m furniture list``: what the library holds."""
+"""``w2m furniture list``: the pieces of the furniture library."""
 
+import json
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.furniture import Template
@@ -11,54 +14,49 @@ EXAMPLES = """\
 w2m furniture list                    all, by class
 w2m furniture list --class furn       one class
 w2m furniture list --markdown         the tables of docs/furniture-library.md
-w2m furniture list fridge             those whose name or title has this word
+w2m furniture list fridge --json      those whose name or title contains a word, for programs
 """
 
 
 def run(
     word: Annotated[str, typer.Argument(metavar="WORD", help="Part of a name or title.")] = "",
     kind: Annotated[
-        str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")
+        str,
+        typer.Option(
+            "--class", help="chair, bed, sofa, table, tvs, furn or objs.", show_default="all"
+        ),
     ] = "",
-    as_markdown: Annotated[bool, typer.Option("--markdown", help="As tables in Markdown.")] = False,
+    as_markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print tables in Markdown.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """List the furniture of the library and of your own, with its usual sizes.
-
-    Args:
-        word: part of a name or title; empty for all.
-        kind: one class; empty for all.
-        as_markdown: whether to print tables in Markdown.
 
     Raises:
         UnknownNameError: there is no such class.
     """
-    from world2minecraft.core.classes import class_id
-    from world2minecraft.furniture import TEMPLATES, template
-    from world2minecraft.furniture.library import group_by_class, templates_to_markdown
-    from world2minecraft.furniture.user_library import user_design_files
+    from world2minecraft.api import furniture
 
-    number = class_id(kind) if kind else None
-    every = [template(name) for name in TEMPLATES.names()]
-    found = [one for one in every if _matches(one, word, number)]
+    if as_markdown and as_json:
+        raise UsageError("--markdown and --json exclude each other; give one of them")
+    found = furniture.list_furniture(word, class_name=kind)
     if as_markdown:
-        print(templates_to_markdown(found), end="")
+        print(furniture.furniture_markdown(found), end="")
         return
-    own = user_design_files()
-    for heading, members in group_by_class(found).items():
+    if as_json:
+        print(json.dumps([furniture.furniture_json(one) for one in found], indent=1))
+        return
+    for heading, members in furniture.by_heading(found).items():
         print(heading)
         for one in members:
-            print(line_of(one, own=one.name in own))
+            print(line_of(one, own=furniture.is_own(one)))
     matched = sum(one.matched for one in found)
-    print(f"\n{len(found)} designs; * {matched} that objects are matched against.")
-
-
-def _matches(one: "Template", word: str, class_number: int | None) -> bool:
-    text = f"{one.name} {one.title} {one.family}".lower()
-    return word.lower() in text and class_number in (None, one.class_id)
+    print(f"\n{len(found)} designs; objects are matched against {matched}, marked *.")
 
 
 def line_of(one: "Template", own: bool) -> str:
-    """Return a template's line: its name, title, usual size, and whether it is matched."""
+    """Return a line about a piece: its name, title, usual size, and whether it is matched."""
     size = " x ".join(f"{side:.2f}" for side in one.typical_m)
     mark = "*" if one.matched else " "
     return f"  {mark} {one.name:24s} {size} m  {one.title}{' (your own)' if own else ''}"

@@ -1,0 +1,177 @@
+"""Captures before and after a reconstruction: inspect one, and join finished runs into a home."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.api.results import Run
+from world2minecraft.api.rooms import BuildOptions, Settings, path_of
+from world2minecraft.core.errors import OutputError, UsageError
+from world2minecraft.core.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from world2minecraft.capture import CaptureSummary
+    from world2minecraft.formats.roomplan import CapturedPlan
+
+
+@dataclass(frozen=True, eq=False)
+class CaptureReport:
+    """What a capture holds, what it lacks, and the command that reconstructs it.
+
+    Attributes:
+        path: the capture.
+        summary: its frames, cameras, depth and poses; None for a RoomPlan without frames.
+        plan: the RoomPlan, where the capture is one without frames.
+    """
+
+    path: Path
+    summary: "CaptureSummary | None" = None
+    plan: "CapturedPlan | None" = None
+
+    @property
+    def lines(self) -> list[str]:
+        """The report as lines of text; the last one is the next command."""
+        from world2minecraft.capture.summary import roomplan_lines, summary_lines
+
+        if self.plan is not None:
+            return roomplan_lines(self.path, self.plan)
+        return [] if self.summary is None else summary_lines(self.summary)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the report as JSON values."""
+        from world2minecraft.capture.summary import summary_to_json
+
+        return {"lines": self.lines} if self.summary is None else summary_to_json(self.summary)
+
+    def save_picture(self, path: str | Path, replace: bool = True) -> Path:
+        """Draw some frames, the cameras and the first plan on one page; write it as a PNG.
+
+        Args:
+            path: the file.
+            replace: replace a file that is no such picture.
+
+        Raises:
+            UsageError: the capture is a RoomPlan, which has no frames.
+            OutputError: the file cannot be written, or exists and may not be replaced.
+        """
+        from world2minecraft.capture.poster import is_poster, poster_png
+        from world2minecraft.core.files import write_bytes
+
+        place = Path(path)
+        if self.summary is None:
+            raise UsageError(f"{self.path} is a RoomPlan and has no frames to draw")
+        if not replace and place.exists() and not is_poster(place):
+            raise OutputError(place, "exists and is not a picture of w2m scan")
+        write_bytes(place, poster_png(self.summary))
+        return place
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
+def inspect_capture(capture: str | Path, *, settings: Settings | None = None) -> CaptureReport:
+    """Report what a capture holds and what it lacks, in seconds and without reconstructing it.
+
+    Args:
+        capture: photos, a video, the export of a scanning app, RGB-D frames, a mesh, a point cloud
+            or a RoomPlan.
+        settings: options of the reader, such as ``{"capture.depth_unit": "mm"}``.
+
+    Raises:
+        UsageError: a setting is wrong. CaptureError: the capture cannot be read.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> report = w2m.inspect_capture(scan)
+        >>> report.summary.usable
+        12
+        >>> print(report)
+        /...: posed RGB-D frames (plain), 12 of 12 frames usable
+        ...
+    """
+    from world2minecraft.capture import describe_capture
+    from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
+    from world2minecraft.formats.roomplan import read_roomplan
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
+
+    place = Path(capture)
+    chosen = [f"{key}={value}" for key, value in (settings or {}).items()]
+    options = with_settings(Parameters(), chosen).capture
+    plan = find_lone_roomplan(place)
+    if plan is not None:
+        return CaptureReport(place, plan=read_roomplan(plan))
+    return CaptureReport(place, describe_capture(place, options=options))
+
+
+def join_rooms(
+    rooms: Sequence[Run | str | Path],
+    out: str | Path,
+    *,
+    places: Sequence[str] = (),
+    blocks_per_metre: float = 4.0,
+    style: str | None = None,
+    palette: str | Path | None = None,
+    formats: Sequence[str] = (),
+    mc_version: str = "1.20.1",
+    settings: Settings | None = None,
+    progress: Progress = no_progress,
+) -> Run:
+    """Join finished runs of single rooms into one home with one world.
+
+    The first room keeps its place. Each other room is placed where one of its doors meets a door
+    of a room that is placed already: of the same width and height, with a wall between them. Rooms
+    are rotated by quarter turns and moved by whole cells; nothing is resampled.
+
+    Args:
+        rooms: 2 or more runs, or their folders.
+        out: the folder to write.
+        places: positions by hand, each ``NAME=X,Y,TURNS``: metres in the frame of the first room,
+            and quarter turns.
+        blocks_per_metre: the scale of the world.
+        style: ``blocks``, ``display`` or ``voxels``.
+        palette: ``vanilla``, the palette of a mod, or a YAML file.
+        formats: further files of the build, such as ``("litematic", "glb")``.
+        mc_version: the game version that the world is written for.
+        settings: further parameters by their keys.
+        progress: called at each step.
+
+    Returns:
+        The run of the home.
+
+    Raises:
+        UsageError: an argument is wrong, or a room fits nowhere or in several places.
+        InputError: a run cannot be read. OutputError: the folder cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.join_rooms([run], tmp / "home")
+        Traceback (most recent call last):
+        ...
+        world2minecraft.core.errors.UsageError: give 2 to 50 finished runs to join, not 1
+    """
+    from world2minecraft.evaluation.report import write_brief_report
+    from world2minecraft.reconstruction.homes import join
+
+    options = BuildOptions(blocks_per_metre, style, palette, formats, mc_version, settings)
+    folders, folder = [path_of(room) for room in rooms], Path(out)
+    scan = join(folders, folder, options.parameters(), places, progress)
+    progress("report", 0, 1)
+    write_brief_report(folder, scan, _report_links(folders, folder))
+    progress("report", 1, 1)
+    return Run(folder)
+
+
+def _report_links(rooms: Sequence[Path], out: Path) -> list[tuple[str, str]]:
+    """Return the name of each room that has a report, and its address relative to the home's."""
+    links = []
+    for folder in rooms:
+        page = folder / "report.html"
+        if page.is_file():
+            try:
+                address = os.path.relpath(page.resolve(), out.resolve())
+            except ValueError:  # Windows: on another drive.
+                address = page.resolve().as_uri()
+            links.append((folder.resolve().name, address.replace(os.sep, "/")))
+    return links

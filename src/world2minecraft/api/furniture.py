@@ -1,0 +1,267 @@
+"""The furniture library: list its pieces, add your own, draw them."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES, class_id, display_name
+from world2minecraft.core.errors import UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.furniture import Template
+    from world2minecraft.rendering.furniture_sheet import Card
+
+SCALES = (1.0, 2.0, 4.0)  # Blocks per metre of what is shown and drawn.
+
+
+def list_furniture(word: str = "", *, class_name: str = "") -> list["Template"]:
+    """Return the furniture of the library and your own, in the order in which it is matched.
+
+    Args:
+        word: a part of a name, a title or a family; empty for all.
+        class_name: ``chair``, ``bed``, ``sofa``, ``table``, ``tvs``, ``furn`` or ``objs``; empty
+            for all.
+
+    Raises:
+        UnknownNameError: there is no such class.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> [piece.name for piece in w2m.list_furniture("bathtub")]
+        ['bathtub', 'bathtub_freestanding']
+    """
+    from world2minecraft.furniture import TEMPLATES
+
+    number = class_id(class_name) if class_name else None
+    every = [furniture_piece(name) for name in TEMPLATES.names()]
+    found = [one for one in every if number in (None, one.class_id)]
+    return [one for one in found if word.lower() in f"{one.name} {one.title} {one.family}".lower()]
+
+
+def furniture_piece(name: str) -> "Template":
+    """Return the piece of furniture of a name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    from world2minecraft.furniture import template
+
+    return template(name)
+
+
+def is_own(piece: "Template") -> bool:
+    """Return whether a piece is one that the user added."""
+    from world2minecraft.furniture.user_library import user_design_files
+
+    return piece.name in user_design_files()
+
+
+def by_heading(pieces: Sequence["Template"]) -> dict[str, list["Template"]]:
+    """Return pieces under the heading of their class, such as ``Chairs``; no heading is empty."""
+    from world2minecraft.furniture.library import group_by_class
+
+    return group_by_class(pieces)
+
+
+def furniture_markdown(pieces: Sequence["Template"]) -> str:
+    """Return pieces as Markdown tables, one for each class."""
+    from world2minecraft.furniture.library import templates_to_markdown
+
+    return templates_to_markdown(pieces)
+
+
+def block_counts(piece: "Template", blocks_per_metre: float) -> dict[str, int]:
+    """Return how many blocks of each kind a piece of usual size has at a scale.
+
+    Empty where its shape is fitted with blocks instead.
+
+    Example:
+        >>> from world2minecraft.api.furniture import block_counts, furniture_piece
+        >>> block_counts(furniture_piece("chair"), 1)
+        {'oak_stairs': 1}
+    """
+    from collections import Counter
+
+    from world2minecraft.furniture.block_designs import block_size
+
+    blocks = piece.blocks(block_size(np.array(piece.typical_m), blocks_per_metre))
+    kinds = Counter(block.state.partition("[")[0].rpartition(":")[2] for block in blocks)
+    return dict(sorted(kinds.items()))
+
+
+def furniture_json(piece: "Template") -> dict[str, Any]:
+    """Return what is known of a piece as JSON values: sizes in metres, parameters, materials."""
+    sides = zip(("depth", "width", "height"), piece.size_m, strict=True)
+    return {
+        "name": piece.name,
+        "title": piece.title,
+        "class": CLASS_NAMES[piece.class_id],
+        "class_display_name": display_name(piece.class_id),
+        "family": piece.family,
+        "size_m": {side: span._asdict() for side, span in sides},
+        "mount": piece.mount,
+        "turns": piece.turns,
+        "clearance_m": list(piece.clearance_m),
+        "parameters": {name: span._asdict() for name, span in piece.parameters.items()},
+        "options": dict(piece.options),
+        "materials": {role: asdict(material) for role, material in piece.materials.items()},
+        "matched": piece.matched,
+        "own": is_own(piece),
+        "blocks": {f"{scale:g}": block_counts(piece, scale) for scale in SCALES},
+    }
+
+
+@dataclass(frozen=True)
+class AddedFurniture:
+    """A piece that was added to the user's own furniture.
+
+    Attributes:
+        name: its name in the library.
+        path: the file that it was written to.
+        blocks: how many blocks it has.
+        size_m: its usual depth, width and height in metres.
+        front: the side to which its front looked: ``north``, ``east``, ``south`` or ``west``.
+        notes: what of the source was left out or assumed.
+    """
+
+    name: str
+    path: Path
+    blocks: int
+    size_m: tuple[float, float, float]
+    front: str
+    notes: tuple[str, ...]
+
+
+def add_furniture(
+    source: str | Path,
+    class_name: str,
+    blocks_per_metre: float,
+    *,
+    name: str = "",
+    title: str = "",
+    front: str | None = None,
+    size_m: tuple[float, float, float] | None = None,
+    mount: str = "floor",
+    recolour: bool = False,
+    match: bool = True,
+    force: bool = False,
+) -> AddedFurniture:
+    """Add a piece of your own to the furniture library, from blocks that someone built.
+
+    The air around it is cut off. At its own scale the piece is built block for block; at another
+    its shape is fitted. It is stored in the folder ``W2M_FURNITURE``, or with the user's settings.
+
+    Args:
+        source: a ``.schem``, ``.litematic``, ``.nbt`` or another build.
+        class_name: ``chair``, ``bed``, ``sofa``, ``table``, ``tvs``, ``furn`` or ``objs``.
+        blocks_per_metre: the scale at which it was built.
+        name: its name in the library; that of the file by default.
+        title: its name for people.
+        front: ``north``, ``east``, ``south`` or ``west``; inferred from its blocks by default.
+        size_m: its real depth, width and height in metres; that of its blocks by default.
+        mount: ``floor``, ``wall``, ``ceiling`` or ``any``.
+        recolour: let its wood, wool and stone take the colour of an object.
+        match: match objects of a reconstruction against it.
+        force: replace a piece of your own of this name.
+
+    Raises:
+        UsageError: a name or a class is not valid, or the name is taken. InputError: the file
+        cannot be read. OutputError: the library cannot be written.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> w2m.add_furniture("my_chair.schem", "chair", 2, name="My Chair!")
+        Traceback (most recent call last):
+        ...
+        world2minecraft.core.errors.UsageError: a name of furniture begins with a letter ...
+    """
+    from world2minecraft.core.files import write_json
+    from world2minecraft.furniture.user_import import ImportRequest, import_blocks
+    from world2minecraft.furniture.user_library import check_name, template_from_json
+    from world2minecraft.minecraft.file_format import Losses
+    from world2minecraft.minecraft.formats import read_blocks
+
+    place = Path(source)
+    chosen = check_name(name or place.stem.lower().replace("-", "_").replace(" ", "_"))
+    target = _free_file(chosen, force)
+    losses = Losses()
+    volume = read_blocks(place, losses)
+    losses.add("block entities", len(volume.block_entities))
+    losses.add("entities", len(volume.entities))
+    added = import_blocks(
+        volume,
+        ImportRequest(
+            chosen, class_name, blocks_per_metre, front, size_m, title, mount, recolour, match
+        ),
+    )
+    piece = template_from_json(added.content)  # Raises where it could not be read again.
+    write_json(target, added.content)
+    runs = added.content["blocks"]["runs"]
+    return AddedFurniture(
+        piece.name,
+        target,
+        sum(length for number, length in runs if number),
+        piece.typical_m,
+        added.front,
+        (*(f"left out: {count} {what}" for what, count in losses), *added.notes),
+    )
+
+
+def _free_file(name: str, force: bool) -> Path:
+    """Return the file of a new piece. Raises UsageError where its name is taken."""
+    from world2minecraft.furniture.library import builtin_design_files
+    from world2minecraft.furniture.user_library import user_design_folder
+
+    if name in builtin_design_files():
+        raise UsageError(f"the library already has a {name}; choose another name with --name")
+    target = user_design_folder() / f"{name}.json"
+    if target.exists() and not force:
+        raise UsageError(f"{target} exists; add --force to replace it, or choose another --name")
+    return target
+
+
+def draw_furniture(
+    out: str | Path, names: Sequence[str] = (), *, class_name: str = "", columns: int = 4
+) -> list["Template"]:
+    """Draw furniture by class at 1, 2 and 4 blocks per metre; write the picture as a PNG.
+
+    Args:
+        out: the PNG.
+        names: the pieces to draw; all by default.
+        class_name: draw this class only.
+        columns: how many pieces to draw side by side.
+
+    Returns:
+        The pieces that were drawn.
+
+    Raises:
+        UsageError: nothing to draw. UnknownNameError: there is no such piece or class.
+        OutputError: the picture cannot be written.
+    """
+    from world2minecraft.core.files import write_bytes
+    from world2minecraft.rendering.furniture_sheet import contact_sheet, sheet_png
+
+    number = class_id(class_name) if class_name else None
+    every = [furniture_piece(name) for name in names] if names else list_furniture()
+    chosen = [one for one in every if number in (None, one.class_id)]
+    groups = {
+        heading: [card for one in members for card in _cards(one)]
+        for heading, members in by_heading(chosen).items()
+    }
+    if not any(groups.values()):
+        raise UsageError("nothing to draw: no piece has blocks at 1, 2 or 4 blocks per metre")
+    write_bytes(out, sheet_png(contact_sheet(groups, columns)))
+    return chosen
+
+
+def _cards(piece: "Template") -> list["Card"]:
+    from world2minecraft.furniture.preview_scene import preview_volume
+    from world2minecraft.rendering.furniture_sheet import Card
+
+    volumes = {f"{scale:g} per metre": preview_volume(piece, scale, room=False) for scale in SCALES}
+    drawn = {label: volume for label, volume in volumes.items() if volume is not None}
+    size = " x ".join(f"{side:.2f}" for side in piece.typical_m)
+    return [Card(piece.title, f"{piece.name}   {size} m", drawn)] if drawn else []

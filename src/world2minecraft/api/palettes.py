@@ -1,0 +1,59 @@
+"""Palettes: the blocks that rooms may be built of."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.core.classes import CLASS_NAMES
+
+if TYPE_CHECKING:
+    from world2minecraft.construction.palettes import Palette
+
+
+def list_palettes() -> list["Palette"]:
+    """Return the palettes of the program.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> [palette.name for palette in w2m.list_palettes()]
+        ['vanilla', 'tmeo', 'refurbished_furniture']
+    """
+    from world2minecraft.construction.palettes import PALETTE_FILES
+
+    return [open_palette(name) for name in PALETTE_FILES]
+
+
+def open_palette(name: str | Path) -> "Palette":
+    """Return a palette by its name, or read one of your own from a YAML or JSON file.
+
+    Raises:
+        UnknownNameError: there is no such palette. InputError: the file is not a palette.
+
+    Example:
+        >>> from world2minecraft.api.palettes import open_palette
+        >>> open_palette("vanilla").glass
+        'minecraft:glass'
+    """
+    from world2minecraft.construction.palettes import load_palette
+
+    return load_palette(str(name))
+
+
+def palette_json(palette: "Palette") -> dict[str, Any]:
+    """Return what a palette holds as JSON values: blocks by class, furniture, words.
+
+    Example:
+        >>> from world2minecraft.api.palettes import open_palette, palette_json
+        >>> palette_json(open_palette("vanilla"))["restricted_to"] is None
+        True
+    """
+    return {
+        "name": palette.name,
+        "full_blocks": len({state for states in palette.blocks.values() for state in states}),
+        "restricted_to": None if palette.only is None else sorted(palette.only),
+        "words": 0 if palette.meanings is None else len(palette.meanings.words),
+        "classes": {CLASS_NAMES[number]: list(states) for number, states in palette.blocks.items()},
+        "furniture": [
+            {"designs": list(piece.designs), "blocks": [cell.id for cell in piece.cells]}
+            for piece in palette.furniture
+        ],
+    }
