@@ -1,9 +1,12 @@
-"""``w2m forge stats``: how much work scenes were, as the paper's table."""
+"""``w2m forge stats``: the operations and times of edited scenes, as the paper's table."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from world2minecraft.core.errors import UsageError
 
 EXAMPLES = """\
 w2m forge stats OUT                           a scene that was edited with w2m forge
@@ -17,7 +20,7 @@ def run(
     scenes: Annotated[list[Path], typer.Argument(help="Edited scenes, or their .forge folders.")],
     scratch: Annotated[
         list[Path] | None,
-        typer.Option("--scratch", help="A scene built from nothing; may be given again."),
+        typer.Option("--scratch", help="A scene built from nothing. Repeatable."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print a line for each scene.")] = False,
@@ -26,38 +29,21 @@ def run(
     """Print operations and times of edited scenes as the paper's efficiency table.
 
     Every gesture is one operation, counted as what it did: an addition (filling holes is one), a
-    deletion, an orientation, and what the paper has no row for. What was taken back later is
-    counted all the same; undo and redo are not. Time is that of work: where nobody did anything
-    for 10 s, no more is counted. The automated process is what the reconstruction took.
-
-    Args:
-        scenes: what was opened with w2m forge, or its folders of edits.
-        scratch: scenes that were built from an empty grid, for the other column.
-        as_json: whether to print JSON.
-        as_csv: whether to print CSV.
-        as_latex: whether to print LaTeX.
+    deletion, an orientation, and what the paper has no row for. An edit that was undone later is
+    counted too; undo and redo are not. Time is working time: after 10 s without an action, no
+    more is counted. The automated process is the time of the reconstruction.
 
     Raises:
-        InputError: a scene was never edited. UsageError: two forms are asked for.
+        InputError: a scene was never edited. UsageError: two formats are asked for.
     """
-    import json
-
-    from world2minecraft.core.errors import UsageError
-    from world2minecraft.sceneforge.effort_table import (
-        effort_at,
-        stats_csv,
-        stats_json,
-        stats_latex,
-        stats_text,
-    )
+    from world2minecraft.api.editor import measure_editing
 
     if as_json + as_csv + as_latex > 1:
-        raise UsageError("--json, --csv and --latex are three forms of one table; give one")
-    efforts = [effort_at(place) for place in scenes]
-    others = [effort_at(place) for place in scratch or ()]
+        raise UsageError("--json, --csv and --latex exclude each other; give one of them")
+    table = measure_editing(scenes, scratch or ())
     if as_json:
-        print(json.dumps(stats_json(efforts, others), indent=1))
+        print(json.dumps(table.to_json(), indent=1))
     elif as_csv:
-        print(stats_csv([*efforts, *others]), end="")
+        print(table.to_csv(), end="")
     else:
-        print((stats_latex if as_latex else stats_text)(efforts, others))
+        print(table.to_latex() if as_latex else table)
