@@ -240,6 +240,11 @@ def draw_furniture(
     Raises:
         UsageError: nothing to draw. UnknownNameError: there is no such piece or class.
         OutputError: the picture cannot be written.
+
+    Example:
+        >>> from world2minecraft.api.furniture import draw_furniture
+        >>> [piece.name for piece in draw_furniture(tmp / "rug.png", ["rug"])]
+        ['rug']
     """
     from world2minecraft.core.files import write_bytes
     from world2minecraft.rendering.furniture_sheet import contact_sheet, sheet_png

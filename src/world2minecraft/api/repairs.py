@@ -85,6 +85,11 @@ def list_repairs(source: Run | str | Path) -> list[Repair]:
 
     Raises:
         InputError: there is no build. ConflictError: the journal is of another build.
+
+    Example:
+        >>> from world2minecraft.api.repairs import list_repairs
+        >>> all(one.is_done for one in list_repairs(run))
+        True
     """
     journal = _open_history(_build_folder(path_of(source))).journal
     rows = zip(journal.edits, journal.is_done, strict=True)

@@ -10,7 +10,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.minecraft.worlds.launchers import Game
+    from world2minecraft.api.worlds import Game
 
 EXAMPLES = """\
 w2m install OUT                       to the game of this machine

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.construction.palettes import Palette
+    from world2minecraft.api.palettes import Palette
 
 EXAMPLES = """\
 w2m palettes                      the palettes of the program

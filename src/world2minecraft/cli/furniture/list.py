@@ -8,7 +8,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.furniture import Template
+    from world2minecraft.api.furniture import Template
 
 EXAMPLES = """\
 w2m furniture list                    all, by class

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.furniture import Template
+    from world2minecraft.api.furniture import Template
 
 EXAMPLES = """\
 w2m furniture show sofa

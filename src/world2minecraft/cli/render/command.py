@@ -8,7 +8,7 @@ from world2minecraft.cli.render import options as option
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from world2minecraft.rendering.picture_files.drawing import DrawnFiles
+    from world2minecraft.api.pictures import DrawnFiles
 
 EXAMPLES = """\
 w2m render OUT                                       from where the player starts

@@ -8,8 +8,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.rendering.picture_files.shot_selection import CameraChoice
-    from world2minecraft.rendering.views import GamePose
+    from world2minecraft.api.pictures import CameraChoice, GamePose
 
 
 def _option(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
