@@ -166,7 +166,7 @@ def test_a_world_without_a_scene_is_read_around_its_spawn(tmp_path, capsys):
 def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
     (build / "scene.npz").unlink()
     assert render(build, "--outputs", "rgb,class") == 0
-    assert "scene.npz is not there: classes and objects are empty" in capsys.readouterr().out
+    assert "scene.npz not found: classes and objects are empty" in capsys.readouterr().out
     assert not image(tmp_path / "build.class.png").any()
 
 
@@ -252,7 +252,7 @@ def test_threads_are_counted(schem, capsys):
 
 def test_bad_input_is_told(tmp_path, schem, capsys):
     assert render("nowhere") == 3
-    assert capsys.readouterr().err == "error: nowhere: is not there\n"
+    assert capsys.readouterr().err == "error: nowhere: not found\n"
     (tmp_path / "poses.jsonl").write_text("{}\n")
     assert render(schem, "--poses", "poses.jsonl") == 3
     assert capsys.readouterr().err == "error: poses.jsonl: line 1 has no x\n"

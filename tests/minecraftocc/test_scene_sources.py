@@ -207,5 +207,5 @@ def test_mistakes_are_told(tmp_path, foreign):
         open_scene_source(foreign, blocks_per_metre=0)
     with pytest.raises(UnknownNameError, match="no block map is named 'nyv'"):
         open_scene_source(foreign, block_map="nyv")
-    with pytest.raises(InputError, match="nothing but air is in the box"):
+    with pytest.raises(InputError, match="only air in this box"):
         open_scene_source(foreign, box=(300, 61, 1, 305, 66, 9)).volume()

@@ -75,7 +75,7 @@ def read_build(
         UsageError: the box lies beside the build.
     """
     if not path.exists():
-        raise InputError(path, "is not there")
+        raise InputError(path, "not found")
     blocks = find_blocks(path)
     if (blocks / "level.dat").is_file():
         source = _read_world(blocks, path, box, choose)
@@ -83,8 +83,8 @@ def read_build(
         source = _read_file(path, box)
     source.volume = trim_air(source.volume)
     if not source.volume.states.any():
-        where = "in the box" if box else "there"
-        raise InputError(path, f"nothing but air is {where}; choose another --box")
+        where = "in this box" if box else "here"
+        raise InputError(path, f"only air {where}; choose another --box")
     return source
 
 
@@ -120,7 +120,7 @@ def _read_world(
     volume = _with_labels(read_world(world, box=box or own), scene, folder)
     source = BuildSource(volume, given.resolve().stem, given, _start_of(scene), folder)
     if not (folder / "scene.npz").is_file():
-        source.notes.append("scene.npz is not there: classes and objects are empty")
+        source.notes.append("scene.npz not found: classes and objects are empty")
     return source
 
 

@@ -50,7 +50,7 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
         layouts = read_rooms(folder, grid)
         if not layouts:
             raise InputError(
-                folder, "tells no room: layout.json is missing or empty; reconstruct it anew"
+                folder, "holds no room: layout.json is missing or empty; reconstruct it again"
             )
         name = _name(folder, [run.name for run in runs])
         objects = read_objects(folder / "objects.json", grid)
@@ -59,7 +59,7 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
     sizes = sorted({run.grid.voxel_m for run in runs})
     if len(sizes) > 1:
         raise UsageError(
-            f"the runs have cells of {sizes[0]:g} and {sizes[-1]:g} m; reconstruct them anew with "
+            f"the runs have cells of {sizes[0]:g} and {sizes[-1]:g} m; reconstruct them again with "
             f"one --voxel"
         )
     return tuple(runs)
@@ -100,7 +100,7 @@ def join(
     """
     chosen = parameters or Parameters()
     if any(out.exists() and folder.exists() and out.samefile(folder) for folder in folders):
-        raise UsageError(f"{out} is one of the runs; give another folder to --out")
+        raise UsageError(f"{out} is one of the runs; choose another folder for --out")
     progress("join", 0, 1)
     runs = read_runs(folders)
     voxel_m = runs[0].grid.voxel_m

@@ -110,7 +110,7 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
         extent = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
         raise UsageError(
             f"together the rooms take {extent} m, too much for one grid; join fewer of them, or "
-            "say with --at where they stand"
+            "set their positions with --at"
         )
     offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
     if offsets[-1] > MAX_OBJECTS:
