@@ -8,12 +8,158 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-
+    from world2minecraft.api.captures import inspect_capture, join_rooms
+    from world2minecraft.api.dataset_contents import dataset_statistics
+    from world2minecraft.api.datasets import (
+        Dataset,
+        build_dataset,
+        export_dataset,
+        import_dataset,
+        open_dataset,
+        verify_dataset,
+    )
+    from world2minecraft.api.editor import EditorSession, open_editor
+    from world2minecraft.api.existing_worlds import build_into_world, build_on_server
+    from world2minecraft.api.furniture import add_furniture, list_furniture
+    from world2minecraft.api.generation import (
+        demo,
+        evaluate,
+        generate_house,
+        generate_room,
+        generate_worlds,
+        save_room,
+        scan_room,
+    )
+    from world2minecraft.api.navigation import make_env
+    from world2minecraft.api.networks import (
+        evaluate_network,
+        export_network,
+        predict_occupancy,
+        train_network,
+    )
+    from world2minecraft.api.palettes import list_palettes
+    from world2minecraft.api.parameters import settings
+    from world2minecraft.api.pictures import render, render_files
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.api.repairs import repair
+    from world2minecraft.api.results import Room, RoomObject, Run, load
+    from world2minecraft.api.rooms import BuildOptions, build, reconstruct
+    from world2minecraft.api.worlds import Conversion, convert, install_world, undo_build
 
 __all__ = [
+    "BuildOptions",
+    "Conversion",
+    "Dataset",
+    "EditorSession",
+    "Room",
+    "RoomObject",
+    "Run",
+    "add_furniture",
+    "build",
+    "build_dataset",
+    "build_into_world",
+    "build_on_server",
+    "convert",
+    "dataset_statistics",
+    "demo",
+    "evaluate",
+    "evaluate_network",
+    "export_dataset",
+    "export_network",
+    "generate_house",
+    "generate_room",
+    "generate_worlds",
+    "import_dataset",
+    "inspect_capture",
+    "install_world",
+    "join_rooms",
+    "list_furniture",
+    "list_palettes",
+    "load",
+    "make_env",
+    "open_dataset",
+    "open_editor",
+    "predict_occupancy",
+    "reconstruct",
+    "render",
+    "render_files",
+    "repair",
+    "save_room",
+    "scan_room",
+    "settings",
+    "show_progress",
+    "train_network",
+    "undo_build",
+    "verify_dataset",
 ]
 
 _MODULES = {
+    "captures": (
+        "inspect_capture",
+        "join_rooms",
+    ),
+    "dataset_contents": ("dataset_statistics",),
+    "datasets": (
+        "Dataset",
+        "build_dataset",
+        "export_dataset",
+        "import_dataset",
+        "open_dataset",
+        "verify_dataset",
+    ),
+    "editor": (
+        "EditorSession",
+        "open_editor",
+    ),
+    "existing_worlds": (
+        "build_into_world",
+        "build_on_server",
+    ),
+    "furniture": (
+        "add_furniture",
+        "list_furniture",
+    ),
+    "generation": (
+        "demo",
+        "evaluate",
+        "generate_house",
+        "generate_room",
+        "generate_worlds",
+        "save_room",
+        "scan_room",
+    ),
+    "navigation": ("make_env",),
+    "networks": (
+        "evaluate_network",
+        "export_network",
+        "predict_occupancy",
+        "train_network",
+    ),
+    "palettes": ("list_palettes",),
+    "parameters": ("settings",),
+    "pictures": (
+        "render",
+        "render_files",
+    ),
+    "progress": ("show_progress",),
+    "repairs": ("repair",),
+    "results": (
+        "Room",
+        "RoomObject",
+        "Run",
+        "load",
+    ),
+    "rooms": (
+        "BuildOptions",
+        "build",
+        "reconstruct",
+    ),
+    "worlds": (
+        "Conversion",
+        "convert",
+        "install_world",
+        "undo_build",
+    ),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 
