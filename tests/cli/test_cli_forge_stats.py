@@ -42,8 +42,8 @@ Total operations                     3.00      3.00      1.0x         340.00    
   Addition actions                   1.00      1.00      1.0x         319.30      9.70
   Deletion actions                   1.00      1.00      1.0x             --      7.60
   Orientation adjustments            0.00      0.00        --          20.70      7.20
-  Changes of class                   1.00      1.00      1.0x             --        --
-Taken back (not in the total)        1.00      1.00      1.0x             --        --
+  Class changes                      1.00      1.00      1.0x             --        --
+Undone (not in the total)            1.00      1.00      1.0x             --        --
 """
 
 
@@ -88,7 +88,7 @@ def test_the_log_is_whole_after_its_lines_were_lost(scene, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "reason"),
     [
-        (["nowhere"], 3, "nowhere: was never edited: no folder of edits lies beside it"),
+        (["nowhere"], 3, "nowhere: has no edits; open it with w2m forge first"),
         (["nowhere", "--csv", "--json"], 2, "exclude each other; give one"),
     ],
 )

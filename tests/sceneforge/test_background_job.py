@@ -67,7 +67,7 @@ def test_progress_of_a_question_is_sent_to_every_tab(server, script, large):
         told = []
         while not told or told[-1]["state"] == "running":
             told.append(heard(socket_))
-    assert {one["title"] for one in told} == {"Looking for holes"}
+    assert {one["title"] for one in told} == {"Finding holes"}
     assert told[-1]["state"] == "done" and told[-1]["result"] is None
     stages = [one["stage"] for one in told]
     assert list(dict.fromkeys(stages)) == ["", "scene", "planes"]
@@ -95,7 +95,7 @@ def test_a_question_is_cancelled(server, script, large, held):
         answer = asked.result(20)
     assert (answer.status_code, answer.json()) == (
         400,
-        {"error": "Looking for floaters: cancelled"},
+        {"error": "Finding floaters: cancelled"},
     )
 
 

@@ -145,11 +145,11 @@ def test_what_cannot_be_compared_is_said(editor, tmp_path):
     np.savez(tmp_path / "coarse.npz", labels=room(), voxel_m=0.16)
     np.savez(tmp_path / "far.npz", labels=room(), origin_m=np.array([8.0, 0, 0]))
     said = {
-        "coarse.npz": "its cells have 0.16 m, the scene's 0.08 m: compare with cells of that "
-        "size or smaller",
-        "far.npz": "it lies beside this room: no cell of it is here; compare in one frame",
-        "../out.npz": "'../out.npz' lies outside the scene's folder: copy the file into it",
-        "/etc/passwd": "'/etc/passwd' lies outside the scene's folder: copy the file into it",
+        "coarse.npz": "its voxel size is 0.16 m, larger than the scene's 0.08 m; use a grid with "
+        "voxels of that size or less",
+        "far.npz": "it does not overlap this room; use a grid in the coordinate frame of the scene",
+        "../out.npz": "'../out.npz' is outside the scene's folder; copy the file into it",
+        "/etc/passwd": "'/etc/passwd' is outside the scene's folder; copy the file into it",
     }
     for path, text in said.items():
         with pytest.raises(UsageError) as refusal:

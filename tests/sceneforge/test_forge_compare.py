@@ -32,19 +32,19 @@ def test_a_file_is_compared_over_http(tmp_path):
     labels[3, 3, 3] = 8
     with served(editor, home=tmp_path / "home") as server, client(server) as script:
         assert script.get("/api/compare").json() == {"name": "", "has_truth": False}
-        assert "nothing is compared with" in script.get("/api/compare/labels").json()["error"]
+        assert "no comparison is open" in script.get("/api/compare/labels").json()["error"]
         sent = script.post("/api/upload/compare?name=a/pred.npy", content=npy(labels))
         assert sent.json() == {"name": "pred.npy", "has_truth": False}
         body = script.get("/api/compare/labels").content
         assert np.array_equal(np.frombuffer(body[HEADER.size :], np.uint8), labels.ravel())
         assert script.delete("/api/compare").json()["name"] == ""
-        assert "only rooms that were generated" in script.post("/api/compare/truth").json()["error"]
+        assert "only generated rooms" in script.post("/api/compare/truth").json()["error"]
 
 
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("a.exe", b"x", "a.exe: is no occupancy file"),
+        ("a.exe", b"x", "a.exe: not an occupancy file"),
         ("a.npz", b"x", "a.npz: is not a readable .npz"),
         ("a.json", b"[" * 100_000, "a.json: is not JSON"),
         ("a.npy", npy(np.full((2, 2, 2), 77)), "a.npy: holds no grid of class ids"),

@@ -47,7 +47,7 @@ def test_what_was_done_is_there_again_and_can_all_be_undone(run):
     editor.close()
     again = Editor.open(run)
     assert held(again) == states[-1] and again.rev == 21
-    assert again.notes == ["Recovered 21 edits that were not saved."]
+    assert again.notes == ["Recovered 21 unsaved edits."]
     while again.undo_kind:
         again.undo()
     assert held(again) == states[0]
@@ -81,7 +81,7 @@ def test_a_torn_tail_is_left_out_and_told(run, forge, cut):
     journal.write_bytes(journal.read_bytes()[:-cut])
     again = Editor.open(run)
     assert held(again) == states[9] and again.rev == 9
-    assert again.notes[-1] == ("An edit that was being written when the program ended is left out.")
+    assert again.notes[-1] == "The last edit was incomplete and was discarded."
     edit(again, 3)
     after = held(again)
     again.close()
@@ -127,7 +127,7 @@ def test_damage_before_a_snapshot_loses_only_old_undo(run, forge, monkeypatch):
     assert any(
         "journal.bin is damaged at byte" in note and "lost" not in note for note in again.notes
     )
-    assert again.notes[-1] == "The damaged journal is kept as journal-damaged-1.bin."
+    assert again.notes[-1] == "The damaged journal was moved to journal-damaged-1.bin."
     assert again.rev > 24
     count = 0
     while again.undo_kind:
@@ -224,7 +224,8 @@ def test_the_history_forgets_its_oldest_edits_and_says_so(run, forge):
         states.append(held(editor))
     assert (forge / "journal.bin").stat().st_size < 4000
     assert any(
-        note.endswith("oldest edits cannot be undone: 0 MB are kept.") for note in editor.notes
+        note.endswith("oldest edits cannot be undone: the history limit is 0 MB.")
+        for note in editor.notes
     )
     assert editor.rev == 60
     edit(editor, 5)
@@ -246,7 +247,7 @@ def test_a_second_process_may_look_and_not_edit(run, forge):
     other = Editor.open(run)
     assert (
         other.read_only
-        == f"process {os.getpid()} edits it; close it there, then open it here again"
+        == f"process {os.getpid()} is editing this scene; close it there, then open it again"
     )
     assert held(other) == states[-1] and other.scene_json()["read_only"] == other.read_only
     before = {path.name: path.read_bytes() for path in forge.iterdir()}
@@ -256,7 +257,7 @@ def test_a_second_process_may_look_and_not_edit(run, forge):
         other.redo,
         other.save,
     ):
-        with pytest.raises(UsageError, match="^den is open to be read only: process"):
+        with pytest.raises(UsageError, match="^den is open read-only: process"):
             step()
     other.active()
     other.close()
@@ -341,7 +342,7 @@ def test_a_scene_that_was_made_anew_sets_saved_edits_aside(run, forge):
     editor.close()
     (run / "objects.json").write_text("[]\n")
     again = Editor.open(run)
-    assert again.notes == ["objects.json was written anew since; its old edits are in old-1."]
+    assert again.notes == ["objects.json was replaced; its previous edits are in old-1."]
     assert not again.draft.objects and again.rev == 0
     assert (forge / "old-1" / "journal.bin").exists()
     again.close()
@@ -354,12 +355,12 @@ def test_a_rewritten_scene_never_drops_unsaved_edits(run, forge):
     with pytest.raises(ConflictError) as refused:
         Editor.open(run)
     assert str(refused.value) == (
-        f"{run / 'objects.json'}: changed since it was edited, and den.forge holds 6 edits that "
-        f"were not saved; open {forge} to go on with them, or move it away to begin anew"
+        f"{run / 'objects.json'}: changed since it was edited, and den.forge holds 6 unsaved "
+        f"edits; open {forge} to continue with them, or move it away to start over"
     )
     again = Editor.open(forge)
     assert held(again) == states[-1]
-    with pytest.raises(ConflictError, match="objects.json: was changed by another program since"):
+    with pytest.raises(ConflictError, match="objects.json: was changed by another program"):
         again.save()
     assert (run / "objects.json").read_text() == "[]\n"
     again.close()
@@ -367,7 +368,7 @@ def test_a_rewritten_scene_never_drops_unsaved_edits(run, forge):
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path, pattern):
     (tmp_path / "out.forge").write_text("a file")
-    with pytest.raises(OutputError, match="out.forge: cannot be made"):
+    with pytest.raises(OutputError, match="out.forge: cannot be created"):
         Editor.open(pattern, out=tmp_path / "out")
 
 

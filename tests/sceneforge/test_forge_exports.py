@@ -160,12 +160,16 @@ def test_a_room_is_installed_twice_and_nothing_overwritten(script, tmp_path):
     [
         ("/api/exports", {"form": "exe"}, "no export is named 'exe'"),
         ("/api/exports", {"form": "../x"}, "no export is named '../x'"),
-        ("/api/exports", {"form": "schem", "out": "/etc"}, "'out' is no choice"),
+        ("/api/exports", {"form": "schem", "out": "/etc"}, "'out' is not an option"),
         ("/api/exports", {"form": "schem", "mc_version": "9"}, "9"),
-        ("/api/install", {"game": "/home/me/saves"}, "choose one of the games"),
-        ("/api/build/world", {"world": "/home/me/world"}, "choose one of the worlds"),
+        (
+            "/api/install",
+            {"game": "/home/me/saves"},
+            "choose one of the listed Minecraft installations",
+        ),
+        ("/api/build/world", {"world": "/home/me/world"}, "choose one of the listed worlds"),
         ("/api/build/server", {"address": "a b", "password": "x"}, "must be HOST:PORT"),
-        ("/api/build/server", {"address": "localhost"}, "the password of its console"),
+        ("/api/build/server", {"address": "localhost"}, "the RCON password"),
         ("/api/build/server", {"address": "localhost", "password": "x"}, "at must be three"),
         (
             "/api/build/server",
@@ -190,7 +194,7 @@ def test_a_file_that_is_being_made_is_no_mistake_of_ours(script):
     answer = script.get("/api/exports/files/abc")
     assert (answer.status_code, answer.json()["error"]) == (
         400,
-        "no export is named 'abc'; export it again",
+        "export 'abc' not found; export the scene again",
     )
 
 

@@ -11,9 +11,9 @@ from websockets.sync.client import connect
 
 from world2minecraft.sceneforge.server.guard import OPEN_THE_LINK, Guard, new_token
 
-OTHER_NAME = "this server is not called by that name; use the link that w2m forge printed"
-OTHER_SITE = "another site may not use this scene"
-OTHER_LINK = "another site may not open this; paste the link into the address bar"
+OTHER_NAME = "unknown host name; use the link that w2m forge printed"
+OTHER_SITE = "requests from other sites are not allowed"
+OTHER_LINK = "links from other sites are not allowed; paste the link into the address bar"
 
 
 @pytest.fixture(scope="module")

@@ -35,7 +35,7 @@ def test_the_best_furniture_is_offered_first_with_its_iou(editor):
     assert 2 <= len(rows) <= 5 and rows[0]["template"] == "double_bed"
     assert rows[0]["quarter_turns"] == 0 and rows[0]["iou"] > 0.9
     assert [row["iou"] for row in rows[1:]] == sorted((r["iou"] for r in rows[1:]), reverse=True)
-    with pytest.raises(UsageError, match="there is no object 99; the scene has 1, 2, 3"):
+    with pytest.raises(UsageError, match="object 99 not found; objects: 1, 2, 3"):
         editor.ask("alternatives", id=99)
 
 
@@ -81,7 +81,7 @@ def test_what_collides_is_told(editor):
 def test_what_hangs_in_the_air_is_the_most_doubtful_place(editor):
     rows = editor.ask("doubtful")
     assert rows[0]["kind"] == "floater" and rows[0]["object_id"] == the(editor, 11).id
-    assert rows[0]["why"] == "64 cells of objs in the air, on nothing"
+    assert rows[0]["why"] == "64 object cells floating in the air"
     assert np.abs(np.array(rows[0]["at_m"]) - the(editor, 11).center_m)[:2].max() < 0.1
     assert [row["doubt"] for row in rows] == sorted((r["doubt"] for r in rows), reverse=True)
     editor.do("delete_objects", ids=[the(editor, 11).id])

@@ -76,7 +76,7 @@ def test_a_file_of_someone_else_is_not_written_over(run):
     before = same_files(run)
     with pytest.raises(ConflictError) as refused:
         editor.save()
-    reason = "was changed by another program since; move it away, then save again"
+    reason = "was changed by another program; move it away, then save again"
     assert str(refused.value) == f"{run / 'placements.json'}: {reason}"
     assert same_files(run) == before and editor.saved_rev == 0
     (run / "placements.json").unlink()
@@ -90,7 +90,7 @@ def test_saving_a_grid_does_not_overwrite_an_existing_file(tmp_path):
     (tmp_path / "den").mkdir()
     (tmp_path / "den" / "room.npz").write_bytes(b"another room")
     editor = Editor.open(tmp_path / "den.npy")
-    with pytest.raises(ConflictError, match="room.npz: was changed by another program since"):
+    with pytest.raises(ConflictError, match="room.npz: was changed by another program"):
         editor.save()
     assert (tmp_path / "den" / "room.npz").read_bytes() == b"another room"
     editor.close()
@@ -115,7 +115,7 @@ def test_an_interrupted_save_is_finished_on_opening(run, monkeypatch, whole):
     assert editor.saved_rev == 0 and len(written) == whole
     editor.close()
     again = Editor.open(run)
-    assert again.notes[0] == "A save that was cut off is finished."
+    assert again.notes[0] == "An interrupted save was completed."
     assert again.saved_rev == again.rev == 1 and held(again) == held(editor)
     assert not (run.with_name("den.forge") / "saving").exists()
     again.close()

@@ -127,12 +127,12 @@ def test_what_cannot_be_done_is_refused_with_one_line(server, script):
     answer = script.post("/api/do", json={"op": "set_cellz"})
     assert answer.status_code == 400
     assert answer.json()["error"] == "no command is named 'set_cellz'; did you mean 'set_cells'?"
-    assert script.post("/api/undo").json()["error"] == "there is nothing to undo"
+    assert script.post("/api/undo").json()["error"] == "nothing to undo"
     with tab(server) as page:
         say(page, type="undo", seq=3)
-        assert heard(page) == {"type": "refused", "seq": 3, "error": "there is nothing to undo"}
+        assert heard(page) == {"type": "refused", "seq": 3, "error": "nothing to undo"}
         say(page, type="dance", seq=4)
-        assert heard(page)["error"] == "no message is of type 'dance'"
+        assert heard(page)["error"] == "unknown message type 'dance'"
         say(page, type="do", seq=5)
         assert heard(page)["error"].startswith("a command is an object")
 
@@ -177,5 +177,5 @@ def test_a_port_that_is_taken_is_said_so():
     from world2minecraft.core.errors import UsageError
     from world2minecraft.sceneforge.server.server_process import ForgeServer
 
-    with served(small_editor()) as one, pytest.raises(UsageError, match="leave out --port"):
+    with served(small_editor()) as one, pytest.raises(UsageError, match="omit --port"):
         ForgeServer(port=one.port)

@@ -114,7 +114,7 @@ def test_a_capture_becomes_a_room_that_opens(server, script, scanned):
     assert script.get("/api/scene").status_code == 200
     assert script.get(f"/api/start/captures/{number}/room.png").status_code == 200
     refused = script.delete(f"/api/start/captures/{number}")
-    assert "its room is open; close it first" in refused.json()["error"]
+    assert "its room is open in the editor; close it first" in refused.json()["error"]
     script.post("/api/start/close")
     assert script.delete(f"/api/start/captures/{number}").status_code == 200
     assert script.get("/api/start").json()["captures"] == []
@@ -143,9 +143,9 @@ def test_what_was_cut_off_goes_on_where_it_stopped(server, script):
         stream.sendall(head.encode() + data[: 1 << 20])
     held = wait_for(lambda: script.get(f"/api/start/captures/{number}").json()["held"][0])
     assert 0 < held <= 1 << 20
-    assert "has not come whole" in script.post(f"/api/start/captures/{number}/look").json()["error"]
+    assert "is incomplete" in script.post(f"/api/start/captures/{number}/look").json()["error"]
     again = send(script, number, 0, data[:10], at=0)
-    assert "bytes of it are here; go on there" in again.json()["error"]
+    assert "bytes are already uploaded; continue from there" in again.json()["error"]
     now = script.get(f"/api/start/captures/{number}").json()["held"][0]
     assert send(script, number, 0, data[now:], at=now).json() == {
         "held": len(data),
@@ -176,7 +176,7 @@ def test_more_than_was_said_is_not_taken(server, script):
     number = announced(script, {"a.mp4": b"1234"})["id"]
     answer = send(script, number, 0, b"12345")
     assert answer.status_code == 400
-    assert answer.json()["error"] == "a.mp4: has more than its 4 bytes"
+    assert answer.json()["error"] == "a.mp4: has more than the announced 4 bytes"
     assert server.workspace.captures.named(number).place_of(0).stat().st_size <= 4
 
 
@@ -184,7 +184,7 @@ def test_a_gigabyte_is_refused_before_a_byte_comes(server, script):
     files = [{"path": "a.mp4", "size": 1 << 30}]
     answer = script.post("/api/start/captures", json={"title": "a", "files": files})
     assert answer.status_code == 400
-    assert "has 1,024 MB; at most 64 MB are taken by the page" in answer.json()["error"]
+    assert "has 1,024 MB; the upload limit is 64 MB" in answer.json()["error"]
     assert list(server.workspace.home.rglob("*.mp4")) == []
 
 
@@ -198,7 +198,7 @@ def test_a_chunk_that_says_it_is_a_gigabyte_is_refused_unread(server, script):
 def test_hostile_names_never_reach_the_disk(server, script, path):
     files = [{"path": path, "size": 3}]
     answer = script.post("/api/start/captures", json={"title": "a", "files": files})
-    assert answer.status_code == 400 and "cannot be a file" in answer.json()["error"]
+    assert answer.status_code == 400 and "invalid file name" in answer.json()["error"]
     assert not server.workspace.captures.folder.exists()
 
 
@@ -241,10 +241,10 @@ def test_what_is_no_capture_says_what_is(server, script):
     ("choice", "words"),
     [
         ({"blocks_per_metre": 1000}, "blocks_per_metre must be 0.25 to 100"),
-        ({"blocks_per_metre": "many"}, "a choice is of the wrong kind"),
+        ({"blocks_per_metre": "many"}, "an option has the wrong type"),
         ({"style": "marble"}, "style"),
-        ({"seed": 3}, "'seed' is no choice"),
-        ({"known": ["table height"]}, "a choice is of the wrong kind"),
+        ({"seed": 3}, "'seed' is not an option"),
+        ({"known": ["table height"]}, "an option has the wrong type"),
         ({"mc_version": "0.1"}, "0.1"),
     ],
 )
@@ -345,7 +345,7 @@ def test_bytes_that_two_connections_bring_never_mix(tmp_path):
 
         first = asyncio.create_task(one.receive(0, 0, slow()))
         await asyncio.sleep(0)
-        with pytest.raises(ConflictError, match="is coming by another connection"):
+        with pytest.raises(ConflictError, match="another upload of this file is running"):
             await one.receive(0, 0, quick())
         on_its_way.set()
         assert await first == 8

@@ -212,7 +212,7 @@ def test_an_internal_error_is_reported_and_the_next_edit_works(monkeypatch):
     with served(small_editor()) as server, client(server) as script, tab(server) as page:
         kind = COMMANDS["set_cells"]
         monkeypatch.setattr(kind, "plan", broken)
-        wanted = "unexpected ZeroDivisionError; the terminal of w2m forge has the details"
+        wanted = "unexpected ZeroDivisionError; see the terminal of w2m forge for details"
         say(page, type="do", seq=1, command=paint(100))
         assert heard(page)["error"] == wanted
         answer = script.post("/api/do", json=paint(100))

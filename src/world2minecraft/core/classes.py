@@ -29,11 +29,10 @@ class SemanticClass(IntEnum):
 UNKNOWN = 255
 CLASS_COUNT = 12
 CLASS_NAMES: tuple[str, ...] = tuple(member.name.lower() for member in SemanticClass)
+# For people; files and APIs use CLASS_NAMES.
 CLASS_DISPLAY_NAMES: tuple[str, ...] = (
-    *CLASS_NAMES[:9],
-    "television",
-    "furniture",
-    "object",
+    *("empty", "ceiling", "floor", "wall", "window", "chair"),
+    *("bed", "sofa", "table", "television", "furniture", "object"),
 )
 STRUCTURE_CLASSES: tuple[int, ...] = (1, 2, 3, 4)
 OBJECT_CLASSES: tuple[int, ...] = (5, 6, 7, 8, 9, 10, 11)
@@ -70,10 +69,10 @@ def class_id(name: str) -> int:
 
 
 def display_name(class_id: int) -> str:
-    """Return the name of a class as people read it; files keep ``CLASS_NAMES``.
+    """Return the name of a class as people read it: ``"television"``, where files say ``"tvs"``.
 
     Example:
-        >>> display_name(9)
-        'television'
+        >>> display_name(SemanticClass.TVS), display_name(UNKNOWN)
+        ('television', 'unknown')
     """
     return "unknown" if class_id == UNKNOWN else CLASS_DISPLAY_NAMES[class_id]

@@ -85,8 +85,8 @@ class BlockBuild:
         cells = float(np.prod(np.array(scene.grid.shape) * size + 4))
         if cells > MAX_CELLS:
             raise UsageError(
-                f"{options.blocks_per_metre:g} blocks a metre make {cells:.3g} blocks here, more "
-                f"than {MAX_CELLS:,}; choose fewer"
+                f"{options.blocks_per_metre:g} blocks per metre need {cells:.3g} blocks; the limit "
+                f"is {MAX_CELLS:,}. Choose fewer blocks per metre"
             )
         volume = build_volume(
             scene.grid,

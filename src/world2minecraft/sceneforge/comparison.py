@@ -72,5 +72,5 @@ def check_suffix(name: str) -> str:
     """
     suffix = Path(name).suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError(name[:80], "is no occupancy file; those end with .npz, .npy or .json")
+        raise InputError(name[:80], "not an occupancy file; use .npz, .npy or .json")
     return suffix

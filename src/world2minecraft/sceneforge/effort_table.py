@@ -34,9 +34,9 @@ ROWS = (
 # What our editor counts beside the paper's three; rows of nothing but zeros are left out.
 MORE_ROWS = (
     ("move", "Moves", 1),
-    ("relabel", "Changes of class", 1),
-    ("other", "Others", 1),
-    ("undone", "Taken back (not in the total)", 0),
+    ("relabel", "Class changes", 1),
+    ("other", "Other", 1),
+    ("undone", "Undone (not in the total)", 0),
 )
 
 
@@ -48,7 +48,7 @@ def effort_at(place: Path) -> Effort:
     """
     folder = document_folder(place)
     if not folder.is_dir():
-        raise InputError(place, "was never edited: no folder of edits lies beside it")
+        raise InputError(place, "has no edits; open it with w2m forge first")
     identity = read_identity(folder)
     return effort_of(identity.name, read_effort(folder), automatic_s(identity.source))
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES, display_name
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import write_text
 from world2minecraft.editing.scene import instances_of, placements_of
@@ -111,13 +111,14 @@ def stats_csv(editor: Editor) -> str:
     )
     stream = io.StringIO()
     rows = csv.writer(stream, lineterminator="\n")
-    rows.writerow(["class_id", "class", "cells", "objects", "cells_m3"])
+    rows.writerow(["class_id", "class", "name", "cells", "objects", "cells_m3"])
     owned = np.bincount([one.class_id for one in objects] or [0], minlength=len(CLASS_NAMES))
     owned = owned if objects else owned * 0
     cell_m3 = editor.draft.voxel_m**3
     for number, name in enumerate(CLASS_NAMES):
         cells = int(counts[number])
-        rows.writerow([number, name, cells, int(owned[number]), f"{cells * cell_m3:.3f}"])
+        volume = f"{cells * cell_m3:.3f}"
+        rows.writerow([number, name, display_name(number), cells, int(owned[number]), volume])
     return stream.getvalue()
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Protocol
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, display_name
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.progress import Progress
 from world2minecraft.editing.scene import SceneDraft
@@ -171,7 +171,7 @@ class Compare(Query):
             return read_file_labels(file_within(folder, self.path), scene.draft)
         place = find_truth_folder(folder, None)
         if place is None:
-            raise UsageError("no truth lies in the scene's folder; only generated rooms have one")
+            raise UsageError("no ground truth in the scene's folder; only generated rooms have one")
         return read_truth_labels(place, scene.draft, scene.opened.scan_to_room)
 
 
@@ -198,7 +198,7 @@ def file_within(folder: Path, path: str) -> Path:
     """
     place = (folder / path).resolve()
     if not place.is_relative_to(folder.resolve()):
-        raise UsageError(f"{path[:80]!r} lies outside the scene's folder: copy the file into it")
+        raise UsageError(f"{path[:80]!r} is outside the scene's folder; copy the file into it")
     return place
 
 
@@ -306,11 +306,11 @@ class Doubtful(Query):
 def _clash_doubts(scene: QueriedScene) -> Iterator[Diagnostic]:
     for clash in _clashes(scene):
         number = clash["ids"][-1]
-        name = CLASS_NAMES[scene.draft.objects[number].class_id]
-        doubt, why = 1.0, f"this {name} reaches out of its room"
+        name = display_name(scene.draft.objects[number].class_id)
+        doubt, why = 1.0, f"{name}: reaches outside the room"
         if clash["kind"] == "collision":
             other = scene.draft.objects[clash["ids"][0]]
-            doubt, why = 0.95, f"this {name} and {CLASS_NAMES[other.class_id]} {other.id} collide"
+            doubt, why = 0.95, f"{name}: collides with {display_name(other.class_id)} {other.id}"
         yield Diagnostic(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
 
 

@@ -110,7 +110,7 @@ def read_photos(run: Path, capture: Path, scan_to_room: np.ndarray) -> RunPhotos
         for one in placed_frames(run, judged, scan_to_room)
     )
     if not photos:
-        raise UsageError(f"{capture.name} holds no photo that this room was made of")
+        raise UsageError(f"{capture.name} contains no photo of this run")
     return RunPhotos(photos, judged.encoding)
 
 
@@ -130,7 +130,7 @@ def find_capture_of(run: Path, given: Path | None) -> Path:
     if given is not None:
         return given
     raise UsageError(
-        f"{run.name} does not say where its photos lie; start w2m forge {run.name} "
+        f"{run.name} has no record of its photos; run w2m forge {run.name} "
         "--capture PATH_OF_THE_CAPTURE"
     )
 

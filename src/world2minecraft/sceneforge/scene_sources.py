@@ -166,7 +166,7 @@ def read_source_rooms(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
 
 def _read_run(folder: Path) -> OpenedScene:
     if not (folder / "room.npz").is_file():
-        raise InputError(folder, "is no run of w2m: room.npz is missing; w2m reconstruct makes one")
+        raise InputError(folder, "room.npz not found; create a run with w2m reconstruct")
     grid, scan_to_room = read_room(folder / "room.npz")
     rooms = read_source_rooms(folder, grid)
     inputs = tuple(folder / name for name in RUN_FILES if (folder / name).is_file())

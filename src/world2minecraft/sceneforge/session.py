@@ -294,7 +294,7 @@ class Session:
         planned = await self._run_in_background(name, lambda copy: _plan(copy, command))
         async with self._turn:
             if document is not self.editor:
-                raise UsageError("another room was opened meanwhile; nothing was done")
+                raise UsageError("another room was opened; nothing was changed")
             return await self._step(lambda: document.do(planned, actor=actor))
 
     async def _read(self, question: Callable[[Editor], Value]) -> Value:

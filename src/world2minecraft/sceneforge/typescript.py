@@ -1,4 +1,4 @@
-"""``web/src/commands.ts`` from the commands and queries, so that they are defined once.
+"""``web/src/commands.ts`` from commands, queries and class names, so each is defined once.
 
 ``python -m world2minecraft.sceneforge.typescript`` writes it; with ``--check`` it only reports
 whether it would change.
@@ -13,6 +13,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.files import write_text
 from world2minecraft.editing.scene import COMMANDS
@@ -20,7 +21,7 @@ from world2minecraft.sceneforge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"
 HEAD = """\
-// Made from the commands of editing.scene and the queries of sceneforge by
+// Made from core.classes, the commands of editing.scene and the queries of sceneforge by
 // `python -m world2minecraft.sceneforge.typescript`; do not edit.
 """
 PLAIN = {"integer": "number", "number": "number", "string": "string", "boolean": "boolean"}
@@ -38,7 +39,7 @@ def main(words: Sequence[str]) -> int:
 
 def typescript() -> str:
     """Return the whole file."""
-    parts = [HEAD]
+    parts = [HEAD, _display_names()]
     shared: dict[str, Any] = {}
     for models in (COMMANDS, QUERIES):
         for model in models.values():
@@ -49,6 +50,12 @@ def typescript() -> str:
     parts.append(_union("Command", [model.__name__ for model in COMMANDS.values()]))
     parts.append(_fields_of("Queries", {name: _name(model) for name, model in QUERIES.items()}))
     return "\n".join(parts)
+
+
+def _display_names() -> str:
+    lines = "".join(f"  {json.dumps(name)},\n" for name in CLASS_DISPLAY_NAMES)
+    comment = "/** What people read for each class, by id. */"
+    return f"{comment}\nexport const CLASS_DISPLAY_NAMES: readonly string[] = [\n{lines}];\n"
 
 
 def _name(model: type[BaseModel]) -> str:

@@ -73,16 +73,16 @@ def check_files(data: Any, max_bytes: int) -> tuple[UploadFile, ...]:
     if not isinstance(data, list) or not data:
         raise UsageError('"files" must be a list of {"path", "size"}, one for each file')
     if len(data) > MAX_FILES:
-        raise LimitError("the capture", f"has {len(data):,} files; at most {MAX_FILES:,} are taken")
+        raise LimitError("the capture", f"has {len(data):,} files; the limit is {MAX_FILES:,}")
     files = tuple(one for one in map(_check_file, data) if not _ignored(one.path))
     if not files:
-        raise UsageError("there is nothing in it; drop a folder with pictures, a zip or a video")
+        raise UsageError("no files found; upload a folder of photos, a ZIP file or a video")
     total = sum(one.size for one in files)
     if total > max_bytes:
         raise LimitError(
             "the capture",
-            f"has {total >> 20:,} MB; at most {max_bytes >> 20:,} MB are taken by the page. "
-            "Start w2m forge with the path of the capture instead, or with --max-upload",
+            f"has {total >> 20:,} MB; the upload limit is {max_bytes >> 20:,} MB. "
+            "Run w2m forge with the path of the capture, or raise --max-upload",
         )
     _check_distinct(one.path for one in files)
     return files
@@ -109,10 +109,10 @@ def check_path(name: str) -> str:
     """
     shown = repr(name[:80])
     if name.startswith("/") or "\\" in name or _FORBIDDEN.search(name):
-        raise UsageError(f"{shown} cannot be a file of a capture: its name leaves the folder")
+        raise UsageError(f"invalid file name {shown}: absolute, or with a forbidden character")
     parts = PurePosixPath(name).parts
     if not parts or len(parts) > MAX_DEPTH or len(name.encode(errors="replace")) > MAX_PATH_BYTES:
-        raise UsageError(f"{shown} cannot be a file of a capture: its path is empty or too long")
+        raise UsageError(f"invalid file name {shown}: empty, too long or too deep")
     for part in parts:
         _check_part(part, shown)
     return "/".join(parts)
@@ -122,11 +122,11 @@ def _check_part(part: str, shown: str) -> None:
     try:
         size = len(part.encode())
     except UnicodeEncodeError as error:
-        raise UsageError(f"{shown} cannot be a file of a capture: it is no text") from error
+        raise UsageError(f"invalid file name {shown}: not valid text") from error
     if part == ".." or part != part.strip() or part.endswith(".") or _RESERVED.fullmatch(part):
-        raise UsageError(f"{shown} cannot be a file of a capture: {part!r} is no plain name")
+        raise UsageError(f"invalid file name {shown}: {part!r} is not allowed")
     if size > MAX_PART_BYTES or not part.isprintable():
-        raise UsageError(f"{shown} cannot be a file of a capture: a part is too long or not plain")
+        raise UsageError(f"invalid file name {shown}: a part is too long or has control characters")
 
 
 def _ignored(path: str) -> bool:
@@ -140,11 +140,11 @@ def _check_distinct(paths: Iterable[str]) -> None:
     for path in paths:
         key = path.casefold()
         if key in seen:
-            raise UsageError(f"{path[:80]!r} stands there twice; rename one of the two")
+            raise UsageError(f"{path[:80]!r} occurs twice; rename one of the files")
         seen.add(key)
         folders.update(str(parent) for parent in PurePosixPath(key).parents)
     if both := seen & folders:
-        raise UsageError(f"{min(both)[:80]!r} is a file and a folder")
+        raise UsageError(f"{min(both)[:80]!r} is both a file and a folder")
 
 
 def common_folder(files: Iterable[UploadFile]) -> str:
@@ -197,7 +197,7 @@ class CaptureFolder:
             UsageError: it has no file of this number.
         """
         if not 0 <= number < len(self.files):
-            raise UsageError(f"this capture has {len(self.files)} files; there is no {number}")
+            raise UsageError(f"file {number} not found; this capture has {len(self.files)} files")
         if self.source.name == self.files[number].path and len(self.files) == 1:
             return self.source
         return self.source / self.files[number].path
@@ -238,9 +238,9 @@ class CaptureFolder:
         place, path = self.place_of(number), self.files[number].path
         held = _size(place)
         if start != held:
-            raise ConflictError(path, f"{held} bytes of it are here; go on there")
+            raise ConflictError(path, f"{held} bytes are already uploaded; continue from there")
         if place in _RECEIVING:
-            raise ConflictError(path, "is coming by another connection; wait for its end")
+            raise ConflictError(path, "another upload of this file is running; wait for it")
         _RECEIVING.add(place)
         try:
             return await self._append(number, chunks)
@@ -257,7 +257,7 @@ class CaptureFolder:
         with place.open("ab") as stream:
             async for chunk in chunks:
                 if held + len(chunk) > file.size:
-                    raise LimitError(file.path, f"has more than its {file.size} bytes")
+                    raise LimitError(file.path, f"has more than the announced {file.size} bytes")
                 stream.write(chunk)
                 held += len(chunk)
         return held
@@ -304,7 +304,7 @@ class CaptureStore:
             source = Path(elsewhere) if elsewhere else folder / UPLOAD / str(data["name"])
             return CaptureFolder(folder, str(data["title"]), source, files)
         except (KeyError, TypeError, ValueError) as error:
-            raise DamagedFileError(folder / CAPTURE, f"is no capture ({error})") from error
+            raise DamagedFileError(folder / CAPTURE, f"is not a capture ({error})") from error
 
     def create(self, title: str, files: Any) -> CaptureFolder:
         """Make room for a capture that a page is about to send.
@@ -334,7 +334,7 @@ class CaptureStore:
         """
         place = path.resolve()
         if not place.exists():
-            raise InputError(path, "is not there")
+            raise InputError(path, "not found")
         for one in self.all():
             if not one.files and one.source == place:
                 return one
@@ -367,10 +367,12 @@ class CaptureStore:
             self.folder.mkdir(parents=True, exist_ok=True)
             free = shutil.disk_usage(self.folder).free
         except OSError as error:
-            raise OutputError(self.folder, f"cannot be made: {error.strerror or error}") from error
+            raise OutputError(
+                self.folder, f"cannot be created: {error.strerror or error}"
+            ) from error
         if free < size + SPARE_BYTES:
             needed = (size + SPARE_BYTES) >> 20
-            raise OutputError(self.home, f"its disk has {free >> 20} MB free; {needed} are needed")
+            raise OutputError(self.home, f"disk full: {free >> 20} MB free, {needed} MB needed")
 
 
 def is_capture(place: Path) -> bool:

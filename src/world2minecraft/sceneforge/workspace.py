@@ -190,7 +190,7 @@ class Workspace:
             return recent[int(index)]
         found = self.captures.named(number)
         if not found.has_room:
-            raise UsageError(f"no room was made of {found.title!r} yet; press Start")
+            raise UsageError(f"{found.title!r} has no room yet; press Create room")
         return found.run
 
     def job_of(self, capture: CaptureFolder) -> str | None:

@@ -39,27 +39,27 @@ def test_a_scene_without_faults_has_no_diagnostics():
 @pytest.mark.parametrize(
     ("draft", "expected"),
     [
-        (table(0.31), ("low_iou", "plain fits this table by 31 % only", 3)),
+        (table(0.31), ("low_iou", "table: template plain has low IoU 31%", 3)),
         (
             table(0.8, template="cells"),
-            ("no_template", "no furniture fits this table: it is built from its own cells", 3),
+            ("no_template", "table: no furniture template fits, built from its voxels", 3),
         ),
         (
             table(alternatives=(Alternative("plain", 0, 0.8), Alternative("desk_long", 0, 0.79))),
-            ("near_tie", "desk long fits this table almost as well: 79 % beside 80 %", 3),
+            ("near_tie", "table: desk long fits almost as well, IoU 79% against 80%", 3),
         ),
         (
             table(alternatives=(Alternative("plain", 3, 0.8),)),
-            ("near_tie", "plain turned to 270° fits this table almost as well: 80 % beside 80 %",
+            ("near_tie", "table: plain rotated to 270° fits almost as well, IoU 80% against 80%",
              3),
         ),
         (
             table(alternatives=(Alternative("desk", 0, 0.8), Alternative("desk", 1, 0.78))),
-            ("near_tie", "desk turned to 90° fits this table almost as well: 78 % beside 80 %", 3),
+            ("near_tie", "table: desk rotated to 90° fits almost as well, IoU 78% against 80%", 3),
         ),
         (
             table(at=4),
-            ("unsupported", "nothing is under this table: only air was seen there", 3),
+            ("unsupported", "table: no support, only observed air below", 3),
         ),
     ],
     ids=lambda one: one[0] if isinstance(one, tuple) else "",
@@ -94,10 +94,10 @@ def test_uncertain_cells_are_reported_and_repaired_ones_are_not():
     grid = replace(grid, labels=labels, confidence=sure, source=source)
     draft = SceneDraft(grid, draft.objects.values())
     assert told(draft) == [
-        ("floater", "1 cell of chair in the air, on nothing", 0),
-        ("unsure_cells", "36 cells of floor, right with a chance of 25 %", 0),
-        ("crumb", "2 cells of objs, part of no object", 0),
-        ("completed", "36 cells of floor, completed and never seen", 0),
+        ("floater", "1 chair cell floating in the air", 0),
+        ("unsure_cells", "36 floor cells, confidence 25%", 0),
+        ("crumb", "2 object cells without an object", 0),
+        ("completed", "36 floor cells, completed but not observed", 0),
     ]
     at_m = find_diagnostics(draft)[0].at_m
     assert np.allclose(at_m, np.array([10.5, 10.5, 6.5]) * VOXEL_M)

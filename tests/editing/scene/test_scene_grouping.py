@@ -161,7 +161,7 @@ def test_golden_refusals():
         "object 2 (table) lies on one side of that; split it where its cells are"
     )
     assert refusal(op="split_object", id=LAMP, parts=2) == (
-        "object 3 (objs) lies on one side of that; split it where its cells are"
+        "object 3 (object) lies on one side of that; split it where its cells are"
     )
     assert refusal(op="split_object", id=TABLE) == (
         "split_object: split_object: Value error, give parts or plane, one of them, not "

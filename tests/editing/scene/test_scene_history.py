@@ -59,14 +59,14 @@ def test_what_was_undone_is_out_of_reach_after_an_edit():
     history.undo()
     history.do(random_operation(history.draft, rng))
     assert history.line.numbers == (0, 1, 3)
-    with pytest.raises(UsageError, match="^there is nothing to redo$"):
+    with pytest.raises(UsageError, match="^nothing to redo$"):
         history.redo()
 
 
 def test_an_empty_history_has_nothing_to_undo():
     history, _, _ = done(0)
     assert (history.line.undo_kind, history.line.redo_kind) == ("", "")
-    with pytest.raises(UsageError, match="^there is nothing to undo$"):
+    with pytest.raises(UsageError, match="^nothing to undo$"):
         history.undo()
 
 

@@ -181,7 +181,7 @@ def test_set_template_sets_the_box_and_counts_a_pure_turn():
 
 
 def test_golden_refusals():
-    assert refusal(op="delete_objects", ids=[9]) == ("there is no object 9; the scene has 1, 2, 3")
+    assert refusal(op="delete_objects", ids=[9]) == "object 9 not found; objects: 1, 2, 3"
     assert refusal(op="move_object", id=CHAIR, to_m=[0.72, 0.68, 0.25]) == (
         "object 1 (chair) is there already: to_m is less than a cell away"
     )

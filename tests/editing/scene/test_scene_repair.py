@@ -356,11 +356,11 @@ def test_floaters_that_are_kept_stay():
         ),
         (
             {"op": "fill_holes", "plane": "floor"},
-            "floor has no hole to fill; name a cell of an opening to close it",
+            "floor has no holes to fill; give a cell of an opening to close it",
         ),
         (
             {"op": "fill_holes", "plane": "all"},
-            "any plane has no hole to fill; name a cell of an opening to close it",
+            "any plane has no holes to fill; give a cell of an opening to close it",
         ),
         (
             {"op": "fill_holes", "plane": "floor", "cell": [3, 3, 3]},
@@ -369,9 +369,9 @@ def test_floaters_that_are_kept_stay():
         ({"op": "fill_holes", "plane": "object:x"}, "no object x; the tree on the left lists all"),
         (
             {"op": "remove_floaters"},
-            "no floaters of at most 30 cells: all hold, or are kept",
+            "no floaters of up to 30 cells",
         ),
-        ({"op": "smooth"}, "no cell changes: the furniture here is smooth already, or locked"),
+        ({"op": "smooth"}, "nothing to change: furniture is already smooth or locked"),
     ],
 )
 def test_impossible_repairs_are_refused_with_a_reason(fields, text):

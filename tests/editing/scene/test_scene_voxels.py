@@ -214,7 +214,7 @@ def test_a_mirrored_copy_stands_where_it_is_put():
     [
         (
             {"op": "set_cells", "cells": [[0, 2]], "class_id": 5},
-            "no cell changes: all have this class already or are locked",
+            "nothing to change: all cells have this class or a lock",
         ),
         (
             {"op": "set_cells", "cells": [[2, 2]], "class_id": 5, "instance": 77},
@@ -222,7 +222,7 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "set_cells", "cells": [[2, 2]], "class_id": 5, "instance": 3},
-            "object 3 is a table, not chair: relabel it first, or give its class",
+            "object 3 has class table, not chair; relabel it first, or use its class",
         ),
         (
             {"op": "set_cells", "cells": [[2, 99]], "class_id": 5},
@@ -234,7 +234,7 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "fill_box", "low": [0, 0, 0], "high": [0, 0, 1], "class_id": 5},
-            "no cell changes: all of the box has this class already or is locked",
+            "nothing to change: all cells in the box have this class or a lock",
         ),
         (
             {"op": "delete_component", "cell": [5, 0, 0]},
@@ -246,12 +246,12 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "delete_component", "cell": [0, 0, 0], "locked": [5]},
-            "chair is locked: unlock it in the legend first",
+            "chair is locked; unlock it in the class legend first",
         ),
-        ({"op": "delete_class", "class_id": 6}, "the scene has no bed"),
+        ({"op": "delete_class", "class_id": 6}, "the scene has no cells or objects of class bed"),
         (
             {"op": "relabel_class", "from_id": 8, "to_id": 5, "locked": [8]},
-            "table is locked: unlock it in the legend first",
+            "table is locked; unlock it in the class legend first",
         ),
         (
             {"op": "paste", "cells": [[2, 2]], "by": [0, 0, 0]},
@@ -259,7 +259,7 @@ def test_a_mirrored_copy_stands_where_it_is_put():
         ),
         (
             {"op": "paste", "cells": [[0, 2]], "by": [0, 0, 10**30]},
-            "no cell changes: the copy lies outside, or on cells like its own",
+            "nothing to change: the copy is outside the grid or on identical cells",
         ),
     ],
 )

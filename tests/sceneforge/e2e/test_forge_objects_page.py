@@ -95,7 +95,7 @@ def test_objects_are_added_where_one_clicks(objects):
     forge.key("2", "n")
     x, y = forge.object_at(SOFA)
     forge.page.mouse.click(x, y + 190)
-    assert "Choose a class of objects" in forge.page.locator(".toast").last.inner_text()
+    assert "Choose an object class" in forge.page.locator(".toast").last.inner_text()
     forge.key("5")
     forge.page.mouse.click(x, y + 190)
     forge.until("s.objects.size", count + 1)
@@ -150,7 +150,7 @@ def test_clusters_are_previewed_live_and_doubtful_places_visited(objects, shot):
     page.wait_for_selector(".centre-preview i")
     shot(forge, "recluster")
     assert forge.rev() == 0
-    page.get_by_role("button", name="Find anew").click()
+    page.get_by_role("button", name="Detect again").click()
     forge.until("s.scene.rev", 1)
     assert page.locator(".centre-preview i").count() == 0
     forge.key("Shift+Digit1", ".")

@@ -1,6 +1,6 @@
 """The window itself: what is seen first, keys, help, palette, legend, looking around."""
 
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_DISPLAY_NAMES
 
 
 def test_the_demo_room_is_in_view_with_three_hints(open_tab, shot):
@@ -82,25 +82,25 @@ def test_whole_classes_are_relabelled_and_deleted_by_their_menu(forge):
     row = page.locator(".legend-row[data-class='8']")
     row.hover()
     row.locator(".mini").nth(0).click()
-    page.get_by_role("menuitem", name="Give all another class…").click()
-    page.get_by_role("menuitem", name="furn").click()
+    page.get_by_role("menuitem", name="Change class…").click()
+    page.get_by_role("menuitem", name="furniture").click()
     forge.until("s.scene.counts[8]", 0)
     assert forge.state("s.scene.counts[10]") == counts[10] + counts[8]
     forge.key("Control+z")
     forge.until("s.scene.counts[8]", counts[8])
     row.hover()
     row.locator(".mini").nth(0).click()
-    page.get_by_role("menuitem", name="Delete all table").click()
+    page.get_by_role("menuitem", name="Delete all cells of class table").click()
     forge.until("s.scene.counts[8]", 0)
     row.locator(".mini").nth(0).click()
-    gone = page.get_by_role("menuitem", name="Delete all table")
-    assert gone.get_attribute("aria-description") == "There is no cell of table"
+    gone = page.get_by_role("menuitem", name="Delete all cells of class table")
+    assert gone.get_attribute("aria-description") == "No cells of class table"
     forge.key("Escape")
     assert page.locator(".menu").count() == 0
 
 
 def test_the_menu_of_a_class_merges_matches_and_detects_again(forge):
-    """The room has three objects of class tvs: a screen and two cushions."""
+    """The room has three televisions: a screen and two cushions."""
     page = forge.page
     tvs = "[...s.objects.values()].filter((one) => one.class_id === 9).length"
     before = forge.state(tvs)
@@ -113,14 +113,14 @@ def test_the_menu_of_a_class_merges_matches_and_detects_again(forge):
         page.get_by_role("menuitem", name=label).click()
         forge.until("s.scene.rev", rev)
 
-    choose("Merge all tvs", 1)
+    choose("Merge all objects into one", 1)
     assert forge.state(tvs) == 1
-    choose("Find tvs anew", 2)
+    choose("Detect objects again", 2)
     assert forge.state(tvs) > 1
     forge.key("Control+z", "Control+z")
     forge.until("s.scene.rev", 4)
     assert forge.state(tvs) == before
-    choose("Split each tvs in two", 5)
+    choose("Split each object in two", 5)
     assert forge.state(tvs) == 2 * before
     choose("Match templates again", 6)
     assert forge.state("s.scene.undo") == "rematch"
@@ -132,9 +132,9 @@ def test_help_and_palette_are_made_of_the_one_table(forge, shot):
     shot(forge, "help")
     assert page.locator(".help").is_visible()
     words = page.locator(".help").inner_text()
-    for name in CLASS_NAMES:
-        assert f"Choose {name}" in words
-    assert "Ctrl+Shift+Z" in words and "Next doubtful place" in words
+    for name in CLASS_DISPLAY_NAMES:
+        assert f"Set the current class: {name}" in words
+    assert "Ctrl+Shift+Z" in words and "Next issue" in words
     forge.key("Escape")
     assert not page.locator(".help").is_visible()
     forge.key("Control+k")
@@ -146,17 +146,17 @@ def test_help_and_palette_are_made_of_the_one_table(forge, shot):
     page.keyboard.type("undo")
     row = page.locator(".palette-row[data-action='undo']")
     assert row.get_attribute("aria-disabled") == "true"
-    assert "Nothing was done yet" in row.inner_text()
+    assert "Nothing to undo" in row.inner_text()
 
 
 def test_what_cannot_be_done_says_why(forge):
     page = forge.page
     undo = forge.action("undo")
     assert undo.get_attribute("aria-disabled") == "true"
-    assert undo.get_attribute("aria-description") == "Nothing was done yet"
-    assert "Nothing was done yet" in undo.get_attribute("title")
+    assert undo.get_attribute("aria-description") == "Nothing to undo"
+    assert "Nothing to undo" in undo.get_attribute("title")
     undo.click(force=True)  # Playwright itself clicks nothing that is disabled.
-    assert "Nothing was done yet" in page.locator(".toast").inner_text()
+    assert "Nothing to undo" in page.locator(".toast").inner_text()
     forge.mode("objects")
     assert forge.action("object.merge").get_attribute("aria-description") == "No object is selected"
 
@@ -199,7 +199,7 @@ def test_the_keyboard_alone_reaches_and_does_everything(forge):
     forge.key("Space")
     forge.until("s.scene.rev", 1)
     assert forge.state("s.scene.counts[10]") == furn + 1
-    forge.until("s.status", first.replace("empty", "furn"))
+    forge.until("s.status", first.replace("empty", "furniture"))
     forge.key("Shift+Space")
     forge.until("s.scene.rev", 2)
     forge.until("s.status", first)
@@ -224,10 +224,10 @@ def test_theme_and_a_narrow_window(open_tab, shot):
 def test_a_room_that_is_read_only_says_so_and_lets_one_look(open_tab, server):
     server.session.document.document.read_only = "another SceneForge has it open"
     forge = open_tab()
-    assert forge.page.locator(".saved").inner_text() == "Read only"
+    assert forge.page.locator(".saved").inner_text() == "Read-only"
     forge.key("Shift+Digit3", "ArrowRight")
     forge.until("s.selectedObjects.size", 1)
-    why = "Read only: another SceneForge has it open"
+    why = "Read-only: another SceneForge has it open"
     for name in ("object.turn", "delete", "save", "tool.add"):
         assert forge.action(name).get_attribute("aria-description") == why
     forge.key("Delete")
@@ -238,7 +238,7 @@ def test_a_room_that_is_read_only_says_so_and_lets_one_look(open_tab, server):
 def test_a_lost_server_is_told_and_nothing_can_be_changed(forge, server):
     server.stop()
     forge.until("s.online", False)
-    assert forge.page.locator(".saved").inner_text() == "No connection"
+    assert forge.page.locator(".saved").inner_text() == "Disconnected"
     forge.key("Shift+Digit3", "ArrowRight")
     forge.until("s.selectedObjects.size", 1)
     assert "connection" in forge.action("object.turn").get_attribute("aria-description")

@@ -106,7 +106,7 @@ def test_a_photo_lies_on_the_room_that_was_made_of_it(forge):
 def test_the_truth_is_compared_with_live(forge, shot):
     page = forge.page
     page.locator("[data-panel='compare'] .panel-title").click()
-    page.get_by_role("button", name="With the truth").click()
+    page.get_by_role("button", name="Ground truth").click()
     page.wait_for_selector("[data-compared='iou']")
     forge.until("s.view.colourBy", "difference")
     shot(forge, "compare-truth")
@@ -122,17 +122,17 @@ def test_the_truth_is_compared_with_live(forge, shot):
     )
     forge.until("s.scene.rev", rev + 1)
     until(forge, f"document.querySelector('[data-compared=added]').textContent !== {before!r}")
-    page.get_by_role("button", name="As it was opened").click()
-    until(forge, "document.querySelector('.compare-with').textContent.includes('opened')")
-    until(forge, "document.querySelector('[data-compared=added]').textContent === '2'")
-    page.get_by_role("button", name="End").click()
+    page.get_by_role("button", name="Original scene").click()
+    until(forge, "document.querySelector('.compare-with').textContent.includes('original')")
+    until(forge, "document.querySelector('[data-compared=added]').textContent === '2 cells'")
+    page.get_by_role("button", name="Close comparison").click()
     forge.until("s.view.colourBy", "class")
 
 
 def test_the_scene_is_downloaded_and_installed(forge, shot, tmp_path):
     page = forge.page
     page.locator("[data-menu='export']").click()
-    page.get_by_role("menuitem", name="Export to a file, the game or a server…").click()
+    page.get_by_role("menuitem", name="Export to a file, Minecraft or a server…").click()
     page.wait_for_selector(".sheet.export:visible")
     shot(forge, "export-sheet")
     page.locator("[data-field='export-scale']").select_option("1")
@@ -141,7 +141,7 @@ def test_the_scene_is_downloaded_and_installed(forge, shot, tmp_path):
     held = json.loads(download.value.path().read_text())
     assert held["format"] == "world2minecraft/occ"
     page.locator("[data-place='install']").click()
-    until(forge, "document.querySelector('.export').textContent.includes('is in the game')")
+    until(forge, "document.querySelector('.export').textContent.includes('Installed Den')")
     saves = tmp_path / "user" / ".minecraft" / "saves"
     assert [(path / "level.dat").is_file() for path in saves.iterdir()] == [True]
     shot(forge, "export-installed")

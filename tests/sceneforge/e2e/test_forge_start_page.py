@@ -98,7 +98,7 @@ def test_a_folder_is_looked_at_before_anything_is_made(start, capture, shot):
     page = start.page
     assert page.locator(".drop strong").inner_text() == "Drop a capture here"
     keep(shot, start, "start")
-    choose(page, "folder", "Choose a folder…", str(capture))
+    choose(page, "folder", "Choose folder…", str(capture))
     page.wait_for_selector(".survey", timeout=MOST_MS)
     assert page.locator(".capture-head h2").inner_text() == "study"
     assert "osed RGB-D frames, about" in page.locator(".survey-called").inner_text()
@@ -116,7 +116,7 @@ def test_a_dropped_plan_becomes_a_room_and_closes_again(start, shot):
     layout = generate_room(3, kind="study").layout
     drop(page, {"Room.json": json.dumps(captured_room(layout)).encode()})
     page.locator(".choices [data-value='2']").click()
-    assert "usual size of rooms" in page.locator(".choices").inner_text()
+    assert "Typical size of rooms" in page.locator(".choices").inner_text()
     page.locator("[data-do='start']").click()
     page.wait_for_selector(".progress-bar")
     until(page, "document.querySelector('.progress-foot .note')?.textContent.includes('left')")
@@ -127,7 +127,7 @@ def test_a_dropped_plan_becomes_a_room_and_closes_again(start, shot):
     keep(shot, start, "start-opened")
     page.locator("[data-action='start']").click()
     page.wait_for_selector(".drop")
-    assert "Room" in page.locator(".room-row").first.inner_text()
+    assert "Ready" in page.locator(".room-row").first.inner_text()
     assert unexpected(start) == []
 
 
@@ -186,7 +186,7 @@ def test_what_is_no_capture_teaches_what_is(start, tmp_path):
     assert row.count() == 1 and "Not started" in row.inner_text()
     row.click()
     page.get_by_role("button", name="Delete").click()
-    page.get_by_role("button", name="Delete it and its room?").click()
+    page.get_by_role("button", name="Delete capture and room?").click()
     page.wait_for_selector(".drop")
     until(page, "document.querySelectorAll('.room-row').length === 0")
 

@@ -46,7 +46,7 @@ def test_repainting_erasing_and_locks(voxels):
     forge, before = voxels, counts(voxels)
     x, y = forge.object_at(2)
     forge.key("b", "0")
-    forge.page.get_by_role("button", name="Repaint").click()
+    forge.page.get_by_role("button", name="Replace").click()
     forge.drag((x - 30, y), (x + 30, y))
     forge.until("s.scene.rev", 1)
     painted = counts(forge)
@@ -180,9 +180,9 @@ def test_a_class_is_smoothed_by_its_panel(voxels):
     page.locator(".panel[data-panel=smoothing] .panel-title").click()
     forge.key("3")
     button = page.get_by_role("button", name="Smooth wall")
-    assert "class of objects" in button.get_attribute("aria-description")
+    assert "object class" in button.get_attribute("aria-description")
     forge.key("0")
-    page.get_by_role("button", name="Smooth furn").click()
+    page.get_by_role("button", name="Smooth furniture").click()
     forge.until("s.scene.rev", 1)
     page.wait_for_selector("[data-action=undo][title^='Undo smooth']")
 
@@ -199,7 +199,7 @@ def test_eyedropper_measure_and_the_region_under_the_pointer(voxels, shot):
     forge.drag((x - 50, y), (x + 50, y))
     shot(forge, "measure")
     assert " m " in page.locator("[data-mark=measure] text").text_content()
-    assert forge.state("s.status").startswith("Measured")
+    assert forge.state("s.status").startswith("Distance")
     forge.key("q")
     assert page.locator("[data-mark=measure]").count() == 0
     page.mouse.move(x, y)
@@ -232,7 +232,7 @@ def test_floaters_are_found_by_size_and_deleted_at_once(voxels, shot):
     assert forge.state("s.selectedCells.size") > 0
     page.locator("[data-do=delete-floaters]").click()
     forge.until("s.scene.rev", 2)
-    page.get_by_text("None of this size").wait_for()
+    page.get_by_text("No floaters up to this size").wait_for()
 
 
 def test_holes_of_a_plane_are_listed_and_filled(voxels, shot):
@@ -288,6 +288,6 @@ def test_sliders_change_how_cells_are_drawn(voxels, shot):
     shot(forge, "small_cells")
     forge.key("e")
     forge.until("s.view.edges", False)
-    forge.page.get_by_role("button", name="Sure", exact=True).click()
+    forge.page.get_by_role("button", name="Confidence", exact=True).click()
     forge.until("s.view.colourBy", "confidence")
     shot(forge, "confidence")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import OBJECT_CLASSES, display_name
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.editing.scene.repair import find_floaters
@@ -69,10 +69,10 @@ def rank_diagnostics(found: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
     for one in draft.objects.values():
-        name = CLASS_NAMES[one.class_id]
+        name = display_name(one.class_id)
         sure = round(100 * one.confidence)
         if sure < 100:
-            why = f"the cells of this {name} are right with a chance of {sure} %"
+            why = f"{name}: cell confidence {sure}%"
             yield Diagnostic("low_confidence", why, 1 - one.confidence, one.center_m, one.id)
         yield from _check_support(draft, one)
         for placed in one.placements:
@@ -80,14 +80,14 @@ def _of_objects(draft: SceneDraft) -> Iterator[Diagnostic]:
 
 
 def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Diagnostic]:
-    name, at_m = CLASS_NAMES[one.class_id], placed.center_m
+    name, at_m = display_name(one.class_id), placed.center_m
     if placed.template == "cells":
-        why = f"no furniture fits this {name}: it is built from its own cells"
+        why = f"{name}: no furniture template fits, built from its voxels"
         yield Diagnostic("no_template", why, NO_TEMPLATE, at_m, one.id)
         return
-    share = f"{100 * placed.iou:.0f} %"
+    share = f"{100 * placed.iou:.0f}%"
     if placed.iou < LOW_IOU:
-        why = f"{template_words(placed.template)} fits this {name} by {share} only"
+        why = f"{name}: template {template_words(placed.template)} has low IoU {share}"
         yield Diagnostic("low_iou", why, 1 - placed.iou, at_m, one.id)
     rivals = [o for o in placed.alternatives if _is_other(placed, o) and placed.iou - o.iou < TIE]
     # Which way a thing looks matters more than which of two like pieces it is.
@@ -95,9 +95,9 @@ def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Diagnostic]:
     if not rivals:
         return
     best, faces = rivals[0], rivals[0].quarter_turns != placed.quarter_turns
-    turned = f" turned to {90 * best.quarter_turns}°" if faces else ""
-    why = f"{template_words(best.template)}{turned} fits this {name} almost as well: "
-    why += f"{100 * best.iou:.0f} % beside {share}"
+    turned = f" rotated to {90 * best.quarter_turns}°" if faces else ""
+    why = f"{name}: {template_words(best.template)}{turned} fits almost as well, "
+    why += f"IoU {100 * best.iou:.0f}% against {share}"
     apart = max(placed.iou - best.iou, 0) / TIE
     doubt = (TURN_DOUBT if faces else TIE_DOUBT) * (1 - apart / 4)
     yield Diagnostic("near_tie", why, doubt, at_m, one.id)
@@ -117,7 +117,7 @@ def _check_support(draft: SceneDraft, one: SceneObject) -> Iterator[Diagnostic]:
     lowest = cells[cells[:, 2] == cells[:, 2].min()]
     under = draft.labels[lowest[:, 0], lowest[:, 1], lowest[:, 2] - 1]
     if (under == 0).all():
-        why = f"nothing is under this {CLASS_NAMES[one.class_id]}: only air was seen there"
+        why = f"{display_name(one.class_id)}: no support, only observed air below"
         yield Diagnostic("unsupported", why, UNSUPPORTED, one.center_m, one.id)
 
 
@@ -126,11 +126,11 @@ def _of_loose_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     for one in find_floaters(draft, draft.labels.size):
         loose[tuple(one.cells.T)] = False
         owner = next((number for number in one.object_ids if number in draft.objects), 0)
-        why = f"{_count_text(len(one.cells), CLASS_NAMES[one.class_id])} in the air, on nothing"
+        why = f"{_count_text(len(one.cells), one.class_id)} floating in the air"
         yield Diagnostic("floater", why, FLOATING, center_of_cells_m(draft, one.cells), owner)
     for cells in _parts(loose, 1, CRUMB_CELLS):
-        what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_count_text(len(cells), what)}, part of no object"
+        what = _commonest(draft, cells)
+        why = f"{_count_text(len(cells), what)} without an object"
         yield Diagnostic("crumb", why, CRUMB, center_of_cells_m(draft, cells))
 
 
@@ -138,16 +138,16 @@ def _of_unsure_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     unsure = (draft.labels % 255 > 0) & (draft.confidence < UNSURE)
     for cells in _parts(unsure, UNSURE_CELLS):
         mean = float(draft.confidence[tuple(cells.T)].astype(np.float64).mean())
-        what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_count_text(len(cells), what)}, right with a chance of {100 * mean:.0f} %"
+        what = _commonest(draft, cells)
+        why = f"{_count_text(len(cells), what)}, confidence {100 * mean:.0f}%"
         yield Diagnostic("unsure_cells", why, 1 - mean, center_of_cells_m(draft, cells))
 
 
 def _of_completed_cells(draft: SceneDraft) -> Iterator[Diagnostic]:
     completed = (draft.source == COMPLETED) & (draft.labels % 255 > 0)
     for cells in _parts(completed, UNSURE_CELLS):
-        what = CLASS_NAMES[_commonest(draft, cells)]
-        why = f"{_count_text(len(cells), what)}, completed and never seen"
+        what = _commonest(draft, cells)
+        why = f"{_count_text(len(cells), what)}, completed but not observed"
         yield Diagnostic("completed", why, COMPLETED_DOUBT, center_of_cells_m(draft, cells))
 
 
@@ -176,8 +176,8 @@ def _commonest(draft: SceneDraft, cells: np.ndarray) -> int:
     return int(np.bincount(draft.labels[tuple(cells.T)]).argmax())
 
 
-def _count_text(count: int, what: str) -> str:
-    return f"{count} {'cell' if count == 1 else 'cells'} of {what}"
+def _count_text(count: int, class_id: int) -> str:
+    return f"{count} {display_name(class_id)} {'cell' if count == 1 else 'cells'}"
 
 
 def template_words(template: str) -> str:

@@ -41,8 +41,8 @@ def resample_labels(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
         UsageError: its cells are larger than the scene's, or it does not meet the scene.
     """
     if grid.voxel_m > draft.voxel_m * (1 + 1e-6):
-        sizes = f"{grid.voxel_m:g} m, the scene's {draft.voxel_m:g} m"
-        raise UsageError(f"its cells have {sizes}: compare with cells of that size or smaller")
+        sizes = f"{grid.voxel_m:g} m, larger than the scene's {draft.voxel_m:g} m"
+        raise UsageError(f"its voxel size is {sizes}; use a grid with voxels of that size or less")
     at, inside = [], []
     for axis in range(3):
         middles_m = draft.origin_m[axis] + (np.arange(draft.shape[axis]) + 0.5) * draft.voxel_m
@@ -52,5 +52,7 @@ def resample_labels(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
     x, y, z = inside
     reached = x[:, None, None] & y[None, :, None] & z[None, None, :]
     if not reached.any():
-        raise UsageError("it lies beside this room: no cell of it is here; compare in one frame")
+        raise UsageError(
+            "it does not overlap this room; use a grid in the coordinate frame of the scene"
+        )
     return np.where(reached, grid.labels[np.ix_(*at)], np.uint8(UNKNOWN))

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import display_name
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation, Placement, SceneObject
 from world2minecraft.editing.scene.cell_patch import Patch
@@ -50,7 +50,7 @@ class AddObject(Command):
         cells = solid[is_free(draft, solid)]
         if not len(cells):
             sides = " x ".join(f"{side:.2f}" for side in size_m)
-            raise UsageError(f"no cell is free there for a {chosen.title} of {sides} m")
+            raise UsageError(f"no free cells there for {chosen.title}, {sides} m")
         number = free_object_id(draft)
         sides = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
         middle = draft.origin_m + (corner + sides / 2) * draft.voxel_m
@@ -123,6 +123,6 @@ def template_for(name: str, class_id: int) -> Template:
     """
     found = template(name)
     if found.class_id != class_id:
-        own, other = CLASS_NAMES[found.class_id], CLASS_NAMES[class_id]
+        own, other = display_name(found.class_id), display_name(class_id)
         raise UsageError(f"{name} is for class {own}, not {other}; relabel the object first")
     return found

@@ -91,7 +91,7 @@ class SceneHistory:
             UsageError: nothing is done.
         """
         if not self.line.done:
-            raise UsageError("there is nothing to undo")
+            raise UsageError("nothing to undo")
         number = self.line.numbers[self.line.done - 1]
         inverse = self.log.operation(number).inverse()
         self.draft.check(inverse)
@@ -111,7 +111,7 @@ class SceneHistory:
             UsageError: nothing was undone since the last edit.
         """
         if not self.line.redo_kind:
-            raise UsageError("there is nothing to redo")
+            raise UsageError("nothing to redo")
         number = self.line.numbers[self.line.done]
         operation = self.log.operation(number)
         self.draft.check(operation)

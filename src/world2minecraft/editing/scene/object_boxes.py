@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.classes import display_name
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Placement, SceneObject
@@ -27,9 +27,9 @@ def object_by_id(draft: SceneDraft, number: int) -> SceneObject:
         return draft.objects[number]
     known = sorted(draft.objects)
     if not known:
-        raise UsageError(f"there is no object {number}: the scene has no objects")
+        raise UsageError(f"object {number} not found; the scene has no objects")
     listed = ", ".join(map(str, known[:SHOWN])) + (", ..." if len(known) > SHOWN else "")
-    raise UsageError(f"there is no object {number}; the scene has {listed}")
+    raise UsageError(f"object {number} not found; objects: {listed}")
 
 
 def objects_by_ids(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
@@ -39,7 +39,7 @@ def objects_by_ids(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
 
 def describe_object(one: SceneObject) -> str:
     """Return what an error calls an object, such as ``object 3 (chair)``."""
-    return f"object {one.id} ({CLASS_NAMES[one.class_id]})"
+    return f"object {one.id} ({display_name(one.class_id)})"
 
 
 def free_object_id(draft: SceneDraft, taken: Iterable[int] = ()) -> int:

@@ -32,11 +32,11 @@ from pydantic import Field
 from scipy import ndimage
 
 from world2minecraft.core.classes import (
-    CLASS_NAMES,
     OBJECT_CLASSES,
     STRUCTURE_CLASSES,
     UNKNOWN,
     SemanticClass,
+    display_name,
 )
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Operation
@@ -285,9 +285,7 @@ class RemoveFloaters(CellCommand):
             if not np.isin(flat, self.keep).any() and self.free(draft, cells).all()
         ]
         if not gone:
-            raise UsageError(
-                f"no floaters of at most {self.max_cells} cells: all hold, or are kept"
-            )
+            raise UsageError(f"no floaters of up to {self.max_cells} cells")
         return plan_cells(draft, "delete", np.concatenate(gone), 0)
 
 
@@ -318,7 +316,7 @@ class FillHoles(CellCommand):
         cells, first = np.unique(cells, axis=0, return_index=True)  # Two planes meet in a corner.
         if not len(cells):
             where = "any plane" if self.plane == "all" else self.plane
-            raise UsageError(f"{where} has no hole to fill; name a cell of an opening to close it")
+            raise UsageError(f"{where} has no holes to fill; give a cell of an opening to close it")
         return plan_cells(draft, "fill", cells, classes[first], 0, counts_as="add")
 
     def _cells(self, draft: SceneDraft, plane: Plane) -> np.ndarray:
@@ -367,8 +365,8 @@ class Smooth(CellCommand):
         cells = np.argwhere(changes)
         cells = cells[self.free(draft, cells)]
         if not len(cells):
-            what = CLASS_NAMES[self.class_id] if self.class_id else "furniture"
-            raise UsageError(f"no cell changes: the {what} here is smooth already, or locked")
+            what = f"class {display_name(self.class_id)}" if self.class_id else "furniture"
+            raise UsageError(f"nothing to change: {what} is already smooth or locked")
         return plan_cells(draft, "smooth", cells, result[tuple(cells.T)], counts_as="other")
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from pydantic import Field, model_validator
 from scipy.spatial import KDTree
 
-from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.classes import OBJECT_CLASSES, UNKNOWN, display_name
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, GridCells, Operation, SceneObject
 from world2minecraft.editing.scene.cell_patch import box_cells, cells_of_runs
@@ -217,7 +217,7 @@ class SetCells(CellCommand):
             changes |= draft.instance[tuple(cells.T)] != self.instance
         cells = cells[changes & self.free(draft, cells)]
         if not len(cells):
-            raise UsageError("no cell changes: all have this class already or are locked")
+            raise UsageError("nothing to change: all cells have this class or a lock")
         return plan_cells(draft, self.verb, cells, self.class_id, self.instance)
 
 
@@ -234,7 +234,7 @@ class FillBox(CellCommand):
         cells = box_cells(self.low, self.high, draft.shape)
         cells = cells[(draft.labels[tuple(cells.T)] != self.class_id) & self.free(draft, cells)]
         if not len(cells):
-            raise UsageError("no cell changes: all of the box has this class already or is locked")
+            raise UsageError("nothing to change: all cells in the box have this class or a lock")
         return plan_cells(draft, "fill" if self.class_id else "erase", cells, self.class_id)
 
 
@@ -251,7 +251,7 @@ class DeleteComponent(CellCommand):
         if held in (EMPTY, UNKNOWN):
             raise UsageError(f"cell {list(self.cell)} is empty: name one that is occupied")
         if held in self.locked:
-            raise UsageError(f"{CLASS_NAMES[held]} is locked: unlock it in the legend first")
+            raise UsageError(f"{display_name(held)} is locked; unlock it in the class legend first")
         cells = connected_component(draft.labels, self.cell)
         return plan_cells(draft, "delete", cells, 0, class_id=held)
 
@@ -283,7 +283,9 @@ class Paste(CellCommand):
         changes &= self.free(draft, targets)
         sources, targets = sources[changes], targets[changes]
         if not len(targets):
-            raise UsageError("no cell changes: the copy lies outside, or on cells like its own")
+            raise UsageError(
+                "nothing to change: the copy is outside the grid or on identical cells"
+            )
         labels = draft.labels[tuple(sources.T)]
         colours = draft.colour[tuple(sources.T)]
         return plan_cells(draft, "paste", targets, labels, colours=colours)
@@ -309,8 +311,8 @@ def check_owner(draft: SceneDraft, number: int | None, class_id: int) -> None:
         raise UsageError(f"no object {number}; leave instance out and cells join what they touch")
     held = draft.objects[number].class_id
     if held != class_id:
-        names = f"{CLASS_NAMES[held]}, not {CLASS_NAMES[class_id]}"
-        raise UsageError(f"object {number} is a {names}: relabel it first, or give its class")
+        names = f"{display_name(held)}, not {display_name(class_id)}"
+        raise UsageError(f"object {number} has class {names}; relabel it first, or use its class")
 
 
 def check_cell(draft: SceneDraft, cell: tuple[int, int, int]) -> None:
@@ -387,11 +389,11 @@ def check_class(draft: SceneDraft, class_id: int, locked: tuple[int, ...]) -> No
     Raises:
         UsageError: it is locked, or the scene has nothing of it.
     """
-    name = CLASS_NAMES[class_id]
+    name = display_name(class_id)
     if class_id in locked:
-        raise UsageError(f"{name} is locked: unlock it in the legend first")
+        raise UsageError(f"{name} is locked; unlock it in the class legend first")
     if not draft.counts[class_id] and not objects_without_cells(draft, class_id):
-        raise UsageError(f"the scene has no {name}")
+        raise UsageError(f"the scene has no cells or objects of class {name}")
 
 
 def objects_without_cells(draft: SceneDraft, class_id: int) -> list[int]:

@@ -14,7 +14,7 @@ import jinja2
 import numpy as np
 
 from world2minecraft import __version__
-from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_DISPLAY_NAMES, CLASS_NAMES
 from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
@@ -35,6 +35,7 @@ from world2minecraft.furniture.layout_checks import category_integrity
 from world2minecraft.rendering.preview import plan_view, preview
 
 PLAN_PX = 720
+NAMES = dict(zip(CLASS_NAMES, CLASS_DISPLAY_NAMES, strict=True)) | {"unknown": "unknown"}
 
 
 def write_brief_report(
@@ -62,6 +63,7 @@ def write_brief_report(
     )
     page = environment.from_string(source).render(
         facts=facts,
+        names=NAMES,
         links=list(links),
         version=__version__,
         outside=as_data_uri(outside),
@@ -124,7 +126,7 @@ def write_report(
         What ``report.json`` holds.
     """
     scene = read_finished(folder)
-    progress("report", 0, 3, "figures")
+    progress("report", 0, 3, "measurements")
     facts = scene_facts(scene) | {"scan": _scan_facts(scan, folder)}
     if truth is not None:
         facts["truth"] = evaluate_reconstruction(folder, truth)
@@ -170,6 +172,7 @@ def _page(facts: dict[str, Any], pairs: list[Pair], outside: str, plan: Any) -> 
     )
     return environment.from_string(source).render(
         facts=facts,
+        names=NAMES,
         version=__version__,
         outside=outside,
         plan=as_data_uri(plan, lossless=True),

@@ -72,10 +72,8 @@ class Document(MemoryDocument):
         found = recover(folder)
         self.recovered = max(found.rev - self.saved_rev, 0)
         if self.recovered:
-            edits = (
-                "1 edit that was" if self.recovered == 1 else f"{self.recovered} edits that were"
-            )
-            self.notes.append(f"Recovered {edits} not saved.")
+            edits = "1 unsaved edit" if self.recovered == 1 else f"{self.recovered} unsaved edits"
+            self.notes.append(f"Recovered {edits}.")
         if found.fault:
             lost = f"; {found.lost} edits of it are lost" if found.lost else ""
             self.notes.append(f"{found.fault}{lost}.")
@@ -161,7 +159,7 @@ class Document(MemoryDocument):
             self._snapshot()
         self.wait()
         self._lock.release()
-        self._lock, self.read_only = None, "it is closed"
+        self._lock, self.read_only = None, "the scene is closed"
 
     def _take(self, found: RecoveredScene) -> None:
         self.draft = found.draft
@@ -176,13 +174,13 @@ class Document(MemoryDocument):
         if found.fault:
             if path.exists():
                 aside = copy_damaged(path)
-                self.notes.append(f"The damaged journal is kept as {aside.name}.")
+                self.notes.append(f"The damaged journal was moved to {aside.name}.")
             furthest = max(found.rev, found.journal.rev, self.saved_rev) + 1
             self._begin_anew(replace(found, rev=furthest))
         elif not found.journal.generation:
             found.journal.begin(found.base.generation)
         elif path.stat().st_size > found.journal.file.end:
-            self.notes.append("An edit that was being written when the program ended is left out.")
+            self.notes.append("The last edit was incomplete and was discarded.")
         self._effort = EffortLog(self.folder)
         self._log_again(self._effort)
         self._effort.opened(self.clock())
@@ -224,7 +222,9 @@ class Document(MemoryDocument):
         forgotten = reached - len(self.history.line.numbers)
         if forgotten:
             most = f"{self.history_bytes >> 20:,} MB"
-            self.notes.append(f"The {forgotten} oldest edits cannot be undone: {most} are kept.")
+            self.notes.append(
+                f"The {forgotten} oldest edits cannot be undone: the history limit is {most}."
+            )
 
     def _begin_anew(self, found: RecoveredScene) -> None:
         journal, line, rev = rewrite_journal(self.folder, found, self.history_bytes)
@@ -255,10 +255,10 @@ def _take_lock(folder: Path) -> tuple[Lock | None, str]:
         who = lock.holder()
         if not is_document(folder):
             raise
-        return None, f"{who} edits it; close it there, then open it here again"
+        return None, f"{who} is editing this scene; close it there, then open it again"
     except (OutputError, OSError) as error:
         if not is_document(folder):
-            raise OutputError(folder, f"cannot be made ({error})") from error
+            raise OutputError(folder, f"cannot be created ({error})") from error
         return None, str(error)
     return lock, ""
 
@@ -269,7 +269,7 @@ def _prepare(
     """Bring the files of a document in order before it is read; return what to tell the user."""
     notes = []
     if is_document(folder) and saving.finish_interrupted_save(folder, read_identity(folder).target):
-        notes.append("A save that was cut off is finished.")
+        notes.append("An interrupted save was completed.")
     if is_document(folder) and source is not None and source != folder:
         retired = retire_outdated(folder)
         notes += [retired] if retired else []

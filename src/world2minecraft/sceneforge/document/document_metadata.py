@@ -100,7 +100,7 @@ def read_identity(folder: Path) -> Identity:
             bool(data["is_demo"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"is no document of this program ({error})") from error
+        raise DamagedFileError(path, f"is not a SceneForge document ({error})") from error
 
 
 def retire_outdated(folder: Path) -> str:
@@ -119,11 +119,11 @@ def retire_outdated(folder: Path) -> str:
     if unsaved > 0:
         raise ConflictError(
             changed[0],
-            f"changed since it was edited, and {folder.name} holds {unsaved} edits that were not "
-            f"saved; open {folder} to go on with them, or move it away to begin anew",
+            f"changed since it was edited, and {folder.name} holds {unsaved} unsaved "
+            f"edits; open {folder} to continue with them, or move it away to start over",
         )
     aside = _retire(folder)
-    return f"{changed[0].name} was written anew since; its old edits are in {aside.name}."
+    return f"{changed[0].name} was replaced; its previous edits are in {aside.name}."
 
 
 def changed_inputs(folder: Path) -> list[Path]:

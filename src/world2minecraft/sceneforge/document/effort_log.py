@@ -84,7 +84,7 @@ def read_effort(folder: Path) -> list[dict[str, Any]]:
     """
     path = folder / EFFORT_FILE
     if not path.is_file():
-        raise InputError(folder, "holds no effort log; give a NAME.forge folder or its scene")
+        raise InputError(folder, "no effort log found; give a NAME.forge folder or its scene")
     return _events(read_bytes(path, MAX_EFFORT_BYTES))
 
 

@@ -76,12 +76,12 @@ class MemoryDocument:
 
     def close(self) -> None:
         """Let go of the scene."""
-        self.read_only = self.read_only or "it is closed"
+        self.read_only = self.read_only or "the scene is closed"
 
     def check_writable(self) -> None:
         """Raise UsageError where the scene may only be looked at."""
         if self.read_only:
-            raise UsageError(f"{self.opened.name} is open to be read only: {self.read_only}")
+            raise UsageError(f"{self.opened.name} is open read-only: {self.read_only}")
 
     def _stepped(self, step: str, operation: Operation, actor: str, time_s: float) -> Operation:
         self.rev += 1

@@ -82,7 +82,7 @@ def save(
     for name in files:
         if (found := sha256(target / name)) and found not in allowed:
             _remove_staged(staged)
-            reason = "was changed by another program since; move it away, then save again"
+            reason = "was changed by another program; move it away, then save again"
             raise ConflictError(target / name, reason)
     record = _read_record(document)
     hashes = sorted({*saved_hashes(document), *files.values()})

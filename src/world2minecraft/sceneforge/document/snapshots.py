@@ -79,7 +79,7 @@ def read_state(path: Path) -> State:
             _line(data["line"]),
         )
     except (KeyError, TypeError, ValueError, RecursionError) as error:
-        raise DamagedFileError(path, f"is no state of a scene ({error})") from error
+        raise DamagedFileError(path, f"is not a valid scene snapshot ({error})") from error
 
 
 def snapshot_path(folder: Path, rev: int, generation: str) -> Path:

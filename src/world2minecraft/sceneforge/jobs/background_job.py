@@ -16,9 +16,9 @@ from world2minecraft.sceneforge.jobs.jobs import CancelledError, JobProgress, Jo
 
 # What takes seconds of millions of cells, and what it is called meanwhile.
 TITLES = {
-    "floaters": "Looking for floaters",
-    "holes": "Looking for holes",
-    "doubtful": "Looking for doubtful places",
+    "floaters": "Finding floaters",
+    "holes": "Finding holes",
+    "doubtful": "Finding issues",
     "smooth": "Smoothing furniture",
     "remove_floaters": "Deleting floaters",
     "fill_holes": "Filling holes",

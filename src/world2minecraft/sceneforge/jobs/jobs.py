@@ -104,7 +104,10 @@ class Jobs:
             running = [one for one in self._jobs.values() if one.state.state == "running"]
             if len(running) >= MAX_RUNNING:
                 titles = ", ".join(one.state.title for one in running)
-                raise ConflictError(title, f"{len(running)} jobs run already ({titles}); wait")
+                raise ConflictError(
+                    title,
+                    f"{len(running)} jobs are already running ({titles}); wait until one ends",
+                )
             self._count += 1
             state = JobState(f"job{self._count}", title)
             job = _Job(state, TimeLeft(usual_s or {}), self._tell, self._clock)
@@ -223,6 +226,6 @@ def describe_error(error: BaseException) -> str:
     if isinstance(error, World2MinecraftError):
         return one_line(error)
     if isinstance(error, MemoryError):
-        return "out of memory; close other programs, or choose a smaller scale"
+        return "out of memory; close other programs or choose fewer blocks per metre"
     what = one_line(f"{type(error).__name__}: {error}", 300)
     return f"unexpected {what} (please report it)"

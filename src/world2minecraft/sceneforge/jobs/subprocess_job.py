@@ -84,9 +84,9 @@ def _relay(process: "subprocess.Popen[bytes]", report: JobProgress) -> Any:
         stop_worker(process)
     code = process.returncode
     if code == -signal.SIGTERM:
-        raise WorkerError("the work was ended from outside")
-    reason = "it was killed, as systems do when memory runs out" if code == -9 else f"exit {code}"
-    raise WorkerError(f"the work ended without a result: {reason}; try a smaller scale")
+        raise WorkerError("the job process was terminated")
+    reason = "killed by the system, probably out of memory" if code == -9 else f"exit code {code}"
+    raise WorkerError(f"the job failed: {reason}; try fewer blocks per metre")
 
 
 def stop_worker(process: "subprocess.Popen[bytes]") -> None:

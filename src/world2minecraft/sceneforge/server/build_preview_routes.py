@@ -152,7 +152,7 @@ class BuildCache:
         done, _ = await asyncio.wait([task], timeout=NOTIFY_AFTER_S)
         if done:
             return task.result()
-        state = JobState("build", "Building the blocks", "build")
+        state = JobState("build", "Building blocks", "build")
         self.session.broadcaster.broadcast(state.message())
         try:
             packed = await task

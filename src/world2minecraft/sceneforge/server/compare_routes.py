@@ -56,7 +56,7 @@ async def _truth(request: Request) -> Response:
     workspace = get_workspace(request)
     folder = workspace.truth_folder()
     if folder is None:
-        raise UsageError("this room has no truth; only rooms that were generated have one")
+        raise UsageError("this room has no ground truth; only generated rooms have one")
     editor = workspace.editor
     labels = await asyncio.to_thread(
         read_truth_labels, folder, editor.draft, editor.opened.scan_to_room
@@ -94,7 +94,7 @@ async def _file(request: Request) -> Response:
 async def _labels(request: Request) -> Response:
     workspace = get_workspace(request)
     if workspace.compared is None or workspace.compared.editor is not workspace.session.editor:
-        raise UsageError("nothing is compared with; choose a file or the truth first")
+        raise UsageError("no comparison is open; choose a file or the ground truth first")
     data = labels_bytes(workspace.editor.draft, workspace.compared.labels)
     return Response(data, media_type="application/octet-stream", headers={"X-Rev": "0"})
 

@@ -17,7 +17,7 @@ def explain_error(error: BaseException) -> str:
         return "out of memory; close other programs and try again"
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         return "the disk is full; free some space and try again"
-    return f"unexpected {type(error).__name__}; the terminal of w2m forge has the details"
+    return f"unexpected {type(error).__name__}; see the terminal of w2m forge for details"
 
 
 async def _usage_error(request: Request, error: Exception) -> Response:

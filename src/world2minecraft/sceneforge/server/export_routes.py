@@ -96,7 +96,7 @@ async def _file(request: Request) -> Response:
     folder = get_workspace(request).exports / number
     made = [one for one in folder.iterdir() if one.is_file()] if _is_export(folder, number) else []
     if not made:
-        raise UsageError(f"no export is named {number[:40]!r}; export it again")
+        raise UsageError(f"export {number[:40]!r} not found; export the scene again")
     return FileResponse(made[0], filename=made[0].name)
 
 
@@ -109,9 +109,9 @@ async def _install(request: Request) -> Response:
     games = await asyncio.to_thread(exports.games_here)
     key, name = str(body.pop("game", "")), body.pop("name", "")
     if key not in games:
-        raise UsageError("choose one of the games that were found on this machine")
+        raise UsageError("choose one of the listed Minecraft installations")
     if not isinstance(name, str) or len(name) > 100:
-        raise UsageError("a world's name is a short text")
+        raise UsageError("the world name must be a short text")
     choice, game = _choice(body), games[key]
     place = [game.name, str(game.saves), game.version]
     return _start_subprocess_job(workspace, "install", choice=choice, game=place, name=name)
@@ -122,7 +122,7 @@ async def _into_world(request: Request) -> Response:
     worlds = await asyncio.to_thread(exports.worlds_here)
     key = str(body.pop("world", ""))
     if key not in worlds:
-        raise UsageError("choose one of the worlds that were found on this machine")
+        raise UsageError("choose one of the listed worlds")
     place = parse_place(body)
     choice = _choice(body)
     return _start_subprocess_job(
@@ -134,7 +134,7 @@ async def _on_server(request: Request) -> Response:
     workspace, body = get_workspace(request), await read_json_object(request)
     address, password = body.pop("address", ""), body.pop("password", "")
     if not isinstance(address, str) or not isinstance(password, str) or not password:
-        raise UsageError("give the server's address and the password of its console")
+        raise UsageError("enter the server address and the RCON password")
     parse_address(address)
     place = parse_place(body)
     choice = _choice(body)
@@ -160,7 +160,7 @@ def parse_place(body: dict[str, Any]) -> dict[str, Any]:
 
 def _choice(body: dict[str, Any]) -> dict[str, Any]:
     if strange := sorted(body.keys() - set(CHOICES)):
-        raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(CHOICES)}")
+        raise UsageError(f"{strange[0][:40]!r} is not an option; options: {', '.join(CHOICES)}")
     return check_choice(body)
 
 

@@ -36,7 +36,7 @@ HEADERS = (
     (b"cross-origin-resource-policy", b"same-origin"),
 )
 NO_STORE = (b"cache-control", b"no-store")
-OPEN_THE_LINK = "open the link that w2m forge printed; it holds the key to this scene"
+OPEN_THE_LINK = "open the link that w2m forge printed; it contains the access token"
 
 
 class Guard:
@@ -85,12 +85,12 @@ class Guard:
         """Why a request is not from our own page or a program; empty where it may be."""
         hosts = headers.get("host", [])
         if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
-            return "this server is not called by that name; use the link that w2m forge printed"
+            return "unknown host name; use the link that w2m forge printed"
         own = {f"{scheme}://{hosts[0].lower()}" for scheme in ("http", "https")}
         if any(origin.lower() not in own for origin in headers.get("origin", [])):
-            return "another site may not use this scene"
+            return "requests from other sites are not allowed"
         if any(site not in ("same-origin", "none") for site in headers.get("sec-fetch-site", [])):
-            return "another site may not open this; paste the link into the address bar"
+            return "links from other sites are not allowed; paste the link into the address bar"
         return ""
 
     def _is_ours(self, host: str) -> bool:

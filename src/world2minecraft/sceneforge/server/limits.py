@@ -49,7 +49,7 @@ class BodyLimit:
         most = self.upload_bytes if scope["path"].startswith(UPLOADS) else self.json_bytes
         headers = {name.lower(): value for name, value in scope["headers"]}
         if headers.get(b"content-encoding", b"identity").lower() not in (b"", b"identity"):
-            await _answer(send, 415, "a body must not be compressed; zip the files instead")
+            await _answer(send, 415, "compressed bodies are not supported; upload a ZIP file")
             return
         if _length(headers.get(b"content-length")) > most:
             await _answer(send, 413, _too_large(most))
@@ -89,11 +89,11 @@ def parse_json(data: bytes | str) -> Any:
     if len(raw) > MAX_JSON_BYTES:
         raise UsageError(_too_large(MAX_JSON_BYTES))
     if _depth(raw) > MAX_JSON_DEPTH:
-        raise UsageError(f"the JSON is nested more than {MAX_JSON_DEPTH} deep")
+        raise UsageError(f"the JSON is nested more than {MAX_JSON_DEPTH} levels deep")
     try:
         return json.loads(raw, parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"this is not JSON: {error}") from error
+        raise UsageError(f"invalid JSON: {error}") from error
 
 
 def _depth(raw: bytes) -> int:
@@ -106,7 +106,7 @@ def _depth(raw: bytes) -> int:
 
 
 def _no_constant(name: str) -> Any:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")
 
 
 def _length(value: bytes | None) -> int:
@@ -114,7 +114,7 @@ def _length(value: bytes | None) -> int:
 
 
 def _too_large(most: int) -> str:
-    return f"more than {most >> 20} MB are not taken here"
+    return f"the request is larger than {most >> 20} MB"
 
 
 async def _answer(send: Send, status: int, why: str) -> None:

@@ -17,7 +17,7 @@ def get_workspace(request: Request) -> Workspace:
     """
     workspace = getattr(request.app.state, "workspace", None)
     if workspace is None:
-        raise UsageError("this server has no start page; run w2m forge")
+        raise UsageError("this server has no start page; run w2m forge without a path")
     return workspace
 
 

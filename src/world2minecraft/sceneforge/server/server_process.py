@@ -191,7 +191,7 @@ def _bound(host: str, port: int) -> socket.socket:
         held.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(
-            f"cannot listen on {host}:{port} ({reason}); leave out --port for a free one"
+            f"cannot listen on {host}:{port} ({reason}); omit --port to use a free port"
         ) from error
     return held
 

@@ -120,7 +120,7 @@ async def _receive(request: Request) -> Response:
     one = _named(request)
     offset = request.query_params.get("at", "0")
     if not offset.isdecimal() or len(offset) > 15:
-        raise UsageError(f"at must be the bytes that are here already, not {offset[:20]!r}")
+        raise UsageError(f"at must be the number of bytes already uploaded, not {offset[:20]!r}")
     number = request.path_params["number"]
     try:
         held = await one.receive(number, int(offset), _body(request))
@@ -143,7 +143,7 @@ async def _forget(request: Request) -> Response:
     workspace, one = get_workspace(request), _named(request)
     opened = getattr(getattr(workspace.session.editor, "opened", None), "folder", None)
     if opened is not None and Path(opened).resolve() == one.run.resolve():
-        raise ConflictError(one.title, "its room is open; close it first")
+        raise ConflictError(one.title, "its room is open in the editor; close it first")
     number = workspace.job_of(one)
     await asyncio.to_thread(_delete_capture, workspace, one.id, number)
     return JSONResponse({})
@@ -187,19 +187,19 @@ def check_choice(body: dict[str, Any]) -> dict[str, Any]:
     """
     known = ("blocks_per_metre", "style", "known", "mc_version", "voxel_m")
     if strange := sorted(body.keys() - set(known)):
-        raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(known)}")
+        raise UsageError(f"{strange[0][:40]!r} is not an option; options: {', '.join(known)}")
     try:
         parameters_of_choice(body)
     except (TypeError, ValueError) as error:
-        raise UsageError(f"a choice is of the wrong kind: {error}") from error
+        raise UsageError(f"an option has the wrong type: {error}") from error
     return body
 
 
 def _check_ready(workspace: Workspace, one: CaptureFolder) -> None:
     if not one.complete:
-        raise UsageError(f"{one.title!r} has not come whole; send its files first")
+        raise UsageError(f"{one.title!r} is incomplete; upload its files first")
     if workspace.job_of(one) is not None:
-        raise ConflictError(one.title, "is being worked on; wait, or cancel that")
+        raise ConflictError(one.title, "a job is running; wait for it or cancel it")
 
 
 async def _demo(request: Request) -> Response:
@@ -252,7 +252,7 @@ async def _room_picture(request: Request) -> Response:
 
 def _file(path: Path) -> Response:
     if not path.is_file():
-        raise InputError(path.name, "is not made yet")
+        raise InputError(path.name, "not created yet; create the room first")
     return FileResponse(path)
 
 

@@ -24,7 +24,7 @@ async def live(socket: WebSocket) -> None:
     session: Session = socket.app.state.session
     tab = session.broadcaster.open()
     if tab is None:
-        await socket.close(TOO_MANY, "too many tabs are open")
+        await socket.close(TOO_MANY, "too many open tabs; close some")
         return
     sender = None
     try:
@@ -88,7 +88,7 @@ async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
     elif kind == "save":
         await session.save()
     else:
-        raise UsageError(f"no message is of type {str(kind)[:40]!r}")
+        raise UsageError(f"unknown message type {str(kind)[:40]!r}")
     return True
 
 

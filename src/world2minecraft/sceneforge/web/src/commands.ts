@@ -1,5 +1,21 @@
-// Made from the commands of editing.scene and the queries of sceneforge by
+// Made from core.classes, the commands of editing.scene and the queries of sceneforge by
 // `python -m world2minecraft.sceneforge.typescript`; do not edit.
+
+/** What people read for each class, by id. */
+export const CLASS_DISPLAY_NAMES: readonly string[] = [
+  "empty",
+  "ceiling",
+  "floor",
+  "wall",
+  "window",
+  "chair",
+  "bed",
+  "sofa",
+  "table",
+  "television",
+  "furniture",
+  "object",
+];
 
 /** Give cells one class; 0 erases them. */
 export interface SetCells {

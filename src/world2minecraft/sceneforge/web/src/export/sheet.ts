@@ -226,7 +226,7 @@ class ExportSheet {
 function placeFields(): { rows: [string, HTMLElement][]; value(): Fields } {
   const words = TEXT.exports;
   const at = h("input", { type: "text", value: "0 64 0", "aria-label": words.at, title: words.atHint });
-  const turns = h("select", { "aria-label": words.turns }, ...[0, 1, 2, 3].map((one) => h("option", { value: String(one) }, String(one))));
+  const turns = h("select", { "aria-label": words.turns }, ...[0, 1, 2, 3].map((one) => h("option", { value: String(one) }, `${one * 90}°`)));
   return {
     rows: [[words.at, at], [words.turns, turns]],
     value: () => ({ at: at.value.trim().split(/[\s,]+/).map(Number), turns: Number(turns.value) }),

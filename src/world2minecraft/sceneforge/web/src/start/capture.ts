@@ -132,7 +132,7 @@ function remover(id: string, leave: () => void, complain: (text: string) => void
   const button = plainButton(words.remove, () => {
     if (!sure) {
       sure = true;
-      button.textContent = words.removeSure;
+      button.textContent = words.removeConfirm;
       return;
     }
     forget(`api/start/captures/${id}`).then(leave, (error) => complain(said(error)));

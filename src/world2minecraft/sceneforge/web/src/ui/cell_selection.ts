@@ -40,7 +40,7 @@ function chips(store: Store): HTMLElement {
       "span",
       { class: "chip" },
       h("span", { class: "swatch", vars: { "--swatch": `rgb(${(scene?.classes[id]?.colour ?? [128, 128, 128]).join(" ")})` } }),
-      `${TEXT.classes[id] ?? TEXT.status.unseen} ${count.toLocaleString("en")}`,
+      TEXT.cellsPanel.chip(TEXT.classes[id] ?? TEXT.status.unseen, TEXT.cells(count)),
     ),
   );
   return h("div", { class: "stack" }, h("strong", {}, TEXT.cells(selectedCells.size)), h("div", { class: "chips" }, ...rows));

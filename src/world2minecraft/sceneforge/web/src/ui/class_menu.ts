@@ -51,15 +51,15 @@ function objectItems(app: App, id: number, why: string): MenuItem[] {
       why: ids.length ? "" : TEXT.why.noObjects(word),
       run: () => app.store.set({ mode: "objects", selectedObjects: new Set(ids) }),
     },
-    { label: TEXT.legend.mergeAll(word), why: few, run: () => void app.do({ op: "merge_objects", ids }) },
+    { label: TEXT.legend.mergeAll, why: few, run: () => void app.do({ op: "merge_objects", ids }) },
     {
-      label: TEXT.legend.splitEach(word),
+      label: TEXT.legend.splitEach,
       why: missing,
       run: () => void app.do({ op: "split_objects", ids, parts: 2 }),
     },
     { label: TEXT.legend.rematch, why: missing, run: () => void app.do({ op: "rematch", ids }) },
     {
-      label: TEXT.legend.recluster(word),
+      label: TEXT.legend.recluster,
       hint: TEXT.legend.splits,
       why,
       run: () => recluster(app, id),

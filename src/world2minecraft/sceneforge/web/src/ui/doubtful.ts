@@ -33,7 +33,7 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
     draw();
     if (!place) return;
     visit(app, place);
-    app.store.set({ status: place.why });
+    app.store.set({ status: sentence(place.why) });
   };
   const step = async (by: number): Promise<void> => {
     const rev = app.store.get().scene?.rev ?? 0;
@@ -62,10 +62,14 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
 
 function rowOf(one: Doubt, at: number, chosen: boolean, go: (at: number) => void): HTMLElement {
   const node = h("button", { type: "button", class: "found", data: { doubt: String(at) } });
-  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "found-why" }, one.why));
+  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "found-why" }, sentence(one.why)));
   node.setAttribute("aria-pressed", String(chosen));
   node.addEventListener("click", () => go(at));
   return node;
+}
+
+function sentence(why: string): string {
+  return why.charAt(0).toUpperCase() + why.slice(1);
 }
 
 function visit({ store, view }: App, place: Doubt): void {

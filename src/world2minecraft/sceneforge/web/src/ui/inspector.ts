@@ -46,7 +46,7 @@ function oneParts(app: App, one: SceneObject, list: HTMLElement): HTMLElement[] 
     { class: "object-title" },
     h("span", { class: "swatch", vars: { "--swatch": colourOf(app, one.class_id) } }),
     h("strong", {}, TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id)),
-    h("span", { class: "muted" }, TEXT.inspector.sure(one.confidence)),
+    h("span", { class: "muted" }, TEXT.inspector.confidence(one.confidence)),
   );
   return [
     title,
@@ -67,7 +67,7 @@ function severalParts(app: App, those: SceneObject[]): HTMLElement[] {
   return [
     h("strong", {}, TEXT.inspector.several(those.length)),
     classField(app, those),
-    h("div", { class: "row is-even" }, actions.button("object.turn", { icon: "turn", label: TEXT.inspector.turn }), actions.button("object.merge", { icon: "merge", label: TEXT.inspector.merge })),
+    h("div", { class: "row is-even" }, actions.button("object.turn", { icon: "turn", label: TEXT.inspector.turnRight }), actions.button("object.merge", { icon: "merge", label: TEXT.inspector.merge })),
     h("div", { class: "row is-even" }, actions.button("object.rematch", { icon: "template", label: TEXT.inspector.rematch }), actions.button("delete", { icon: "trash", label: TEXT.inspector.remove, class: "button is-danger" })),
   ];
 }
@@ -148,7 +148,7 @@ function turnField(app: App, one: SceneObject): HTMLElement {
 function facts(one: SceneObject): HTMLElement {
   const rows: [string, string][] = [
     [TEXT.inspector.size, TEXT.metres(one.size_m)],
-    [TEXT.inspector.place, TEXT.metres(one.center_m)],
+    [TEXT.inspector.place, TEXT.position(one.center_m)],
     [TEXT.inspector.cells, one.cells.toLocaleString("en")],
   ];
   return h("dl", { class: "facts" }, ...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));

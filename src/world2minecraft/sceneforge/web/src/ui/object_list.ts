@@ -60,7 +60,7 @@ function branches({ store }: App, folded: ReadonlySet<number>): HTMLElement[] {
         icon("down"),
         h("span", { class: "swatch", vars: { "--swatch": `rgb(${colour.join(" ")})` } }),
         h("span", { class: "tree-word" }, TEXT.classes[id]),
-        h("span", { class: "legend-count" }, those.length),
+        h("span", { class: "legend-count" }, TEXT.objects.count(those.length)),
       );
       const leaves = folded.has(id) ? [] : those.sort((a, b) => a.id - b.id);
       return [head, ...leaves.map((one) => leaf(one, selectedObjects.has(one.id)))];
@@ -80,7 +80,7 @@ function leaf(one: SceneObject, selected: boolean): HTMLElement {
       data: { object: String(one.id), key: `o${one.id}` },
     },
     h("span", { class: "tree-word" }, TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id)),
-    h("span", { class: "legend-count", title: TEXT.objects.iou }, best ? TEXT.percent(best.iou) : "–"),
+    h("span", { class: "legend-count", title: TEXT.objects.iou }, best ? TEXT.objects.fit(best.iou) : "–"),
   );
 }
 

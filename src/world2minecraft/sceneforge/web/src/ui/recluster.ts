@@ -60,7 +60,7 @@ export function mountRecluster(host: HTMLElement, app: App): void {
       min,
       max,
       step,
-      show: String,
+      show: name === "density_threshold" ? String : TEXT.cells,
       change: (value) => {
         params[name] = value;
         clearTimeout(timer);
