@@ -52,3 +52,14 @@ def test_the_table_of_homes_is_that_of_the_imports():
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("world2minecraft.")
     }
     assert {home: set(names) for home, names in api._MODULES.items()} == imported
+
+
+def test_verbs_use_the_api_and_nothing_below_it():
+    beside = {
+        f"{path.relative_to(CLI)}: {module}"
+        for path in sorted(CLI.rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom) and (module := node.module or "").count(".")
+        if module.startswith("world2minecraft.") and module.split(".")[1] not in ALLOWED
+    }
+    assert not beside

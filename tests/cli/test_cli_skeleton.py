@@ -14,7 +14,7 @@ from world2minecraft.cli import failures, panels, verbs
 from world2minecraft.core.errors import CaptureError, UsageError
 
 # Verbs whose help is longer than a screen before "More options". Remove from this list, never add.
-LONG_HELP = ("render", "vln run", "vln evaluate")
+LONG_HELP = ("vln run", "vln evaluate")
 
 
 @pytest.fixture

@@ -11,23 +11,20 @@ if TYPE_CHECKING:
     from world2minecraft.api.captures import inspect_capture, join_rooms
     from world2minecraft.api.dataset_contents import dataset_statistics
     from world2minecraft.api.datasets import (
-        Dataset,
         build_dataset,
         export_dataset,
         import_dataset,
         open_dataset,
         verify_dataset,
     )
-    from world2minecraft.api.editor import EditorSession, open_editor
+    from world2minecraft.api.editor import open_editor
     from world2minecraft.api.existing_worlds import build_into_world, build_on_server
-    from world2minecraft.api.furniture import add_furniture, list_furniture
+    from world2minecraft.api.furniture import list_furniture
     from world2minecraft.api.generation import (
         demo,
         evaluate,
         generate_house,
         generate_room,
-        generate_worlds,
-        save_room,
         scan_room,
     )
     from world2minecraft.api.navigation import make_env
@@ -37,24 +34,17 @@ if TYPE_CHECKING:
         predict_occupancy,
         train_network,
     )
-    from world2minecraft.api.palettes import list_palettes
     from world2minecraft.api.parameters import settings
     from world2minecraft.api.pictures import render, render_files
     from world2minecraft.api.progress import show_progress
     from world2minecraft.api.repairs import repair
-    from world2minecraft.api.results import Room, RoomObject, Run, load
-    from world2minecraft.api.rooms import BuildOptions, build, reconstruct
-    from world2minecraft.api.worlds import Conversion, convert, install_world, undo_build
+    from world2minecraft.api.results import Room, Run, load
+    from world2minecraft.api.rooms import build, reconstruct
+    from world2minecraft.api.worlds import convert, install_world, undo_build
 
 __all__ = [
-    "BuildOptions",
-    "Conversion",
-    "Dataset",
-    "EditorSession",
     "Room",
-    "RoomObject",
     "Run",
-    "add_furniture",
     "build",
     "build_dataset",
     "build_into_world",
@@ -68,13 +58,11 @@ __all__ = [
     "export_network",
     "generate_house",
     "generate_room",
-    "generate_worlds",
     "import_dataset",
     "inspect_capture",
     "install_world",
     "join_rooms",
     "list_furniture",
-    "list_palettes",
     "load",
     "make_env",
     "open_dataset",
@@ -84,7 +72,6 @@ __all__ = [
     "render",
     "render_files",
     "repair",
-    "save_room",
     "scan_room",
     "settings",
     "show_progress",
@@ -100,32 +87,23 @@ _MODULES = {
     ),
     "dataset_contents": ("dataset_statistics",),
     "datasets": (
-        "Dataset",
         "build_dataset",
         "export_dataset",
         "import_dataset",
         "open_dataset",
         "verify_dataset",
     ),
-    "editor": (
-        "EditorSession",
-        "open_editor",
-    ),
+    "editor": ("open_editor",),
     "existing_worlds": (
         "build_into_world",
         "build_on_server",
     ),
-    "furniture": (
-        "add_furniture",
-        "list_furniture",
-    ),
+    "furniture": ("list_furniture",),
     "generation": (
         "demo",
         "evaluate",
         "generate_house",
         "generate_room",
-        "generate_worlds",
-        "save_room",
         "scan_room",
     ),
     "navigation": ("make_env",),
@@ -135,7 +113,6 @@ _MODULES = {
         "predict_occupancy",
         "train_network",
     ),
-    "palettes": ("list_palettes",),
     "parameters": ("settings",),
     "pictures": (
         "render",
@@ -145,17 +122,14 @@ _MODULES = {
     "repairs": ("repair",),
     "results": (
         "Room",
-        "RoomObject",
         "Run",
         "load",
     ),
     "rooms": (
-        "BuildOptions",
         "build",
         "reconstruct",
     ),
     "worlds": (
-        "Conversion",
         "convert",
         "install_world",
         "undo_build",

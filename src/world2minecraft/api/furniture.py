@@ -173,7 +173,7 @@ def add_furniture(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> w2m.add_furniture("my_chair.schem", "chair", 2, name="My Chair!")
+        >>> add_furniture("my_chair.schem", "chair", 2, name="My Chair!")
         Traceback (most recent call last):
         ...
         world2minecraft.core.errors.UsageError: a name of furniture begins with a letter ...

@@ -112,7 +112,7 @@ def generate_worlds(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> [house.name for house in w2m.generate_worlds(tmp / "worlds", houses=1)]
+        >>> [house.name for house in generate_worlds(tmp / "worlds", houses=1)]
         ['house_0001']
     """
     from world2minecraft.procgen.worlds import write_worlds
@@ -141,7 +141,7 @@ def save_room(
 
     Example:
         >>> import world2minecraft as w2m
-        >>> w2m.save_room(w2m.generate_room("bathroom"), tmp / "bathroom").kind
+        >>> save_room(w2m.generate_room("bathroom"), tmp / "bathroom").kind
         'bathroom'
     """
     import io

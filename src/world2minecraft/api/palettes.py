@@ -14,7 +14,7 @@ def list_palettes() -> list["Palette"]:
 
     Example:
         >>> import world2minecraft as w2m
-        >>> [palette.name for palette in w2m.list_palettes()]
+        >>> [palette.name for palette in list_palettes()]
         ['vanilla', 'tmeo', 'refurbished_furniture']
     """
     from world2minecraft.construction.palettes import PALETTE_FILES

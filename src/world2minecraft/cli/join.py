@@ -9,10 +9,12 @@ from world2minecraft.cli.build.options import (
     Formats,
     PaletteName,
     Scale,
-    Settings,
+    SettingList,
     Style,
     Version,
-    style_note,
+    parse_settings,
+    print_style_note,
+    split_names,
 )
 
 EXAMPLES = """\
@@ -36,7 +38,7 @@ def run(
     palette: PaletteName = None,
     formats: Formats = None,
     mc_version: Version = "1.20.1",
-    settings: Settings = None,
+    settings: SettingList = None,
 ) -> None:
     """Join finished runs into one home with one world.
 
@@ -49,23 +51,25 @@ def run(
         UsageError: a room fits nowhere or in several places. InputError: a run cannot be read.
         OutputError: the folder cannot be written.
     """
-    from world2minecraft.api import BuildOptions, join_rooms
+    from world2minecraft.api import join_rooms
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_compile_note
-    from world2minecraft.cli.set_option import read_settings
+    from world2minecraft.cli.outcome import with_compile_note
 
-    build = {
-        "blocks_per_metre": blocks_per_metre,
-        "style": style,
-        "palette": palette,
-        "formats": formats.split(",") if formats else (),
-        "mc_version": mc_version,
-        "settings": read_settings(settings),
-    }
-    style_note(BuildOptions(**build).parameters())
-    print_compile_note()
-    with show_progress() as progress:
-        join_rooms(rooms, out, places=places or (), **build, progress=progress)
+    changes = parse_settings(settings)
+    print_style_note(blocks_per_metre, changes.get("build.style", style))
+    with show_progress() as shown:
+        join_rooms(
+            rooms,
+            out,
+            places=places or (),
+            blocks_per_metre=blocks_per_metre,
+            style=style,
+            palette=palette,
+            formats=split_names(formats),
+            mc_version=mc_version,
+            settings=changes,
+            progress=with_compile_note(shown),
+        )
     print_home(out, len(rooms))
 
 

@@ -7,11 +7,16 @@ from typing import Any
 from world2minecraft.core.progress import Progress
 
 
-def print_compile_note() -> None:
-    """Print why the first run after installation takes longer."""
+def kernels_are_compiled() -> bool:
+    """Return whether an earlier run has compiled kernels of this version."""
     from world2minecraft.core.jit import KERNEL_CACHE
 
-    if not any(KERNEL_CACHE.iterdir()):
+    return any(KERNEL_CACHE.iterdir())
+
+
+def print_compile_note() -> None:
+    """Print on stderr why the first run after installation takes longer."""
+    if not kernels_are_compiled():
         line = "First run: compiling the kernels takes about 30 s; later runs reuse them."
         print(line, file=sys.stderr)
 

@@ -54,11 +54,11 @@ def run(
         UsageError: options exclude each other. CaptureError: the capture cannot be read.
     """
     from world2minecraft.api import inspect_capture
-    from world2minecraft.cli.set_option import read_settings
+    from world2minecraft.cli.build.options import parse_settings
 
     if picture is not None and (no_picture or as_json):
         raise UsageError("--out writes a picture; leave out --no-picture and --json")
-    report = inspect_capture(capture, settings=read_settings(settings))
+    report = inspect_capture(capture, settings=parse_settings(settings))
     if as_json:
         print(json.dumps(report.to_json(), indent=1))
         return

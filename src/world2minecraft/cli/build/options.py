@@ -1,14 +1,10 @@
 """The options of every verb that builds: scale, style, palette, version and further settings."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from world2minecraft.cli.panels import MORE
-
-if TYPE_CHECKING:
-    from world2minecraft.reconstruction.parameters import Parameters
 
 SKETCHES_UNDER = 1.5  # Blocks per metre.
 
@@ -55,8 +51,6 @@ SettingList = Annotated[
     ),
 ]
 
-Settings = SettingList
-
 
 def parse_settings(settings: list[str] | None) -> dict[str, str]:
     """Return ``--set`` options as keys and values.
@@ -86,34 +80,3 @@ def print_style_note(blocks_per_metre: float, style: str | None) -> None:
     """Say, where blocks are as large as furniture, which style still shows its shape."""
     if blocks_per_metre < SKETCHES_UNDER and style != "display":
         print("At this scale, furniture made of blocks is rough; --style display shows its shape.")
-
-
-def with_build_options(
-    parameters: "Parameters", style: str | None, palette: str | None, formats: str | None = None
-) -> "Parameters":
-    """Return the parameters with what the options name; what is None stays as it is.
-
-    Raises:
-        UsageError: there is no such style, palette or form. InputError: the palette's file is none.
-    """
-    from world2minecraft.reconstruction.parameters import with_settings
-
-    if palette is not None:
-        from world2minecraft.construction.palettes import load_palette
-
-        load_palette(palette)  # What is wrong with it is said before minutes of work.
-    chosen = {"style": style, "palette": _whole(palette)}
-    settings = [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
-    return with_settings(parameters, settings + ([f"formats={formats}"] if formats else []))
-
-
-def style_note(parameters: "Parameters") -> None:
-    """Say, where blocks are as large as furniture, which style shows it all the same."""
-    if parameters.blocks_per_metre < SKETCHES_UNDER and parameters.build.style != "display":
-        print("At this scale furniture of blocks is a sketch; --style display shows it as it is.")
-
-
-def _whole(palette: str | None) -> str | None:
-    """Return a palette's name as it is, and its file by its whole path."""
-    is_file = palette is not None and Path(palette).is_file()
-    return str(Path(palette).resolve()) if palette is not None and is_file else palette

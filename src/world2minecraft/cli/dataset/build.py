@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.cli.dataset import options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.api import Dataset
+    from world2minecraft.api.datasets import Dataset
 
 EXAMPLES = """\
 w2m dataset build DATA --houses 4 --images 40            a small one, to look at

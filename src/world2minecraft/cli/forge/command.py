@@ -9,7 +9,7 @@ from world2minecraft.cli.browser import open_link
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.api import EditorSession
+    from world2minecraft.api.editor import EditorSession
 
 EXAMPLES = """\
 w2m forge OUT                   a run: its room, objects, photos, blocks

@@ -62,7 +62,7 @@ def run(
     Raises:
         UsageError: a name or a class is not valid, or taken. InputError: the file cannot be read.
     """
-    from world2minecraft.api import add_furniture
+    from world2minecraft.api.furniture import add_furniture
 
     added = add_furniture(
         source,

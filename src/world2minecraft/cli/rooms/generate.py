@@ -8,7 +8,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.procgen import Room
+    from world2minecraft.api.generation import GeneratedRoom
 
 EXAMPLES = """\
 w2m rooms generate --seed 7 -o my_room                   a room
@@ -85,7 +85,8 @@ def _write_room(
     house: tuple[int | None, int | None] | None,
     clutter: float,
 ) -> None:
-    from world2minecraft.api import generate_house, generate_room, save_room
+    from world2minecraft.api import generate_house, generate_room
+    from world2minecraft.api.generation import save_room
     from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import with_compile_note
 
@@ -108,7 +109,7 @@ def _write_room(
     _print_room(made, out)
 
 
-def _print_room(made: "Room", out: Path) -> None:
+def _print_room(made: "GeneratedRoom", out: Path) -> None:
     sides = " x ".join(f"{side:.1f}" for side in made.size_m)
     print(f"\nA {made.kind}, {sides} m, {len(made.objects)} objects.")
     print(f"  look   {out / 'preview.png'}")
@@ -116,7 +117,7 @@ def _print_room(made: "Room", out: Path) -> None:
 
 
 def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
-    from world2minecraft.api import generate_worlds
+    from world2minecraft.api.generation import generate_worlds
     from world2minecraft.api.progress import show_progress
     from world2minecraft.cli.outcome import with_compile_note
 
