@@ -88,13 +88,13 @@ def test_what_is_written_is_kept_and_imported(client, folder):
     [
         ({"text": "Go to the sofa over there."},
          "it does not name where the walk ends: the upright piano"),
-        ({"annotator": " "}, "say who writes: a name of up to 60 characters"),
-        ({"language": "x"}, "a language is like en or de-AT, not 'x'"),
+        ({"annotator": " "}, "enter an annotator name of up to 60 characters"),
+        ({"language": "x"}, "invalid language 'x'; use a code such as en or de-AT"),
         ({"level": "dance"},
          "level of an instruction must be one of goal, route, landmark, not 'dance'"),
-        ({"number": 7}, "there are walks 0 to 1, not 7"),
+        ({"number": 7}, "walk 7 not found; walks: 0 to 1"),
         ({"text": 5},
-         "the body has number, and level, text, annotator, language as texts"),
+         "the body needs an integer number and the texts level, text, annotator, language"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_refused(client, folder, changed, error):
@@ -109,7 +109,7 @@ def test_only_the_link_lets_in(folder):
     assert stranger.get("/api/walks").status_code == 403
     assert stranger.get("/").status_code == 403
     page = stranger.get(f"/?token={TOKEN}")  # The cookie is set, and the page follows.
-    assert page.status_code == 200 and "Tell the way" in page.text
+    assert page.status_code == 200 and "Write navigation instructions" in page.text
     assert stranger.get("/annotate.js").status_code == 200
     rebound = TestClient(app, base_url="http://evil.example", headers={"authorization": TOKEN})
     assert rebound.get("/api/walks").status_code == 403
@@ -121,7 +121,9 @@ def test_a_large_body_is_not_read(client):
 
 
 def test_a_picture_outside_of_the_walk_is_not_there(client):
-    assert client.get("/api/image/1/3").json() == {"error": "the walk has pictures 0 to 2, not 3"}
+    assert client.get("/api/image/1/3").json() == {
+        "error": "image 3 not found; this walk has images 0 to 2"
+    }
     assert client.get("/api/image/1/-1").status_code == 404
 
 
@@ -130,7 +132,7 @@ def test_a_set_must_be_one(tmp_path, folder):
         AnnotationStore(tmp_path / "nothing")
     line = {"trajectory_id": "t9", "instruction": "Go."}
     (folder / "annotations.jsonl").write_text(json.dumps(line))
-    with pytest.raises(InputError, match="speaks of trajectory 't9', which is not there"):
+    with pytest.raises(InputError, match="trajectory 't9' not found"):
         AnnotationStore(folder)
     (folder / "annotations.jsonl").write_text(json.dumps({**line, "level": "dance"}))
     with pytest.raises(DamagedFileError, match="line 1: level must be one of goal, route"):

@@ -141,7 +141,7 @@ def test_the_scene_is_downloaded_and_installed(forge, shot, tmp_path):
     held = json.loads(download.value.path().read_text())
     assert held["format"] == "world2minecraft/occ"
     page.locator("[data-place='install']").click()
-    until(forge, "document.querySelector('.export').textContent.includes('Installed Den')")
+    until(forge, "document.querySelector('.export').textContent.includes('Installed ')")
     saves = tmp_path / "user" / ".minecraft" / "saves"
     assert [(path / "level.dat").is_file() for path in saves.iterdir()] == [True]
     shot(forge, "export-installed")

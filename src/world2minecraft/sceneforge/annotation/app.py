@@ -80,5 +80,5 @@ async def _fields(request: Request, *names: str) -> tuple:
     fields = await read_json_object(request)
     number, texts = fields.get("number"), [fields.get(name) for name in names]
     if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
-        raise UsageError(f"the body has number, and {', '.join(names)} as texts")
+        raise UsageError(f"the body needs an integer number and the texts {', '.join(names)}")
     return (number, *texts)

@@ -42,7 +42,7 @@ class AnnotationStore:
         self.folder, self.out = folder, out or folder / ANNOTATIONS
         self.walks: list[Trajectory] = read_trajectories(folder)
         if not self.walks:
-            raise InputError(folder, "has no walk; make a set with w2m vln build")
+            raise InputError(folder, "contains no walks; create a data set with w2m vln build")
         self._number = {one.trajectory_id: n for n, one in enumerate(self.walks)}
         scenes = {one.scene_id for one in self.walks}
         self._names = {scene: landmark_names_of(self.walks, scene) for scene in sorted(scenes)}
@@ -94,11 +94,13 @@ class AnnotationStore:
         """Return a picture of a walk and its media type. Raises InputError: it cannot be read."""
         keyframes = self._walk(number).keyframes
         if not 0 <= frame < len(keyframes):
-            raise UsageError(f"the walk has pictures 0 to {len(keyframes) - 1}, not {frame}")
+            raise UsageError(
+                f"image {frame} not found; this walk has images 0 to {len(keyframes) - 1}"
+            )
         path = self.folder / keyframes[frame].image  # Checked as it was read: it stays inside.
         kind = KINDS.get(path.suffix.lower())
         if kind is None:
-            raise InputError(path, "is no JPEG and no PNG")
+            raise InputError(path, "not a JPEG or PNG image")
         return read_bytes(path, MAX_IMAGE_BYTES), kind
 
     def check(self, number: int, level: str, text: str) -> list[dict[str, Any]]:
@@ -123,9 +125,9 @@ class AnnotationStore:
             raise UsageError(wrong[0])
         who = " ".join(annotator.split())
         if not who or len(who) > MAX_ANNOTATOR or not who.isprintable():
-            raise UsageError(f"say who writes: a name of up to {MAX_ANNOTATOR} characters")
+            raise UsageError(f"enter an annotator name of up to {MAX_ANNOTATOR} characters")
         if not (1 < len(language) <= 20 and language.isascii() and language.isprintable()):
-            raise UsageError(f"a language is like en or de-AT, not {language[:20]!r}")
+            raise UsageError(f"invalid language {language[:20]!r}; use a code such as en or de-AT")
         line = {
             "trajectory_id": one.trajectory_id,
             "annotator_id": who,
@@ -143,7 +145,7 @@ class AnnotationStore:
 
     def _walk(self, number: int) -> Trajectory:
         if not 0 <= number < len(self.walks):
-            raise UsageError(f"there are walks 0 to {len(self.walks) - 1}, not {number}")
+            raise UsageError(f"walk {number} not found; walks: 0 to {len(self.walks) - 1}")
         return self.walks[number]
 
     def _read(self) -> list[dict[str, str]]:
@@ -152,7 +154,7 @@ class AnnotationStore:
         lines = []
         for name, instruction in read_annotations(self.out):
             if name not in self._number:
-                raise InputError(self.out, f"speaks of trajectory {name!r}, which is not there")
+                raise InputError(self.out, f"trajectory {name!r} not found")
             line = {"trajectory_id": name, "annotator_id": instruction.annotator}
             line |= {
                 "instruction": instruction.text,

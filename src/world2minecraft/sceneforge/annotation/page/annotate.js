@@ -1,11 +1,11 @@
 // The annotation page: a walk as pictures, and what to tell somebody who is to walk it.
 
 const LEVELS = {
-  goal: goal => `Only where to go, as one would say to a friend who knows the place. The walk ends at the ${goal}.`,
-  route: () => 'Only turns and distances, so that it works with closed eyes: no thing is named.',
-  landmark: goal => `The way by what one sees: past the table, left at the sofa. It ends at the ${goal}.`
+  goal: goal => `Describe only the destination, as for someone who knows the place. The walk ends at the ${goal}.`,
+  route: () => 'Describe only turns and distances. Do not name objects.',
+  landmark: goal => `Describe the route by landmarks, for example: past the table, left at the sofa. The walk ends at the ${goal}.`
 }
-const DOES = { 'move forward': 'then walks on', 'turn left': 'then turns left', 'turn right': 'then turns right', stop: 'and is there' }
+const DOES = { 'move forward': 'next: move forward', 'turn left': 'next: turn left', 'turn right': 'next: turn right', stop: 'stop' }
 const FRAME_MS = 700
 const CHECK_MS = 350
 
@@ -15,7 +15,7 @@ const state = { walks: [], walk: null, frame: 0, level: 'goal', texts: {}, timer
 async function ask (path, body) {
   const options = body && { method: 'POST', body: JSON.stringify(body), headers: { 'content-type': 'application/json' } }
   const answer = await fetch(`/api/${path}`, options || {})
-  const told = await answer.json().catch(() => ({ error: 'the server does not answer' }))
+  const told = await answer.json().catch(() => ({ error: 'the server does not respond; check that it is running' }))
   if (!answer.ok) throw new Error(told.error)
   return told
 }
@@ -30,15 +30,15 @@ function element (name, text, attributes = {}) {
 async function list () {
   const told = await ask('walks')
   state.walks = told.walks
-  at('where').textContent = `kept in ${told.file}`
+  at('where').textContent = `Output file: ${told.file}`
   showList()
 }
 
 function showList () {
   const rows = state.walks.filter(one => !at('open').checked || !one.written || one.number === state.walk?.number)
   at('walks').replaceChildren(...rows.map(one => {
-    const button = element('button', `${one.scene} → ${one.goal || 'somewhere'}`, { type: 'button' })
-    button.append(element('small', `${one.path_m} m, ${one.frames} pictures` + (one.written ? `, ${one.written} told` : '')))
+    const button = element('button', `${one.scene} → ${one.goal || 'unnamed goal'}`, { type: 'button' })
+    button.append(element('small', `${one.path_m} m, ${one.frames} images` + (one.written ? `, ${one.written} written` : '')))
     button.setAttribute('aria-current', String(one.number === state.walk?.number))
     button.addEventListener('click', () => open(one.number))
     const row = element('li', '')
@@ -55,13 +55,13 @@ async function open (number) {
   at('slider').max = state.walk.frames.length - 1
   at('strip').replaceChildren(...state.walk.frames.map((move, frame) => {
     const button = element('button', '', { type: 'button' })
-    button.append(element('img', '', { src: `/api/image/${number}/${frame}`, alt: `picture ${frame + 1}`, loading: 'lazy' }))
+    button.append(element('img', '', { src: `/api/image/${number}/${frame}`, alt: `Image ${frame + 1}`, loading: 'lazy' }))
     button.addEventListener('click', () => { stop(); show(frame) })
     const row = element('li', '')
     row.append(button)
     return row
   }))
-  at('things').textContent = state.walk.things.join(', ') || 'nothing here has a name'
+  at('things').textContent = state.walk.things.join(', ') || 'No named objects'
   showTold()
   showList()
   choose('goal')
@@ -100,7 +100,7 @@ function play () {
 function choose (level) {
   state.level = level
   for (const button of at('levels').children) button.setAttribute('aria-selected', String(button.dataset.level === level))
-  at('asked').textContent = LEVELS[level](state.walk.goal || 'last picture')
+  at('asked').textContent = LEVELS[level](state.walk.goal || 'last image')
   at('text').value = state.texts[level] || ''
   at('said').textContent = ''
   check()
@@ -118,7 +118,7 @@ async function check () {
   if (mine !== state.checking) return // A later letter was checked.
   at('keep').disabled = findings.some(one => one.is_wrong)
   const rows = findings.map(one => element('li', one.text, { class: one.is_wrong ? 'wrong' : 'hint' }))
-  at('findings').replaceChildren(...(rows.length ? rows : [element('li', 'Nothing to be said against it.', { class: 'good' })]))
+  at('findings').replaceChildren(...(rows.length ? rows : [element('li', 'No problems found.', { class: 'good' })]))
 }
 
 async function keep (event) {
@@ -143,7 +143,7 @@ async function keep (event) {
   const left = Object.keys(LEVELS).find(level => !at('levels').querySelector(`[data-level=${level}]`).classList.contains('kept'))
   if (left) choose(left)
   else await openNext(number)
-  said.textContent = left ? 'Kept. Now tell the same walk in this way.' : 'Kept. Here is the next walk.'
+  said.textContent = left ? 'Saved. Describe the same walk at the next level.' : 'Saved. Next walk.'
 }
 
 async function openNext (number) {
@@ -154,7 +154,7 @@ async function openNext (number) {
 
 function showTold () {
   const told = state.walk.told
-  at('others').querySelector('summary').textContent = `What is told of it already (${told.length})`
+  at('others').querySelector('summary').textContent = `Existing instructions (${told.length})`
   at('told').replaceChildren(...told.map(one => element('li', `${one.text} — ${one.level}, ${one.by}`)))
 }
 
