@@ -13,7 +13,7 @@ def test_the_demo_room_is_in_view_with_three_hints(open_tab, shot):
         share = [f"s.scene.origin_m[{i}]+{corner[i]}*s.scene.shape[{i}]*0.08" for i in range(3)]
         x, y = forge.point_at(forge.state(f"[{','.join(share)}]"))
         assert 244 < x < 992 and 44 < y < 734, "a corner of the room is not in view"
-    forge.page.get_by_label("Close the hints for good").click()
+    forge.page.get_by_label("Dismiss").click()
     forge.page.reload()
     forge.page.wait_for_selector(".legend-row")
     assert forge.page.locator(".hints").count() == 0
@@ -158,7 +158,7 @@ def test_what_cannot_be_done_says_why(forge):
     undo.click(force=True)  # Playwright itself clicks nothing that is disabled.
     assert "Nothing to undo" in page.locator(".toast").inner_text()
     forge.mode("objects")
-    assert forge.action("object.merge").get_attribute("aria-description") == "No object is selected"
+    assert forge.action("object.merge").get_attribute("aria-description") == "No object selected"
 
 
 def test_the_keyboard_alone_reaches_and_does_everything(forge):
