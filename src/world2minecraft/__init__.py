@@ -14,11 +14,15 @@ pass between the stages are in ``core.types``, axis conventions in ``core.coordi
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from world2minecraft.navigation.gymnasium_plugin import register_with_gymnasium
+
 if TYPE_CHECKING:
     from world2minecraft.api import *  # noqa: F403
     from world2minecraft.core import errors as errors
 
 __version__ = "0.1.0"
+
+register_with_gymnasium()  # As soon as Gymnasium is imported, which this does not do.
 
 
 def __getattr__(name: str) -> Any:

@@ -294,9 +294,7 @@ def test_an_interrupted_install_is_none(monkeypatch, tmp_path):
 
 
 def test_it_is_an_environment_of_gymnasium():
-    import world2minecraft.navigation.environment  # noqa: F401  # It registers.
-
-    spec = gymnasium.spec("World2Minecraft-VLN-Server-v0")
+    spec = gymnasium.spec("world2minecraft/MinecraftVLN-Server-v0")
     assert spec.entry_point == "world2minecraft.navigation.server.env:ServerEnv"
     with pytest.raises(UsageError, match="has no option 'scene'"):
         ServerEnv("localhost", scene="x")

@@ -1,6 +1,8 @@
 """The environment: gymnasium's own checks, seeds, rewards, scores, and errors that teach."""
 
 import dataclasses
+import subprocess
+import sys
 import tomllib
 import warnings
 from importlib import import_module
@@ -9,6 +11,7 @@ from pathlib import Path
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium import spaces
 from gymnasium.utils.env_checker import check_env
 
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
@@ -36,9 +39,7 @@ def env_of(flat, **options):
     ],
 )
 def test_gymnasium_finds_nothing_amiss(flat_path, options):
-    env = gymnasium.make(
-        f"world2minecraft.navigation.environment:{ENV_ID}", scene=flat_path, eyes=EYES, **options
-    )
+    env = gymnasium.make(f"world2minecraft:{ENV_ID}", scene=flat_path, eyes=EYES, **options)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(env.unwrapped)
@@ -141,7 +142,7 @@ def test_given_episodes_come_in_their_order(flat, tmp_path):
 
 def test_environments_run_side_by_side(flat_path):
     vector = gymnasium.make_vec(
-        f"world2minecraft.navigation.environment:{ENV_ID}", num_envs=2, vectorization_mode="sync",
+        f"world2minecraft:{ENV_ID}", num_envs=2, vectorization_mode="sync",
         scene=flat_path, eyes=EYES, max_steps=2, observations=["rgb", "instruction"],
     )  # fmt: skip
     seen, _ = vector.reset(seed=0)
@@ -154,7 +155,7 @@ def test_environments_run_side_by_side(flat_path):
 
 def test_processes_side_by_side_are_told_their_instructions(flat_path):
     vector = gymnasium.make_vec(
-        f"world2minecraft.navigation.environment:{ENV_ID}", num_envs=2, vectorization_mode="async",
+        f"world2minecraft:{ENV_ID}", num_envs=2, vectorization_mode="async",
         vector_kwargs={"shared_memory": False}, scene=flat_path, observations=["instruction"],
     )  # fmt: skip
     seen, info = vector.reset(seed=0)
@@ -230,6 +231,51 @@ def test_an_episode_that_no_way_solves_is_refused_when_it_begins(flat):
         with pytest.raises(InputError, match="no way leads from the start of episode walled"):
             env.reset(seed=0)
     assert env.reset()[1]["episode_id"] == fine.episode_id
+
+
+@pytest.mark.parametrize("order", ["world2minecraft, gymnasium", "gymnasium, world2minecraft"])
+def test_the_package_registers_in_either_order(order):
+    code = f"import {order}; print(gymnasium.spec({ENV_ID!r}).entry_point)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == "world2minecraft.navigation.environment.env:VlnEnv"
+
+
+def test_importing_the_package_does_not_import_gymnasium():
+    code = "import world2minecraft, sys; print('gymnasium' in sys.modules, 'numpy' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == "False False"
+
+
+def test_looking_for_gymnasium_does_not_stop_registration():
+    code = (
+        "import importlib.util, world2minecraft; importlib.util.find_spec('gymnasium')\n"
+        f"import gymnasium; gymnasium.spec({ENV_ID!r}); print(gymnasium.__spec__.loader)"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "SourceFileLoader" in told.stdout
+
+
+def test_the_former_id_works_with_a_warning(flat_path):
+    with pytest.warns(DeprecationWarning, match="World2Minecraft-VLN-v0 is deprecated; use world2"):
+        env = gymnasium.make("World2Minecraft-VLN-v0", scene=flat_path, eyes=EYES)
+    assert isinstance(env.unwrapped, VlnEnv)
+
+
+def test_default_spaces_suit_stable_baselines3(flat_path):
+    """Its ``check_env`` takes flat dictionaries of these kinds, and no text."""
+    env = gymnasium.make(ENV_ID, scene=flat_path)
+    seen, info = env.reset(seed=0)
+    allowed = (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary)
+    assert isinstance(env.observation_space, spaces.Dict)
+    assert all(isinstance(one, allowed) for one in env.observation_space.values())
+    assert env.action_space == spaces.Discrete(4)
+    picture = env.observation_space["rgb"]
+    assert picture.dtype == np.uint8 and picture.shape[2] == 3 and min(picture.shape[:2]) >= 36
+    assert all(isinstance(value, np.ndarray) for value in seen.values())
+    assert info["instruction"].startswith("Go to the ")
+    _, reward, terminated, truncated, _ = env.step(1)
+    assert [type(one) for one in (reward, terminated, truncated)] == [float, bool, bool]
+    check_env(env.unwrapped)
 
 
 def test_the_entry_point_of_gymnasium_is_there():

@@ -1,5 +1,6 @@
-"""``World2Minecraft-VLN-v0``: walk through a world as you are told, and say STOP where it ends."""
+"""``world2minecraft/MinecraftVLN-v0``: walk through a world as instructed and STOP at the goal."""
 
+import warnings
 from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -18,6 +19,7 @@ from world2minecraft.navigation.environment.action_spaces import (
 from world2minecraft.navigation.environment.episode_sampling import EpisodeSampler
 from world2minecraft.navigation.environment.observations import DEFAULT_SENSORS, Eyes, SensorSuite
 from world2minecraft.navigation.episodes import score_walk
+from world2minecraft.navigation.gymnasium_plugin import ENV_ID
 from world2minecraft.navigation.moves import get_move_set
 from world2minecraft.navigation.scene import VlnScene, open_scene
 from world2minecraft.navigation.types import Episode, MoveSet, Stance, check_reachable
@@ -39,7 +41,8 @@ class VlnEnv(gymnasium.Env):
         actions: "discrete", or "continuous" for the game's keys and mouse at 20 ticks a second.
         move_set: of discrete actions: "vlnce", "rxr", "block", or "macro" for runs of moves.
         sliding: whether one goes on along what is in the way.
-        observations: some of rgb, depth, semantic, instance, pose, instruction.
+        observations: some of rgb, depth, semantic, instance, pose, instruction; rgb and pose by
+            default, which every trainer reads. ``info["instruction"]`` holds the instruction.
         eyes: size and field of view of the pictures, the light, and threads to draw with.
         max_steps: then the episode is truncated; 500 moves or 5,000 ticks where None.
         success_m: STOP nearer to the goal, on foot, is a success: of the reward and of SPL.
@@ -213,6 +216,23 @@ class VlnEnv(gymnasium.Env):
             collisions=self.collisions, radius_m=self.success_m,
         )  # fmt: skip
         return asdict(found)
+
+
+class FormerIdEnv(VlnEnv):
+    """The environment under its former id, ``World2Minecraft-VLN-v0``."""
+
+    def __init__(self, *args: Any, **options: Any):
+        warn_of_former_id("World2Minecraft-VLN-v0", ENV_ID)
+        super().__init__(*args, **options)
+
+
+def warn_of_former_id(former: str, current: str) -> None:
+    """Warn whoever calls ``gymnasium.make`` with a former id."""
+    warnings.warn(
+        f"the environment id {former} is deprecated; use {current}",
+        DeprecationWarning,
+        stacklevel=4,  # This function, __init__, gymnasium.make, and who called it.
+    )
 
 
 def _opened(

@@ -1,11 +1,12 @@
-"""``World2Minecraft-VLN-Server-v0``: the same environment, by a player on a running server."""
+"""``world2minecraft/MinecraftVLN-Server-v0``: the environment, by a player on a game server."""
 
 from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.action_spaces import ActionController
-from world2minecraft.navigation.environment.env import VlnEnv
+from world2minecraft.navigation.environment.env import VlnEnv, warn_of_former_id
+from world2minecraft.navigation.gymnasium_plugin import SERVER_ENV_ID
 from world2minecraft.navigation.server.actions import ServerContinuousActions, ServerDiscreteActions
 from world2minecraft.navigation.server.player import DEFAULT_NAME, ServerPlayer, join
 from world2minecraft.navigation.server.streamed_blocks import Box
@@ -67,3 +68,11 @@ class ServerEnv(VlnEnv):
         if by_keys:
             return ServerContinuousActions(self.scene, self.server)
         return ServerDiscreteActions(self.scene, move_set, self.server)
+
+
+class FormerIdServerEnv(ServerEnv):
+    """The environment under its former id, ``World2Minecraft-VLN-Server-v0``."""
+
+    def __init__(self, *args: Any, **options: Any):
+        warn_of_former_id("World2Minecraft-VLN-Server-v0", SERVER_ENV_ID)
+        super().__init__(*args, **options)
