@@ -135,7 +135,7 @@ def test_the_words_say_where_to_go(flat):
 
 
 GOLDEN = [
-    (["SCENE"], 2, 'error: say what to do, such as w2m vln run OUT "Go to the table"'),
+    (["SCENE"], 2, 'error: INSTRUCTION is missing; for example: w2m vln run OUT "Go to the table"'),
     (["SCENE", "Go to the piano", "--agent", "oracl"], 2, "did you mean 'oracle'?"),
     (["SCENE", "Go to the piano", "--start", "1,2"], 2, "--start is X,Y,Z or X,Y,Z,YAW, not '1,2'"),
     (
@@ -165,7 +165,7 @@ def test_a_run_is_not_written_over_what_it_walks(tmp_path, capsys):
     (tmp_path / "episodes.jsonl").write_text(kept)
     for scene in (tmp_path, tmp_path / "episodes.jsonl"):
         assert cli.run(["vln", "run", str(scene), "--out", str(tmp_path)]) == 2
-        assert "would be written over" in capsys.readouterr().err
+        assert "would overwrite" in capsys.readouterr().err
     assert (tmp_path / "episodes.jsonl").read_text() == kept
 
 
@@ -213,7 +213,7 @@ def test_baselines_are_evaluated_by_name(tmp_path, capsys):
     assert "no agent is named 'majorty'; did you mean 'majority'?" in capsys.readouterr().err
     wrong = ["vln", "evaluate", str(tmp_path), "--agent", "repeat", "--task", "next_view"]
     assert cli.run(wrong) == 2
-    assert "knows nothing of this task" in capsys.readouterr().err
+    assert "cannot answer this task" in capsys.readouterr().err
 
 
 def test_items_are_picked(tmp_path):

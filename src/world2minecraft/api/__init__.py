@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from world2minecraft.api.agents import evaluate_agent, run_agent
     from world2minecraft.api.captures import inspect_capture, join_rooms
     from world2minecraft.api.dataset_contents import dataset_statistics
     from world2minecraft.api.datasets import (
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
         generate_room,
         scan_room,
     )
-    from world2minecraft.api.navigation import make_env
+    from world2minecraft.api.navigation import build_navigation_set, export_navigation_set, make_env
     from world2minecraft.api.networks import (
         evaluate_network,
         export_network,
@@ -48,13 +49,16 @@ __all__ = [
     "build",
     "build_dataset",
     "build_into_world",
+    "build_navigation_set",
     "build_on_server",
     "convert",
     "dataset_statistics",
     "demo",
     "evaluate",
+    "evaluate_agent",
     "evaluate_network",
     "export_dataset",
+    "export_navigation_set",
     "export_network",
     "generate_house",
     "generate_room",
@@ -72,6 +76,7 @@ __all__ = [
     "render",
     "render_files",
     "repair",
+    "run_agent",
     "scan_room",
     "settings",
     "show_progress",
@@ -81,6 +86,10 @@ __all__ = [
 ]
 
 _MODULES = {
+    "agents": (
+        "evaluate_agent",
+        "run_agent",
+    ),
     "captures": (
         "inspect_capture",
         "join_rooms",
@@ -106,7 +115,11 @@ _MODULES = {
         "generate_room",
         "scan_room",
     ),
-    "navigation": ("make_env",),
+    "navigation": (
+        "build_navigation_set",
+        "export_navigation_set",
+        "make_env",
+    ),
     "networks": (
         "evaluate_network",
         "export_network",

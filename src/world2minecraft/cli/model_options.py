@@ -1,69 +1,96 @@
-"""What the verbs that ask a model share: whom to ask, what it may cost, and where replies are.
+"""The options of verbs that ask a language model: which one, what it may cost, its replies.
 
-A verb that ``with_model_options`` has their options on the command line and gets them as one value.
+A verb that ``with_model_options`` has these options on the command line and gets them as one value.
 """
 
 import inspect
-from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-if TYPE_CHECKING:
-    from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.cli.panels import MORE
 
-REPLIES_FILE = "replies.jsonl"
+if TYPE_CHECKING:
+    from world2minecraft.api.agents import ModelOptions as ApiModelOptions
+
 
 Model = Annotated[
-    str, typer.Option("--model", help="The model on the server, where it is not named already.")
+    str,
+    typer.Option(
+        "--model",
+        help="The model on the server, where --agent does not name it.",
+    ),
 ]
 KeyEnv = Annotated[
     str,
     typer.Option(
-        "--key-env", metavar="NAME", help="The variable of the environment that holds the key."
+        "--key-env",
+        metavar="NAME",
+        help="The environment variable that holds the key.",
+        rich_help_panel=MORE,
     ),
 ]
 MaxUsd = Annotated[
-    float | None, typer.Option("--max-usd", help="Stop before more dollars than this are spent.")
+    float | None, typer.Option("--max-usd", help="Stop before more than this is spent, in dollars.")
 ]
-MaxCalls = Annotated[int | None, typer.Option("--max-calls", help="Stop after so many questions.")]
+MaxCalls = Annotated[
+    int | None,
+    typer.Option("--max-calls", help="Stop after this many questions.", rich_help_panel=MORE),
+]
 Prices = Annotated[
     Path | None,
-    typer.Option("--prices", help="A YAML file of prices; see docs."),
+    typer.Option("--prices", help="A YAML file of prices; see the docs.", rich_help_panel=MORE),
 ]
 MaxPixels = Annotated[
     int,
     typer.Option(
-        "--max-pixels", metavar="N", help="Of a picture that a model sees; larger ones are shrunk."
+        "--max-pixels",
+        metavar="N",
+        help="The most pixels of a picture that a model sees; larger ones are reduced.",
+        rich_help_panel=MORE,
     ),
 ]
-MAX_PIXELS = 1_048_576  # external_models.chat_messages.MAX_PX, which a test holds it to.
+MAX_PIXELS = 1_048_576  # external_models.chat_messages.MAX_PX; a test compares them.
 MaxTokens = Annotated[
     int,
     typer.Option(
-        "--max-tokens", help="Of a reply, thoughts included; models that think want 8192.", min=1
+        "--max-tokens",
+        help="The longest reply, reasoning included; reasoning models need 8192.",
+        min=1,
+        rich_help_panel=MORE,
     ),
 ]
 Timeout = Annotated[
-    float, typer.Option("--timeout", help="Seconds that one attempt may take.", min=0.1)
+    float,
+    typer.Option(
+        "--timeout", help="The longest attempt, in seconds.", min=0.1, rich_help_panel=MORE
+    ),
 ]
 Temperature = Annotated[
-    float, typer.Option("--temperature", help="Of the replies; below 0 for the server's own.")
+    float,
+    typer.Option(
+        "--temperature",
+        help="The temperature of replies; below 0 for that of the server.",
+        rich_help_panel=MORE,
+    ),
 ]
 Replay = Annotated[
     Path | None,
     typer.Option(
-        "--replay", metavar="FILE", help="Take all replies from a run's replies.jsonl; ask nobody."
+        "--replay",
+        metavar="FILE",
+        help="Take all replies from the replies.jsonl of a run; send no request.",
     ),
 ]
 
 
 @dataclass(frozen=True)
 class ModelOptions:
-    """What the command line says of a model."""
+    """The options of a language model, as on the command line."""
 
     model: Model = ""
     key_env: KeyEnv = ""
@@ -75,28 +102,14 @@ class ModelOptions:
     temperature: Temperature = 0.0
     replay: Replay = None
 
-    def open(self, agent: str, out: Path) -> "ChatModel":
-        """Return the model of an agent's name or address, its replies kept in ``out``.
+    def value(self) -> "ApiModelOptions":
+        """Return them as the public API takes them."""
+        from world2minecraft.api.agents import ModelOptions as ApiModelOptions
 
-        Raises:
-            UsageError: an option is wrong. ServerError: the server tells of no model.
-        """
-        from world2minecraft.external_models.chat_client import open_chat
-        from world2minecraft.external_models.reply_cache import ReplyStore
-
-        store = ReplyStore(self.replay, "replay") if self.replay else ReplyStore(out / REPLIES_FILE)
-        return open_chat(
-            agent,
-            model=self.model,
-            key_name=self.key_env or None,
-            store=store,
-            prices=str(self.prices) if self.prices else None,
-            max_usd=self.max_usd,
-            max_calls=self.max_calls,
-            max_tokens=self.max_tokens,
-            timeout_s=self.timeout,
-            temperature=None if self.temperature < 0 else self.temperature,
-        )
+        given = asdict(self)
+        given["timeout_s"] = given.pop("timeout")
+        given["temperature"] = None if self.temperature < 0 else self.temperature
+        return ApiModelOptions(**given)
 
 
 DEFAULTS = ModelOptions()
@@ -105,10 +118,10 @@ DEFAULTS = ModelOptions()
 def with_model_options(
     defaults: ModelOptions = DEFAULTS,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Give a verb a model's options in place of its parameter ``model_options``, which they become.
+    """Give a verb the options of a model in place of its parameter ``model_options``.
 
     Args:
-        defaults: what they are where the command line does not say them.
+        defaults: their values where the command line does not set them.
     """
     options = [
         inspect.Parameter(
@@ -134,22 +147,11 @@ def with_model_options(
     return with_options
 
 
-def default_run_folder(agent: str) -> Path:
-    """Return where a run of an agent is kept if nobody says where.
-
-    Example:
-        >>> default_run_folder("openai:gpt-4.1").name
-        'vln_openai_gpt_4_1'
-    """
-    return Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
-
-
-def cost_line(chat: "ChatModel") -> str:
-    """Return what a run asked and what that cost, in a line."""
-    told = chat.ledger.to_json()
-    usd = "an unknown sum" if told["usd"] is None else f"${told['usd']:.4f}"
-    tokens = told["prompt_tokens"] + told["completion_tokens"]
+def cost_line(cost: Mapping[str, Any]) -> str:
+    """Return what was asked and what that cost, in a line."""
+    usd = "an unknown sum" if cost["usd"] is None else f"${cost['usd']:.4f}"
+    tokens = cost["prompt_tokens"] + cost["completion_tokens"]
     return (
-        f"{told['calls']:,} questions and {told['replayed']:,} from the record, "
+        f"{cost['calls']:,} questions and {cost['replayed']:,} from the record, "
         f"{tokens:,} tokens, {usd}"
     )

@@ -52,7 +52,7 @@ def test_human_instructions_take_turns_and_can_be_deselected(folder, capsys):
         ("attic-t0", "Piano!", "ann", "goal"),
     )
     assert cli.run(["vln", "reword", str(folder), "--annotations", str(words)]) == 0
-    assert "items ask in words of 13 human, 26 template" in capsys.readouterr().out
+    assert "items by the source of their words: 13 human, 26 template" in capsys.readouterr().out
     items = [item for item in read_items(folder) if item.scene_id == "kitchen"]
     who = Counter(item.instruction.annotator for item in items)
     assert who == {"bob": 7, "cleo": 6}  # Of the level of the words before; as often, in turn.
@@ -126,8 +126,8 @@ def test_a_model_says_it_again_and_is_checked(folder, capsys):
         words = ["vln", "reword", str(folder), "--rewrite", server.url, "--model", "m"]
         assert cli.run([*words, "--jobs", "1"]) == 0
         told = capsys.readouterr().out
-        assert "taken    1 of 3; refused: other turns 1, strange marks 1" in told
-        assert "items ask in words of 13 llm, 26 template" in told
+        assert "accepted 1 of 3; rejected: other turns 1, strange marks 1" in told
+        assert "items by the source of their words: 13 llm, 26 template" in told
         assert len(server.requests) == 4
         assert cli.run([*words, "--jobs", "1"]) == 0  # The walk that has words is not asked for.
         assert len(server.requests) == 4
@@ -194,5 +194,5 @@ def test_a_line_that_cannot_be_is_named(folder, row, error):
 def test_a_command_that_asks_for_nothing_says_so(folder, capsys):
     assert cli.run(["vln", "reword", str(folder)]) == 2
     assert capsys.readouterr().err == (
-        "error: nothing to do; give --annotations FILE, --rewrite MODEL or --plain\n"
+        "error: nothing to do; add --annotations FILE, --rewrite MODEL or --plain\n"
     )

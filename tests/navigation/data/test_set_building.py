@@ -165,8 +165,8 @@ def test_a_set_is_counted_by_the_command(one_worker, tmp_path, capsys):
     assert {row["task"] for row in figures["baselines"]} == set(by_task)
     assert min(Image.open(tmp_path / "lengths.png").size) > 200
     trained = sorted(set(by_task) - set(held))
-    where = f"; {', '.join(trained)} on train, as nothing of it is" if trained else ""
-    assert f"Without understanding, on what is held out{where} (95 % interval)" in told
+    where = f"; {', '.join(trained)} on train, as none of it is held out" if trained else ""
+    assert f"Without understanding, on the held-out splits{where} (95 % interval)" in told
     assert f"w2m vln evaluate {out} --agent oracle" in told
 
 
@@ -222,4 +222,4 @@ def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
 def test_a_build_without_a_scene_says_what_to_do(tmp_path, capsys):
     assert cli.run(["vln", "build", "--out", str(tmp_path / "set")]) == 2
     told = capsys.readouterr().err
-    assert told == "error: no scene is named; give paths of scenes, or --rooms 3 to make some\n"
+    assert told == "error: no scene is given; give scenes, or generate some with --rooms 3\n"

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from world2minecraft.cli.compare.build import folder_names, select_scenes
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement
@@ -12,6 +11,7 @@ from world2minecraft.paper.layouts import ComparedScene
 from world2minecraft.paper.layouts.furniture_lookup import design_of, designs
 from world2minecraft.paper.layouts.importers.value_checks import Box, object_of
 from world2minecraft.paper.layouts.layout_to_world import plan_of
+from world2minecraft.paper.layouts.scene_selection import folder_names, select_scenes
 from world2minecraft.reconstruction.floorplans.plan_grid import rasterize_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)

@@ -52,7 +52,7 @@ def test_what_cannot_be_scored_is_said(layouts, tmp_path, capsys):
     assert cli.run(["compare", "layouts", str(tmp_path / "none.json")]) == 3
     assert capsys.readouterr().err.strip().endswith("none.json: is not there")
     assert cli.run(["compare", "layouts", str(layouts[0]), "--px-m", "0"]) == 2
-    assert "--px-m is metres of a pixel" in capsys.readouterr().err
+    assert "--px-m must be metres per pixel" in capsys.readouterr().err
     assert cli.run(["compare", "layouts", str(layouts[0]), "--truth", str(layouts[0])]) == 3
     assert "holds 2 scenes; one is true" in capsys.readouterr().err
 
@@ -108,4 +108,4 @@ def test_a_layout_is_described(built, tmp_path, capsys):
     assert json.loads(target.read_text())["boundary"]["wall_height"] == 2.6
     assert cli.run(["compare", "describe", str(built), "--for", "layoutvml"]) == 2
     assert cli.run([*words, "--agent", "gemini"]) == 2
-    assert "photos tell no sizes" in capsys.readouterr().err
+    assert "photos have no sizes" in capsys.readouterr().err

@@ -1,6 +1,5 @@
-"""``w2m compare describe``: a room in the words that text-to-layout methods start from."""
+"""``w2m compare describe``: describe a room for text-to-layout methods."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,7 @@ EXAMPLES = """\
 w2m compare describe OUT                                        from what a run found
 w2m compare describe MY_SCAN --from-truth                       from a scan's truth
 w2m compare describe MY_SCAN --agent gemini --keep ASKED        a model writes, from photos
-w2m compare describe OUT --for layoutvlm --out room.json        as LayoutVLM reads it
+w2m compare describe OUT --for layoutvlm -o room.json           in the format of LayoutVLM
 """
 
 Scene = Annotated[
@@ -22,22 +21,25 @@ Scene = Annotated[
         show_default=False,
     ),
 ]
-For = Annotated[
-    str, typer.Option("--for", help="text, layoutgpt, idesign or layoutvlm: the form to write.")
-]
+For = Annotated[str, typer.Option("--for", help="The form: text, layoutgpt, idesign or layoutvlm.")]
 FromTruth = Annotated[
     bool, typer.Option("--from-truth", help="Describe the truth of a scan of w2m rooms scan.")
 ]
 AgentName = Annotated[
     str,
-    typer.Option("--agent", help="Let a model write it from the photos of a capture: a name as "
-                 "in w2m vln run, or the address of a server."),
+    typer.Option("--agent", help="Let a model describe the photos of a capture: a name as in "
+                 "w2m vln run, or the address of a server."),
 ]  # fmt: skip
 Out = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE", help="Write it here.", show_default="print")
+    Path | None,
+    typer.Option(
+        "--out", "-o", metavar="FILE", help="Write to this file.", show_default="the screen"
+    ),
 ]
-Keep = Annotated[Path, typer.Option("--keep", metavar="DIR", help="Where replies are kept.")]
-Photos = Annotated[int, typer.Option("--photos", help="How many photos are shown.", min=1, max=32)]
+Keep = Annotated[Path, typer.Option("--keep", metavar="DIR", help="The folder for the replies.")]
+Photos = Annotated[
+    int, typer.Option("--photos", help="How many photos the model sees.", min=1, max=32)
+]
 
 
 @option.with_model_options()
@@ -54,48 +56,28 @@ def run(
 ) -> None:
     """Describe a room in words, by rule from its boxes or by a model from its photos.
 
-    The words go to LayoutGPT, I-Design or LayoutVLM; their layouts come back to w2m compare
+    The description goes to LayoutGPT, I-Design or LayoutVLM; w2m compare layouts scores their
     layouts.
 
     Raises:
-        InputError: the scene cannot be read. ServerError, BudgetError: the model cannot be asked.
+        InputError: the scene cannot be read. ServerError, BudgetError: the model does not reply.
     """
-    from world2minecraft.core.errors import UnknownNameError, UsageError
+    from world2minecraft.api.comparison import describe_room
     from world2minecraft.core.files import write_text
-    from world2minecraft.paper.layouts.importers import read_layouts_of
-    from world2minecraft.paper.layouts.reference_scene import true_scene
-    from world2minecraft.paper.layouts.room_description import (
-        METHODS,
-        describe_scene,
-        for_method,
-        layoutgpt_px_m,
+
+    told = describe_room(
+        scene,
+        method=method,
+        from_truth=from_truth,
+        agent=agent,
+        photos=photos,
+        replies=keep,
+        model=model_options.value(),
     )
-
-    if method not in METHODS:
-        raise UnknownNameError("form", method, METHODS)
-    if agent and method != "text":
-        raise UsageError("photos tell no sizes: --agent goes with --for text")
-    more = ""
-    if agent:
-        chat = model_options.open(agent, keep)
-        text = describe_photos(scene, photos, chat)
-        told = text
-    else:
-        known = true_scene(scene) if from_truth else read_layouts_of(scene)[0]
-        told = for_method(method, known, describe_scene(known))
-        if method == "layoutgpt":
-            more = f" --px-m {layoutgpt_px_m(known):.6f}"
-        text = told if isinstance(told, str) else json.dumps(told, indent=1) + "\n"
     if out is None:
-        print(text, end="")
+        print(told.text, end="")
         return
-    write_text(out, text)
-    print(f"words  {out}\nnext: give it to the method, then")
+    write_text(out, told.text)
+    more = "" if told.px_m is None else f" --px-m {told.px_m:.6f}"
+    print(f"text   {out}\nnext: give it to the method, then")
     print(f"  w2m compare layouts ITS_LAYOUT {scene}{more}")
-
-
-def describe_photos(capture: Path, count: int, chat: object) -> str:
-    """Return what a model says of photos spread over a capture."""
-    from world2minecraft.paper.layouts.room_description import capture_photos, describe_photos
-
-    return describe_photos(chat, capture_photos(capture, count))  # type: ignore[arg-type]

@@ -1,18 +1,22 @@
 """``w2m compare layouts``: what lies outside, collides or is missing, method by method."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from world2minecraft.cli.compare import options as option
+from world2minecraft.cli.json_output import JsonOutput
+
+if TYPE_CHECKING:
+    from world2minecraft.api.comparison import LayoutScores
 
 EXAMPLES = """\
 w2m compare layouts gpt4.bedroom.k-similar.k_8.px_regular.json      what LayoutGPT publishes
 w2m compare layouts scene_graph.json                                I-Design
 w2m compare layouts RESULT/layout.json --task room.json --assets ASSETS    LayoutVLM
 w2m compare layouts OUT --truth MY_SCAN                             a reconstruction of ours
-w2m compare layouts gpt.json scene_graph.json OUT --truth MY_SCAN --json compared.json
+w2m compare layouts gpt.json scene_graph.json OUT --truth MY_SCAN --json
 """
 
 Paths = Annotated[
@@ -26,14 +30,11 @@ Truth = Annotated[
     Path | None,
     typer.Option(
         "--truth", metavar="SCENE", help="The true scene, for semantic integrity: a scan of "
-        "w2m rooms scan, or a mended run. Of a scan, runs are held to its rooms, too.",
+        "w2m rooms scan, or a repaired run. Runs are also held to the rooms of a scan.",
     ),
 ]  # fmt: skip
-Scenes = Annotated[bool, typer.Option("--scenes", help="A row a scene, not a method.")]
-Json = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write every figure here, too.")
-]
-Markdown = Annotated[bool, typer.Option("--markdown", help="As Markdown tables.")]
+Scenes = Annotated[bool, typer.Option("--scenes", help="Print a row for each scene.")]
+Markdown = Annotated[bool, typer.Option("--markdown", help="Print Markdown tables.")]
 
 
 def run(
@@ -44,53 +45,68 @@ def run(
     px_m: option.PxM = option.DEFAULT_PX_M,
     task: option.Task = None,
     assets: option.Assets = None,
-    json_path: Json = None,
+    json_path: JsonOutput = None,
     markdown: Markdown = False,
 ) -> None:
-    """Score layouts of rooms, whoever made them, by one rule.
+    """Score layouts of rooms, of any method, by one rule.
 
-    Boxes are looked at before they become blocks. What counts as outside and as a collision stands
-    in docs/layout-baselines.md; the rules of others stand in a second table.
+    Boxes are scored before they become blocks. docs/layout-baselines.md defines what counts as
+    out of bounds and as a collision; a second table has the rules of other methods.
 
     Raises:
         InputError: a layout cannot be read. UsageError: an option is wrong.
     """
+    from world2minecraft.api.comparison import score_layouts
     from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.json_output import print_json, prints_json
     from world2minecraft.core.files import write_json
-    from world2minecraft.navigation.running.result_tables import format_markdown, format_text
-    from world2minecraft.paper.layouts import score_scene, summary_of
-    from world2minecraft.paper.layouts.importers import How, read_layouts_of
-    from world2minecraft.paper.layouts.reference_scene import is_truth, true_scene
-    from world2minecraft.paper.layouts.score_table import (
-        NOTES,
-        by_method,
-        layout_table,
-        other_table,
-    )
 
-    option.check_px(px_m)
-    known = score_scene(true_scene(truth)) if truth is not None else None
-    how = How(px_m, task, assets, truth if truth is not None and is_truth(truth) else None)
-    found = [one for path in paths for one in read_layouts_of(path, how, layout_format)]
-    scored = []
+    _check_target(json_path)
     with show_progress() as progress:
-        for done, scene in enumerate(found):
-            progress("layouts", done, len(found), scene.name)
-            scored.append((scene.name if scenes else scene.method, score_scene(scene)))
-        progress("layouts", len(found), len(found))
-    told = {name: summary_of(some, [known] * len(some) if known else ())
-            for name, some in by_method(scored).items()}  # fmt: skip
-    write = format_markdown if markdown else format_text
-    print(write(layout_table(told)), write(other_table(told)), "\n".join(NOTES), sep="\n\n")
-    option.print_skipped(found)
+        found = score_layouts(
+            paths,
+            truth=truth,
+            by_scene=scenes,
+            format=layout_format,
+            px_m=px_m,
+            task=task,
+            assets=assets,
+            progress=progress,
+        )
+    if prints_json(json_path):
+        print_json(found.scores)
+        return
+    _print_tables(found, markdown)
     if json_path is not None:
-        write_json(json_path, told)
+        write_json(json_path, found.scores)
         print(f"figures  {json_path}")
-    runs = [scene for scene in found if scene.collided is not None]
-    if how.truth is None and runs:
-        print("note: a run was held to the rooms that it found itself; --truth SCAN holds it to "
-              "the true ones")  # fmt: skip
-    step = f"w2m compare judge {paths[0]} --agent gemini --out JUDGED   to have it graded"
-    if len(runs) < len(found):
-        step = f"w2m compare build {paths[0]} --out BUILT   to see them as blocks"
+    _print_next(found, paths[0])
+
+
+def _check_target(json_path: Path | None) -> None:
+    """Refuse to overwrite a layout that was named right after ``--json``."""
+    from world2minecraft.api.comparison import is_layout
+    from world2minecraft.core.errors import UsageError
+
+    if json_path is not None and json_path.is_file() and is_layout(json_path):
+        raise UsageError(f"--json would overwrite the layout {json_path}; put --json last")
+
+
+def _print_tables(found: "LayoutScores", markdown: bool) -> None:
+    from world2minecraft.api.agents import table_text
+
+    tables = [table_text(one, markdown=markdown) for one in found.tables()]
+    print(*tables, "\n".join(found.notes()), sep="\n\n")
+    option.print_skipped(found.skipped)
+
+
+def _print_next(found: "LayoutScores", first: Path) -> None:
+    if found.runs and not found.uses_true_rooms:
+        print(
+            "note: runs were held to the rooms that they found; --truth SCAN holds them to the "
+            "true ones"
+        )
+    step = f"w2m compare judge {first} --agent gemini --out JUDGED   to have it graded"
+    if found.runs < found.scenes:
+        step = f"w2m compare build {first} --out BUILT   to see them as blocks"
     print(f"\nnext: {step}")

@@ -1,53 +1,53 @@
-"""What the verbs that read layouts share."""
+"""The options that the verbs which read layouts share."""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from world2minecraft.paper.layouts import ComparedScene
+from world2minecraft.cli.panels import MORE
 
-DEFAULT_PX_M = 3.5 / 256  # As paper.layouts.importers has it, which a help page need not import.
+DEFAULT_PX_M = 3.5 / 256  # paper.layouts.importers.PX_M, which a help page need not import.
 MAX_LISTED = 5
 
 Format = Annotated[
     str,
     typer.Option(
-        "--format", help="layoutgpt, idesign, layoutvlm, stored or run.", show_default="found out"
+        "--format",
+        help="layoutgpt, idesign, layoutvlm, stored or run.",
+        show_default="detected",
     ),
 ]
 PxM = Annotated[
     float,
     typer.Option(
-        "--px-m", metavar="METRES", help="Of a pixel, for layouts in pixels.",
-        show_default="3.5/256",
+        "--px-m", metavar="METRES", help="The side of a pixel, for layouts in pixels.",
+        show_default="3.5/256", rich_help_panel=MORE,
     ),
 ]  # fmt: skip
 Task = Annotated[
     Path | None,
     typer.Option(
-        "--task", metavar="FILE", help="LayoutVLM's scene file, where it is not beside the layout."
+        "--task",
+        metavar="FILE",
+        help="LayoutVLM's scene file, where it is not beside the layout.",
+        rich_help_panel=MORE,
     ),
 ]
 Assets = Annotated[
     Path | None,
-    typer.Option("--assets", metavar="DIR", help="LayoutVLM's folder of assets, for sizes."),
+    typer.Option(
+        "--assets",
+        metavar="DIR",
+        help="LayoutVLM's folder of assets, for sizes.",
+        rich_help_panel=MORE,
+    ),
 ]
 
 
-def check_px(px_m: float) -> None:
-    """Raise UsageError where a pixel is no length."""
-    from world2minecraft.core.errors import UsageError
-
-    if not 0 < px_m < 1:
-        raise UsageError(f"--px-m is metres of a pixel, above 0 and under 1, not {px_m:g}")
-
-
-def print_skipped(scenes: "Sequence[ComparedScene]") -> None:
+def print_skipped(lines: Sequence[str]) -> None:
     """Print which objects were left out, and why."""
-    lines = [f"{scene.name}: {line}" for scene in scenes for line in scene.skipped]
     for line in lines[:MAX_LISTED]:
         print(f"note: left out: {line}")
     if len(lines) > MAX_LISTED:

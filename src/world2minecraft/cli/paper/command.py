@@ -1,9 +1,12 @@
 """``w2m paper``: the paper's tables, each with what we measured beside it."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.api.paper import FilledTable
 
 EXAMPLES = """\
 w2m paper                                  which tables there are, and how much of each is filled
@@ -23,15 +26,17 @@ mine.yaml:
 
 Which = Annotated[
     str | None,
-    typer.Argument(metavar="[N|NAME|all]", help="A table; without one they are listed."),
+    typer.Argument(metavar="[N|NAME|all]", help="A table; without it, all are listed."),
 ]
 ResultsFile = Annotated[
     Path | None,
-    typer.Option("--results", metavar="FILE", help="Results of your own, YAML or JSON."),
+    typer.Option(
+        "--results", metavar="FILE", help="Your own results, YAML or JSON, in place of ours."
+    ),
 ]
-Markdown = Annotated[bool, typer.Option("--markdown", help="As Markdown.")]
-Latex = Annotated[bool, typer.Option("--latex", help="As LaTeX, for booktabs.")]
-Json = Annotated[bool, typer.Option("--json", help="As JSON, every key and source named.")]
+Markdown = Annotated[bool, typer.Option("--markdown", help="Print Markdown.")]
+Latex = Annotated[bool, typer.Option("--latex", help="Print LaTeX, for booktabs.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, with the keys and sources.")]
 
 
 def run(
@@ -43,46 +48,38 @@ def run(
 ) -> None:
     """Print tables of the paper: as printed, with our figures and what they were measured on.
 
-    A cell of ours that needs what we lack says so and names the command that fills it. Where the
-    paper contradicts itself a note says it.
+    A cell of ours that needs what we lack says so and names the command that fills it. A note
+    marks where the paper contradicts itself.
 
     Raises:
-        UsageError: there is no such table, or two forms are asked for.
+        UsageError: there is no such table, or two forms are requested.
         InputError: the results cannot be read.
     """
     import json
 
+    from world2minecraft.api.paper import paper_tables
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.paper import fill_table, read_results, read_table, table_names
-    from world2minecraft.paper.table_writer import as_latex, as_markdown, as_text, as_values
 
     if markdown + latex + json_out > 1:
         raise UsageError("choose one of --markdown, --latex and --json")
-    own = read_results(results) if results is not None else None
+    tables = paper_tables(which or "all", results=results)
     if which is None and not (markdown or latex or json_out):
-        _list()
+        _list(tables)
         return
-    names = table_names() if which in (None, "all") else [which]
-    tables = [fill_table(read_table(name), own) for name in names]
     if json_out:
-        told = [as_values(*one) for one in tables]
-        print(json.dumps(told if len(told) > 1 else told[0], indent=2, ensure_ascii=False))
+        values = [one.to_dict() for one in tables]
+        print(json.dumps(values if len(values) > 1 else values[0], indent=2, ensure_ascii=False))
         return
-    write = as_latex if latex else as_markdown if markdown else as_text
-    print("\n\n".join(write(*one) for one in tables))
+    texts = [one.latex() if latex else one.markdown() if markdown else str(one) for one in tables]
+    print("\n\n".join(texts))
     if results is None and not (latex or markdown):
         print(f"\nnext: w2m paper {which} --results mine.yaml   your own results in place of ours")
 
 
-def _list() -> None:
-    """Print a line a table: its number, name, title, and how much of it is filled."""
-    from world2minecraft.paper import fill_table, read_table, table_names
-    from world2minecraft.paper.table_writer import lacking
-
-    for name in table_names():
-        table, ours = fill_table(read_table(name))
-        cells = sum(len(one.cells) for one in ours.values())
-        lacks = lacking(table, ours)
-        state = f"{cells:>3} cells of ours" + (f", {lacks} need what we lack" if lacks else "")
-        print(f"{table.number:>2}  {name:<16}{table.title:<46}{state}")
+def _list(tables: "list[FilledTable]") -> None:
+    """Print a line for each table: its number, name, title, and how much of it is filled."""
+    for one in tables:
+        table, lacks = one.table, one.lacking
+        state = f"{one.cells:>3} cells of ours" + (f", {lacks} need what we lack" if lacks else "")
+        print(f"{table.number:>2}  {table.name:<16}{table.title:<46}{state}")
     print("\nnext: w2m paper layouts   one table, with what is measured and how")

@@ -1,4 +1,4 @@
-"""``w2m paper figure``: the paper's figure of a reconstruction, from a run of one's own."""
+"""``w2m paper figure``: draw the paper's figure of a reconstruction of your own."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,21 +7,19 @@ import typer
 
 EXAMPLES = """\
 w2m demo && w2m paper figure OUT                       the demo's room
-w2m paper figure OUT --capture MY_SCAN --out room.png
+w2m paper figure OUT --capture MY_SCAN -o room.png
 w2m paper figure OUT --capture MY_SCAN --walk RUN      with the strip of a w2m vln run below
 """
 
 Run = Annotated[Path, typer.Argument(metavar="OUT", help="A finished reconstruction.")]
 Capture = Annotated[
     Path | None,
-    typer.Option(
-        "--capture", metavar="SCAN", help="What it was made of.", show_default="OUT/capture"
-    ),
+    typer.Option("--capture", metavar="SCAN", help="Its capture.", show_default="OUT/capture"),
 ]
 Walk = Annotated[
     Path | None, typer.Option("--walk", metavar="RUN", help="A walk, for the strip below.")
 ]
-Out = Annotated[Path, typer.Option("--out", metavar="FILE", help="The PNG to write.")]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="Write this PNG file.")]
 
 
 def run(
@@ -36,12 +34,9 @@ def run(
         CaptureError: the capture has no posed photo that the run used.
         InputError: a file is missing or damaged.
     """
-    from world2minecraft.core.files import write_bytes
-    from world2minecraft.evaluation.report.comparison_pictures import as_png
-    from world2minecraft.paper.figure import reconstruction_figure
+    from world2minecraft.api.paper import paper_figure
 
-    figure = reconstruction_figure(folder, capture or folder / "capture", walk)
-    write_bytes(out, as_png(figure))
-    print(f"figure  {out}, {figure.shape[1]}x{figure.shape[0]}")
+    figure = paper_figure(folder, capture=capture, walk=walk, out=out)
+    print(f"figure  {out}, {figure.width}x{figure.height}")
     if walk is None:
         print(f'next: w2m vln run {folder} "Go to the table" --out RUN, then --walk RUN')

@@ -1,19 +1,21 @@
 """``w2m vln evaluate``: a model answers the items of a set, by task and composition."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from world2minecraft.cli import model_options as option
+from world2minecraft.cli.panels import MORE
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.types import Item
+    from world2minecraft.api.agents import AgentAnswers
 
 EXAMPLES = """\
 w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
 w2m vln evaluate SET --agent gemini --max-usd 5 --jobs 4
 w2m vln evaluate SET --agent majority                    a baseline: no network needed
+w2m vln evaluate SET --agent majority --json             the accuracies as JSON
 w2m vln evaluate SET --agent http://localhost:8000/v1 --training rft --style think
 w2m vln evaluate SET --agent openai:gpt-4o --split val_unseen --task next_action --count 100
 """
@@ -28,7 +30,8 @@ AgentName = Annotated[
     ),
 ]  # fmt: skip
 Out = Annotated[
-    Path | None, typer.Option("--out", help="Where the run is kept.", show_default="vln_AGENT")
+    Path | None,
+    typer.Option("--out", "-o", help="Write the run to this folder.", show_default="vln_AGENT"),
 ]
 Split = Annotated[
     str, typer.Option("--split", help="train, val_seen, val_unseen, test (both val) or all.")
@@ -36,21 +39,25 @@ Split = Annotated[
 TaskName = Annotated[str, typer.Option("--task", help="next_view, next_action or both.")]
 Composition = Annotated[str, typer.Option("--composition", help="base, extend or combined.")]
 Count = Annotated[
-    int | None, typer.Option("--count", help="Ask so many items, drawn by --seed.", min=1)
+    int | None,
+    typer.Option(
+        "--count", help="Ask this many items, drawn by --seed.", min=1, show_default="all"
+    ),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Of the items that are drawn.")]
+Seed = Annotated[int, typer.Option("--seed", help="The seed of the draw.", rich_help_panel=MORE)]
 Style = Annotated[
     str,
     typer.Option(
-        "--style", help="letter: as models trained on the exports answer; think: as those "
-        "trained by reward; json: held to a schema.",
+        "--style", help="The form of replies: letter, for models trained on the exports; think, "
+        "for those trained by reward; json, held to a schema.",
     ),
 ]  # fmt: skip
 Training = Annotated[
     str,
     typer.Option("--training", help="How the model was trained, for tables: none, sft, rft."),
 ]
-Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1)]
+Jobs = Annotated[int, typer.Option("--jobs", help="Simultaneous questions.", min=1)]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
 
 @option.with_model_options()
@@ -66,87 +73,59 @@ def run(
     style: Style = "letter",
     training: Training = "none",
     jobs: Jobs = 1,
+    json_out: Json = False,
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
     *,
     model_options: option.ModelOptions,
 ) -> None:
-    """Ask a model the items of a set, and tell its accuracy with intervals.
+    """Ask a model the items of a set, and report its accuracy with intervals.
 
-    Items are asked by the very words that trainers get. A reply that holds no letter is asked
-    again twice and then counts as wrong; each reply is kept in OUT/answers.jsonl. The same command
-    goes on where it was stopped.
+    Items are asked in the words that trainers get. A reply without a letter is requested twice
+    more and then counts as wrong; OUT/answers.jsonl has every reply. The same command continues
+    where it was interrupted.
 
     Raises:
         UsageError, InputError: a name, an option or the set is wrong.
-        ServerError, BudgetError: the model cannot be asked.
+        ServerError, BudgetError: the model does not reply.
     """
-    from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.external_models.chat_transport import is_endpoint
-    from world2minecraft.navigation.agents.question_answering import VlmAnswerer
-    from world2minecraft.navigation.records import read_items
-    from world2minecraft.navigation.running.item_evaluation import TRAININGS, select_items
-
-    if training not in TRAININGS:
-        raise UnknownNameError("training", training, TRAININGS)
-    target = out or option.default_run_folder(agent)
-    every = read_items(folder)
-    items = select_items(
-        every, split=split, task=task, composition=composition, count=count, seed=seed
-    )
-    place = folder if folder.is_dir() else folder.parent
-    chat = None
-    if is_endpoint(agent):
-        chat = model_options.open(agent, target)
-        answerer: Any = VlmAnswerer(chat, place, style, max_px=max_pixels)
-    else:
-        answerer, items = _baseline(agent, every, items, place)
-        training = "baseline"
-    facts = {"agent": answerer.name, "training": training, "style": style, "split": split}
-    _evaluate(target, items, answerer, jobs, facts)
-    _print_summary(target, items, chat)
-
-
-def _evaluate(
-    target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
-) -> None:
+    from world2minecraft.api import evaluate_agent
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.navigation.running.item_evaluation import evaluate, write_result
+    from world2minecraft.cli.json_output import print_json
 
     with show_progress() as progress:
-        found = evaluate(items, answerer, jobs=jobs, progress=progress)
-    write_result(target, found, facts)
+        answers = evaluate_agent(
+            folder,
+            agent,
+            out=out,
+            split=split,
+            task=task,
+            composition=composition,
+            count=count,
+            seed=seed,
+            style=style,
+            training=training,
+            jobs=jobs,
+            max_pixels=max_pixels,
+            model=model_options.value(),
+            progress=progress,
+        )
+    if json_out:
+        print_json({**answers.result, "folder": str(answers.folder), "cost": answers.cost or None})
+    else:
+        _print_summary(answers)
 
 
-def _baseline(
-    name: str, every: "list[Item]", items: "list[Item]", place: Path
-) -> "tuple[Any, list[Item]]":
-    """Return a baseline and the items that it knows the task of."""
-    from world2minecraft.core.errors import UnknownNameError, UsageError
-    from world2minecraft.external_models.chat_transport import ENDPOINTS
-    from world2minecraft.navigation.agents.question_answering import LetterAnswerer
-    from world2minecraft.navigation.data.blind_baselines import BASELINES, baseline_letters
+def _print_summary(answers: "AgentAnswers") -> None:
+    from world2minecraft.api.agents import compare_runs, table_text
 
-    if name not in BASELINES:
-        raise UnknownNameError("agent", name, [*BASELINES, *ENDPOINTS])
-    letters = baseline_letters(name, every, items, place)
-    known = [item for item in items if item.item_id in letters]
-    if not known:
-        raise UsageError(f"the baseline {name} knows nothing of this task; give --task both")
-    return LetterAnswerer(name, letters), known
-
-
-def _print_summary(target: Path, items: "list[Item]", chat: Any) -> None:
-    from world2minecraft.navigation.running.result_tables import (
-        answers_table,
-        format_text,
-        read_result,
-    )
-
+    folder = answers.folder
     print()
-    print(format_text(answers_table([read_result(target)])))
-    print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter,")
+    print(table_text(compare_runs([folder]).answers))
+    print(
+        "percent correct, with the interval (Wilson, 95 %); 3! are three replies without a letter,"
+    )
     print("3 failed three items that the server did not answer; both count as wrong")
-    if chat is not None:
-        print(f"asked: {option.cost_line(chat)}")
-    print(f"\n  read   {target / 'answers.jsonl'}: each of {len(items):,} replies")
-    print(f"  next   w2m vln table {target} OTHER_RUN")
+    if answers.cost:
+        print(f"asked: {option.cost_line(answers.cost)}")
+    print(f"\n  read   {folder / 'answers.jsonl'}: each of {answers.count:,} replies")
+    print(f"  next   w2m vln table {folder} OTHER_RUN")

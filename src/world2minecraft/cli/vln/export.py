@@ -1,4 +1,4 @@
-"""``w2m vln export``: a set of navigation data as trainers and simulators read it."""
+"""``w2m vln export``: write a navigation set for trainers and simulators."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -6,81 +6,110 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.exporters import ExportResult
+    from world2minecraft.api.navigation import ExportResult
 
 EXAMPLES = """\
-w2m vln export SET --to llamafactory --out SFT         rows, dataset_info.json and the SFT recipe
-w2m vln export SET --to easyr1 --out GRPO              parquet, mc.jinja, reward.py and the recipe
-w2m vln export SET --to trl --out TRL                  rows and two plain scripts
-w2m vln export SET --to vlnce --out data/datasets/mc   episodes for VLN-CE
-w2m vln export SET --to r2r --out R2R                  paths as R2R writes them
-w2m vln export SET --to llamafactory --task next_view --composition base --out NV
+w2m vln export SET --to llamafactory -o SFT            rows, dataset_info.json and the SFT recipe
+w2m vln export SET --to easyr1 -o GRPO                 parquet, mc.jinja, reward.py and the recipe
+w2m vln export SET --to trl -o TRL                     rows and two plain scripts
+w2m vln export SET --to vlnce -o data/datasets/mc      episodes for VLN-CE
+w2m vln export SET --to r2r -o R2R                     paths in the format of R2R
+w2m vln export SET --to llamafactory --task next_view --composition base -o NV
 """
 
 
+Source = Annotated[Path, typer.Argument(help="A set of w2m vln build.")]
+To = Annotated[str, typer.Option("--to", help="llamafactory, easyr1, trl, vlnce or r2r.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Write to this folder.")]
+TaskName = Annotated[
+    str | None,
+    typer.Option("--task", help="next_view or next_action alone.", show_default="both"),
+]
+Composition = Annotated[
+    str | None,
+    typer.Option("--composition", help="base, extend or combined alone.", show_default="all three"),
+]
+Model = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        help="The model to tune: a name on the hub, or a path.",
+        show_default="Qwen/Qwen2.5-VL-3B-Instruct",
+    ),
+]
+MaxSamples = Annotated[
+    int | None,
+    typer.Option(
+        "--max-samples", min=0, help="Rows of one SFT run; 0 for all.", show_default="1000"
+    ),
+]
+Gpus = Annotated[
+    int | None,
+    typer.Option("--gpus", min=1, help="GPUs of the recipe.", show_default="1 for SFT, 8 for GRPO"),
+]
+MaxPixels = Annotated[
+    int | None,
+    typer.Option("--max-pixels", help="Trainers reduce larger pictures.", show_default="262144"),
+]
+Images = Annotated[
+    str | None,
+    typer.Option(
+        "--images", help="easyr1: paths, or embedded in the parquet file.", show_default="paths"
+    ),
+]
+Seed = Annotated[
+    int | None, typer.Option("--seed", help="The seed of the order of rows.", show_default="0")
+]
+
+
 def run(
-    source: Annotated[Path, typer.Argument(help="The folder of a set, of w2m vln build.")],
-    to: Annotated[str, typer.Option("--to", help="llamafactory, easyr1, trl, vlnce or r2r.")],
-    out: Annotated[Path, typer.Option("--out", help="The folder to write.")],
-    task: Annotated[
-        str | None, typer.Option("--task", help="next_view or next_action alone.")
-    ] = None,
-    composition: Annotated[
-        str | None, typer.Option("--composition", help="base, extend or combined alone.")
-    ] = None,
-    model: Annotated[
-        str | None, typer.Option("--model", help="What is tuned: a name on the hub, or a path.")
-    ] = None,
-    max_samples: Annotated[
-        int | None,
-        typer.Option(
-            "--max-samples", min=0, help="Rows of one SFT run; 1000 as the paper; 0: all."
-        ),
-    ] = None,
-    gpus: Annotated[
-        int | None, typer.Option("--gpus", min=1, help="Of the recipe: 1 for SFT, 8 for GRPO.")
-    ] = None,
-    max_pixels: Annotated[
-        int | None, typer.Option("--max-pixels", help="Trainers shrink what has more; 262144.")
-    ] = None,
-    images: Annotated[
-        str | None, typer.Option("--images", help="easyr1: paths, or embedded in the parquet.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="Of the order of rows; 0.")] = None,
+    source: Source,
+    to: To,
+    out: Out,
+    task: TaskName = None,
+    composition: Composition = None,
+    model: Model = None,
+    max_samples: MaxSamples = None,
+    gpus: Gpus = None,
+    max_pixels: MaxPixels = None,
+    images: Images = None,
+    seed: Seed = None,
 ) -> None:
-    """Write a set for LLaMA-Factory, EasyR1, TRL, VLN-CE, or as R2R's JSON.
+    """Write a set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as R2R's JSON.
 
     Each folder has the rows, the pictures, the paper's recipe and the command that runs it; the
-    steps that it will take are told here, before a GPU is rented. docs/vln-finetuning.md has more.
+    number of training steps is printed. docs/vln-finetuning.md has more.
     """
+    from world2minecraft.api import export_navigation_set
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.navigation.exporters import ExportOptions, export_set
 
-    choices = {
-        "tasks": None if task is None else (task,),
-        "compositions": None if composition is None else (composition,),
-        "model": model,
-        "max_samples": max_samples,
-        "gpus": gpus,
-        "max_pixels": max_pixels,
-        "image_style": images,
-        "seed": seed,
-    }
-    rule = ExportOptions(**{name: value for name, value in choices.items() if value is not None})
     with show_progress() as progress:
-        handoff = export_set(source, to, out, rule, progress=progress)
-    _print_summary(handoff)
+        result = export_navigation_set(
+            source,
+            out,
+            to,
+            task=task,
+            composition=composition,
+            model=model,
+            max_samples=max_samples,
+            gpus=gpus,
+            max_pixels=max_pixels,
+            images=images,
+            seed=seed,
+            progress=progress,
+        )
+    _print_summary(result)
 
 
-def _print_summary(handoff: "ExportResult") -> None:
-    for one in handoff.written:
+def _print_summary(result: "ExportResult") -> None:
+    for one in result.written:
         steps = f", {one.steps:,} steps" if one.steps else ""
         tokens = f", at most {one.tokens:,} tokens a row" if one.tokens else ""
         print(f"{one.name}: {one.rows:,} rows{tokens}{steps}")
-    for note in handoff.notes:
+    for note in result.notes:
         print(f"note: {note}")
-    commands = [one.command for one in handoff.written if one.command]
+    commands = [one.command for one in result.written if one.command]
     if commands:
-        print(f"next: cd {handoff.out} && {commands[0]}")
+        print(f"next: cd {result.out} && {commands[0]}")
     else:
-        print(f"next: read {handoff.out / 'README.md'}")
+        print(f"next: read {result.out / 'README.md'}")

@@ -1,17 +1,22 @@
-"""A walk in the terminal, as it goes on: what the agent sees, thinks and does.
+"""A walk in the terminal, as it happens: what the agent sees, thinks and does.
 
-On a terminal the view is drawn in half blocks of colour; elsewhere there is a line a decision.
+On a terminal the view is drawn in half blocks of colour; elsewhere each decision has a line.
 """
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
-    from world2minecraft.navigation.agents.types import Decision, Observation
-    from world2minecraft.navigation.running.episode_runner import EpisodeWalk
-    from world2minecraft.navigation.types import Episode, Move, Stance
+    from world2minecraft.api.agents import (
+        Decision,
+        Episode,
+        EpisodeWalk,
+        Move,
+        Observation,
+        Stance,
+    )
 
 VIEW_COLUMNS, VIEW_ROWS = 64, 24
 MAX_ROWS = 8
@@ -19,32 +24,36 @@ UPPER = "\u2580"  # The upper half of a cell; its lower half is the background.
 
 
 class LineView:
-    """A line a decision; an observer."""
+    """A line for each decision; an observer."""
 
-    def __init__(self, stream: TextIO):
-        self._stream = stream
+    def __init__(self, stream: TextIO, on_begin: Callable[[], None] = lambda: None):
+        self._stream, self._before_first = stream, on_begin
 
     def on_begin(self, episode: "Episode", agent: str) -> None:
-        """Say what is to be done."""
+        """Print the instruction."""
+        self._before_first()
+        self._before_first = lambda: None
         self._say(f"{agent}: {episode.instruction.text}")
 
     def on_decision(
         self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
-        """Say what was decided."""
+        """Print the decision."""
+        from world2minecraft.api.agents import decision_text
+
         thought = f"   {decision.thought}" if decision.thought else ""
-        self._say(f"  {sight.step:>4}  {moves_text(decision, made)}{thought}")
+        self._say(f"  {sight.step:>4}  {decision_text(decision, made)}{thought}")
 
     def on_stance(
         self, stance: "Stance", step: int, decision: "Decision | None", move: "Move | None"
     ) -> None:
-        """Say nothing: decisions tell it."""
+        """Print nothing: each decision has its line."""
 
     def on_end(self, walk: "EpisodeWalk") -> None:
-        """Say how it went."""
-        from world2minecraft.navigation.running.film import end_text
+        """Print how the walk ended."""
+        from world2minecraft.api.agents import walk_end_text
 
-        self._say(f"  {end_text(walk)}")
+        self._say(f"  {walk_end_text(walk)}")
 
     def _say(self, text: str) -> None:
         print(plain_text(text), file=self._stream, flush=True)
@@ -53,14 +62,17 @@ class LineView:
 class ScreenView(LineView):
     """The view in half blocks, and the last decisions beside it; an observer."""
 
-    def __init__(self, display: Any):
-        self._display = display
+    def __init__(self, display: Any, on_begin: Callable[[], None] = lambda: None):
+        self._display, self._before_first = display, on_begin
         self._rows: list[tuple[str, str, str]] = []
         self._head, self._foot = "", ""
         self._view: Any = None
 
     def on_begin(self, episode: "Episode", agent: str) -> None:
-        """Begin with an empty table."""
+        """Begin with an empty table; the first walk starts the display."""
+        self._before_first()
+        self._before_first = lambda: None
+        self._display.start()
         self._head, self._foot, self._rows = f"{agent}: {episode.instruction.text}", "", []
         self._draw()
 
@@ -68,17 +80,19 @@ class ScreenView(LineView):
         self, sight: "Observation", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
     ) -> None:
         """Show the view and add a row."""
+        from world2minecraft.api.agents import decision_text
+
         if sight.colour.shape[0] > 1:
             self._view = half_blocks(sight.colour)
-        row = (str(sight.step), moves_text(decision, made), decision.thought)
+        row = (str(sight.step), decision_text(decision, made), decision.thought)
         self._rows = [*self._rows, row][-MAX_ROWS:]
         self._draw()
 
     def on_end(self, walk: "EpisodeWalk") -> None:
-        """Show how it went."""
-        from world2minecraft.navigation.running.film import end_text
+        """Show how the walk ended."""
+        from world2minecraft.api.agents import walk_end_text
 
-        self._foot = end_text(walk)
+        self._foot = walk_end_text(walk)
         self._draw()
 
     def _draw(self) -> None:
@@ -96,17 +110,27 @@ class ScreenView(LineView):
 
 
 @contextmanager
-def live_view(stream: TextIO | None = None) -> Iterator[LineView]:
-    """Give an observer that shows walks on stderr or ``stream`` while the block runs."""
+def live_view(
+    stream: TextIO | None = None, on_begin: Callable[[], None] = lambda: None
+) -> Iterator[LineView]:
+    """Give an observer that shows walks on stderr or ``stream`` while the block runs.
+
+    Args:
+        stream: where to show them.
+        on_begin: called before the first walk.
+    """
     target = sys.stderr if stream is None else stream
     if not target.isatty():
-        yield LineView(target)
+        yield LineView(target, on_begin)
         return
     from rich.console import Console
     from rich.live import Live
 
-    with Live(console=Console(file=target), auto_refresh=False) as display:
-        yield ScreenView(display)
+    display = Live(console=Console(file=target), auto_refresh=False)
+    try:
+        yield ScreenView(display, on_begin)
+    finally:
+        display.stop()
 
 
 def half_blocks(colour: Any) -> Any:
@@ -126,18 +150,8 @@ def half_blocks(colour: Any) -> Any:
     return text
 
 
-def moves_text(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
-    """Return what a decision did, in a few words."""
-    from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
-
-    if decision.outcome != "moves":
-        return f"{decision.outcome.upper()}: {decision.details.get('problem', '')}"
-    words = [MOVE_NAMES[move] + (" (blocked)" if collided else "") for move, collided in made]
-    return " ".join(words)
-
-
 def plain_text(text: str) -> str:
-    """Return a text in one line that no terminal takes for a command.
+    """Return a text in one line, without characters that a terminal executes.
 
     Example:
         >>> plain_text("go" + chr(27) + "[2J on")

@@ -9,39 +9,37 @@ EXAMPLES = """\
 w2m vln table RUN                         one run, beside Stop, Random and the oracle
 w2m vln table BARE SFT RFT                the paper's table: model by training
 w2m vln table BARE SFT --markdown         for a page
+w2m vln table BARE SFT --json             for a program
 """
 
 Runs = Annotated[
     list[Path], typer.Argument(metavar="RUN...", help="Folders of w2m vln run or evaluate.")
 ]
-Markdown = Annotated[bool, typer.Option("--markdown", help="As a Markdown table.")]
+Markdown = Annotated[bool, typer.Option("--markdown", help="Print Markdown tables.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
 
 
-def run(runs: Runs, markdown: Markdown = False) -> None:
+def run(runs: Runs, markdown: Markdown = False, json_out: Json = False) -> None:
     """Print the results of runs: walks, answers, and how answers differ pair by pair.
 
     Raises:
-        InputError: a run has no result.
+        InputError: a run has no result. UsageError: two forms are requested.
     """
-    from world2minecraft.navigation.running.result_tables import (
-        HEADS_NOTE,
-        answers_table,
-        format_markdown,
-        format_text,
-        paired_table,
-        read_result,
-        walks_table,
-    )
+    from world2minecraft.api.agents import compare_runs, table_text, walks_note
+    from world2minecraft.cli.json_output import print_json
+    from world2minecraft.core.errors import UsageError
 
-    write = format_markdown if markdown else format_text
-    results = [read_result(path) for path in runs]
-    walks = [one for one in results if one["kind"] == "walks"]
-    answers = [one for one in results if one["kind"] == "answers"]
-    if walks:
-        print(f"{write(walks_table(walks))}\n\n{HEADS_NOTE}")
-    if answers:
-        print("\n" * bool(walks) + write(answers_table(answers)))
-        print("\npercent right, with the interval (Wilson, 95 %)")
-    if len(answers) > 1:
+    if markdown and json_out:
+        raise UsageError("choose one of --markdown and --json")
+    tables = compare_runs(runs)
+    if json_out:
+        print_json(tables.to_dict())
+        return
+    if tables.walks:
+        print(f"{table_text(tables.walks, markdown=markdown)}\n\n{walks_note()}")
+    if tables.answers:
+        print("\n" * bool(tables.walks) + table_text(tables.answers, markdown=markdown))
+        print("\npercent correct, with the interval (Wilson, 95 %)")
+    if tables.paired:
         print("\nthe same items, answer by answer (McNemar's exact test)\n")
-        print(write(paired_table(answers)))
+        print(table_text(tables.paired, markdown=markdown))

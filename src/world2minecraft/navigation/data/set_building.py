@@ -231,8 +231,8 @@ def build_navigation_set(
     items = cut_to_paper_size(items, how.paper_split) if how.paper_size else items
     if not items:
         raise UsageError(
-            "no scene gave an item: they lack things to go to, or floor to walk on; name furnished "
-            "ones, or have some made: --rooms 3"
+            "no scene gave an item: they lack objects to go to, or floor to walk on; choose "
+            "furnished ones, or generate some with --rooms 3"
         )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
     return BuiltSet(items, works, find_leaks(items), [path for path in kinds if path not in wanted])

@@ -123,6 +123,14 @@ def score_json(walk: EpisodeWalk) -> dict[str, Any]:
     }
 
 
+def decision_text(decision: Decision, made: Sequence[tuple[Move, bool]]) -> str:
+    """Return what a decision did, in a few words."""
+    if decision.outcome != "moves":
+        return f"{decision.outcome.upper()}: {decision.details.get('problem', '')}"
+    words = [MOVE_NAMES[move] + (" (blocked)" if collided else "") for move, collided in made]
+    return " ".join(words)
+
+
 def read_trace(path: str | Path) -> list[dict[str, Any]]:
     """Return the lines of a trace: the episode, its decisions, the score.
 

@@ -1,0 +1,471 @@
+"""Agents that walk or answer: run them, evaluate them on a navigation set, compare the results."""
+
+import webbrowser
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.api.results import Run
+from world2minecraft.api.rooms import path_of
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.progress import Progress, no_progress
+from world2minecraft.external_models.chat_messages import MAX_PX
+from world2minecraft.external_models.model_options import ModelOptions
+
+if TYPE_CHECKING:
+    from world2minecraft.external_models.chat_client import ChatModel
+    from world2minecraft.navigation.agents.types import Agent, Decision, Observation  # noqa: F401
+    from world2minecraft.navigation.running.episode_runner import EpisodeWalk, Observer
+    from world2minecraft.navigation.running.item_evaluation import Answerer
+    from world2minecraft.navigation.types import Episode, Item, Move, Stance
+
+Table = list[list[str]]
+
+
+@dataclass(frozen=True, eq=False)
+class AgentRun:
+    """The walks of an agent, as they were written to a folder.
+
+    Attributes:
+        folder: holds ``result.json``, ``episodes.jsonl`` and the trace of each walk.
+        result: what ``result.json`` holds: the scores, and those of Stop, Random and the oracle.
+        episodes: what was walked.
+        model: the language model that was asked; empty where none was.
+        cost: its questions, tokens and dollars; empty where none was asked.
+    """
+
+    folder: Path
+    result: Mapping[str, Any]
+    episodes: Sequence["Episode"]
+    model: str = ""
+    cost: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def summary(self) -> Mapping[str, Any]:
+        """The mean scores: ``spl``, ``ne_m``, ``success_1m`` ...; docs/vln-scores.md."""
+        return self.result["summary"]
+
+    def walk_folder(self, number: int = 0) -> Path:
+        """Return the folder with the trace, and the film, of one walk."""
+        from world2minecraft.navigation.agent_runs import walk_folder
+
+        return walk_folder(self.folder, number, self.episodes)
+
+    def __repr__(self) -> str:
+        walks = len(self.episodes)
+        return f"AgentRun({str(self.folder)!r}, {self.result['agent']}, {walks} walks)"
+
+
+def run_agent(
+    scene: Run | str | Path,
+    instruction: str = "",
+    *,
+    agent: "str | Agent" = "oracle",
+    out: str | Path | None = None,
+    goal: str = "",
+    start: Sequence[float] | None = None,
+    moves: str = "vlnce",
+    max_steps: int = 120,
+    chunk: int = 4,
+    history: int = 3,
+    map_kind: str = "none",
+    count: int | None = None,
+    seed: int = 0,
+    video: bool = True,
+    server: str = "",
+    max_pixels: int = MAX_PX,
+    model: ModelOptions | None = None,
+    observers: "Sequence[Observer]" = (),
+    on_page: Callable[[str], object] = webbrowser.open,
+) -> AgentRun:
+    """Let an agent follow an instruction, and score it beside Stop, Random and the oracle.
+
+    The goal is the object that the instruction names last. A run that was interrupted continues
+    when it is called again: replies of a model are recorded and not requested twice.
+
+    Args:
+        scene: a run, a generated house, a world or a block file; or a navigation set or an
+            ``episodes.jsonl``, whose episodes are walked.
+        instruction: what to do, such as "Go to the piano"; empty for episodes.
+        agent: ``oracle``, ``shortest``, ``random``, ``forward``, ``stop``, ``human``; ``gemini``,
+            ``openai``, ``qwen`` or ``local``, each with ``:MODEL`` if wanted; the address of a
+            server, ``http://HOST/v1``; or an object with ``begin`` and ``decide``.
+        out: the folder to write; ``vln_AGENT`` by default.
+        goal: the name of the goal, where the instruction does not name it.
+        start: the feet in world blocks, (x, y, z) or (x, y, z, yaw in degrees).
+        moves: ``vlnce`` (0.25 m, 15 degrees), ``rxr`` (30 degrees) or ``block``.
+        max_steps: the most moves of a walk.
+        chunk: the most moves in one reply of a model, 1 to 4.
+        history: the earlier views that a model sees.
+        map_kind: ``none``, ``text`` (earlier positions in words) or ``plan`` (a floor plan).
+        count: walk only the first episodes of a set.
+        seed: of agents that draw.
+        video: write ``walk.mp4`` of each walk.
+        server: HOST or HOST:PORT of a game server where the scene stands; a player walks there.
+        max_pixels: the most pixels of a picture that a model sees; larger ones are reduced.
+        model: options of a language model.
+        observers: called as walks go on; see ``navigation.running.episode_runner.Observer``.
+        on_page: called with the address of the page where a human walks.
+
+    Raises:
+        UsageError: a name or an option is wrong. InputError: the scene or the goal is not found.
+        ServerError: a model does not reply. BudgetError: a cap is reached.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> walk = w2m.run_agent(run, "Go to the desk", out=tmp / "walk", video=False)
+        >>> walk.summary["spl"] > 0.9
+        True
+    """
+    from world2minecraft.navigation.agent_runs import RunRequest, check_out, run_walks
+    from world2minecraft.navigation.agents import make_agent
+    from world2minecraft.navigation.running.sentence_goals import GoalRequest
+
+    name = agent if isinstance(agent, str) else agent.name
+    place, folder = path_of(scene), Path(out) if out is not None else default_run_folder(name)
+    check_out(folder, place)
+    chats: list[ChatModel] = []
+
+    def chat() -> "ChatModel":
+        chats.append((model or ModelOptions()).open(name, folder))
+        return chats[0]
+
+    def facts() -> dict[str, Any]:
+        return {"model": chats[0].name, "cost": chats[0].ledger.to_json()} if chats else {}
+
+    how: dict[str, Any] = {"map_kind": map_kind, "max_px": max_pixels}
+    walker = (
+        make_agent(agent, chat, chunk=chunk, history=history, **how)
+        if isinstance(agent, str)
+        else agent
+    )
+    wish = GoalRequest(instruction, goal, _stance(start), moves, max_steps)
+    request = RunRequest(place, folder, wish, count, seed, video, server, observers)
+    episodes, result = run_walks(request, walker, on_page, facts)
+    return AgentRun(folder, result, episodes, **facts())
+
+
+@dataclass(frozen=True, eq=False)
+class AgentAnswers:
+    """The answers of a model to the items of a navigation set.
+
+    Attributes:
+        folder: holds ``answers.jsonl`` and ``result.json``.
+        result: what ``result.json`` holds; ``result["accuracy"]`` is by task and composition.
+        count: how many items were asked.
+        cost: questions, tokens and dollars of a language model; empty for a baseline.
+    """
+
+    folder: Path
+    result: Mapping[str, Any]
+    count: int
+    cost: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def accuracy(self) -> Mapping[str, Any]:
+        """Accuracy by task, then by composition: share, interval, hits, total, chance."""
+        return self.result["accuracy"]
+
+    def __repr__(self) -> str:
+        return f"AgentAnswers({str(self.folder)!r}, {self.result['agent']}, {self.count:,} items)"
+
+
+def evaluate_agent(
+    navigation_set: str | Path,
+    agent: "str | Answerer",
+    *,
+    out: str | Path | None = None,
+    split: str = "test",
+    task: str = "both",
+    composition: str = "combined",
+    count: int | None = None,
+    seed: int = 0,
+    style: str = "letter",
+    training: str = "none",
+    jobs: int = 1,
+    max_pixels: int = MAX_PX,
+    model: ModelOptions | None = None,
+    progress: Progress = no_progress,
+) -> AgentAnswers:
+    """Ask a model the items of a navigation set, and score its answers.
+
+    A reply without a letter is requested twice more and then counts as wrong. An evaluation that
+    was interrupted continues when it is called again.
+
+    Args:
+        navigation_set: the folder of a set, or its ``items.jsonl``.
+        agent: ``gemini``, ``openai``, ``qwen`` or ``local``, each with ``:MODEL`` if wanted; the
+            address of a server, ``http://HOST/v1``; a baseline: ``uniform``, ``majority``,
+            ``blind``, ``repeat``, ``nearest``, ``alike``, ``odd``, ``oracle``; or an object with
+            ``name`` and ``answer(item)``.
+        out: the folder to write; ``vln_AGENT`` by default.
+        split: ``train``, ``val_seen``, ``val_unseen``, ``test`` (both val) or ``all``.
+        task: ``next_view``, ``next_action`` or ``both``.
+        composition: ``base``, ``extend`` or ``combined``.
+        count: ask this many items, drawn by ``seed``.
+        seed: of the draw.
+        style: ``letter``, ``think`` or ``json``: the form of the replies.
+        training: how the model was trained, for tables: ``none``, ``sft`` or ``rft``.
+        jobs: simultaneous questions.
+        max_pixels: the most pixels of a picture that a model sees.
+        model: options of a language model.
+        progress: called after each answer.
+
+    Raises:
+        UsageError: a name or an option is wrong. InputError: the set cannot be read.
+        ServerError: the model does not reply. BudgetError: a cap is reached.
+
+    Example:
+        >>> import world2minecraft as w2m
+        >>> made = w2m.build_navigation_set([run], tmp / "set", trajectories=2, size=(64, 36))
+        >>> w2m.evaluate_agent(tmp / "set", "oracle", out=tmp / "answers", split="all")
+        AgentAnswers(..., oracle, ... items)
+    """
+    from world2minecraft.navigation.records import read_items
+    from world2minecraft.navigation.running.item_evaluation import (
+        TRAININGS,
+        evaluate,
+        select_items,
+        write_result,
+    )
+
+    if training not in TRAININGS:
+        raise UnknownNameError("training", training, TRAININGS)
+    place = Path(navigation_set)
+    every = read_items(place)
+    items = select_items(
+        every, split=split, task=task, composition=composition, count=count, seed=seed
+    )
+    name = agent if isinstance(agent, str) else agent.name
+    folder = Path(out) if out is not None else default_run_folder(name)
+    images = place if place.is_dir() else place.parent
+    chat: ChatModel | None = None
+    if not isinstance(agent, str):
+        answerer = agent
+    elif chat := _chat_of(agent, folder, model):
+        answerer = _vlm_answerer(chat, images, style, max_pixels)
+    else:
+        training = "baseline"
+        answerer, items = _baseline(agent, every, items, images)
+    found = evaluate(items, answerer, jobs=jobs, progress=progress)
+    write_result(
+        folder,
+        found,
+        {"agent": answerer.name, "training": training, "style": style, "split": split},
+    )
+    cost = {} if chat is None else chat.ledger.to_json()
+    return AgentAnswers(folder, read_run_result(folder), len(items), cost)
+
+
+@dataclass(frozen=True)
+class RunTables:
+    """Results of runs side by side, as tables of text; the first row holds the titles.
+
+    Attributes:
+        results: what each ``result.json`` holds.
+        walks: a row for each agent that walked; empty where none did.
+        answers: the paper's table: model by training, accuracy by task and composition.
+        paired: how answers differ pair by pair (McNemar's exact test); empty for fewer than two.
+    """
+
+    results: Sequence[Mapping[str, Any]]
+    walks: Table
+    answers: Table
+    paired: Table
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the results without those of single episodes and items, for JSON."""
+        single = ("episodes", "right")
+        results = [{k: v for k, v in one.items() if k not in single} for one in self.results]
+        heads = [head.replace(" ", "_") for head in self.paired[0]] if self.paired else []
+        pairs = [dict(zip(heads, row, strict=True)) for row in self.paired[1:]]
+        return {"results": results, "paired": pairs}
+
+
+def compare_runs(runs: Sequence[str | Path]) -> RunTables:
+    """Read the results of ``run_agent`` and ``evaluate_agent`` and put them into tables.
+
+    Args:
+        runs: the folders of the runs.
+
+    Raises:
+        InputError: a run has no result. DamagedFileError: its result cannot be read.
+
+    Example:
+        >>> from world2minecraft.api.agents import compare_runs, run_agent
+        >>> walk = run_agent(run, "Go to the desk", out=tmp / "walk", video=False)
+        >>> [row[0] for row in compare_runs([tmp / "walk"]).walks]
+        ['agent', 'oracle', 'stop', 'random']
+    """
+    from world2minecraft.navigation.running.result_tables import (
+        answers_table,
+        paired_table,
+        walks_table,
+    )
+
+    results = [read_run_result(path) for path in runs]
+    walks = [one for one in results if one["kind"] == "walks"]
+    answers = [one for one in results if one["kind"] == "answers"]
+    return RunTables(
+        results,
+        walks_table(walks) if walks else [],
+        answers_table(answers) if answers else [],
+        paired_table(answers) if len(answers) > 1 else [],
+    )
+
+
+def read_run_result(path: str | Path) -> dict[str, Any]:
+    """Return what the ``result.json`` of a run holds.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it cannot be read.
+    """
+    from world2minecraft.navigation.running.result_tables import read_result
+
+    return read_result(path)
+
+
+def table_text(table: Table, *, markdown: bool = False) -> str:
+    """Return a table as aligned text, or as Markdown.
+
+    Example:
+        >>> from world2minecraft.api.agents import table_text
+        >>> print(table_text([["agent", "SPL"], ["oracle", "1.00"]]))
+        agent    SPL
+        oracle  1.00
+    """
+    from world2minecraft.navigation.running.result_tables import format_markdown, format_text
+
+    return (format_markdown if markdown else format_text)(table)
+
+
+def walks_note() -> str:
+    """Return what the titles of the table of walks mean."""
+    from world2minecraft.navigation.running.result_tables import HEADS_NOTE
+
+    return HEADS_NOTE
+
+
+def decision_text(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
+    """Return what a decision of an agent did, in a few words."""
+    from world2minecraft.navigation.running.trace import decision_text as text
+
+    return text(decision, made)
+
+
+def walk_end_text(walk: "EpisodeWalk") -> str:
+    """Return how a walk ended, in a line."""
+    from world2minecraft.navigation.running.film import end_text
+
+    return end_text(walk)
+
+
+@dataclass(frozen=True)
+class ServerCheck:
+    """What a player on a game server saw.
+
+    Attributes:
+        version: that of the game.
+        name: that of the player.
+        position: where it stands, in blocks.
+        blocks: how many blocks are around it.
+        states: of how many states.
+    """
+
+    version: str
+    name: str
+    position: tuple[float, float, float]
+    blocks: int
+    states: int
+
+
+def check_server(address: str, *, name: str = "w2m_walker", version: str = "") -> ServerCheck:
+    """Join a game server, look around, and leave.
+
+    Args:
+        address: HOST or HOST:PORT of a server with ``online-mode=false``.
+        name: of the player.
+        version: of the game; the server reports it by default.
+
+    Raises:
+        UsageError: mineflayer is not installed, or the name is wrong.
+        ServerError: the server refuses the player.
+    """
+    from world2minecraft.navigation.server.player import join
+
+    with join(address, name=name, version=version) as body:
+        x, y, z = body.body.position
+        low = [int(value) - 8 for value in (x, y, z)]
+        volume = body.read([*low, *(value + 16 for value in low)])
+        blocks = int((volume.states > 0).sum())
+        return ServerCheck(body.version, body.name, (x, y, z), blocks, len(volume.palette) - 1)
+
+
+def mineflayer_folder(*, install: bool = False) -> Path:
+    """Return the folder of mineflayer, which plays on servers; fetch it first if wanted.
+
+    Args:
+        install: fetch it by npm, in the pinned versions; nothing of it is executed.
+
+    Raises:
+        UsageError: Node or npm is missing, or mineflayer is not installed. ServerError: npm failed.
+    """
+    from world2minecraft.navigation.server import mineflayer_install as installing
+
+    return installing.install() if install else installing.body_folder()
+
+
+def default_run_folder(agent: str) -> Path:
+    """Return the folder of a run of an agent, where none is given.
+
+    Example:
+        >>> from world2minecraft.api.agents import default_run_folder
+        >>> default_run_folder("openai:gpt-4.1").name
+        'vln_openai_gpt_4_1'
+    """
+    return Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+
+
+def _stance(start: Sequence[float] | None) -> "Stance | None":
+    from math import isfinite
+
+    from world2minecraft.navigation.types import Stance
+
+    if start is None:
+        return None
+    if len(start) not in (3, 4) or not all(isfinite(one) for one in start):
+        raise UsageError(
+            f"--start is X,Y,Z or X,Y,Z,YAW, not {','.join(f'{one:g}' for one in start)!r}"
+        )
+    return Stance(*start)
+
+
+def _chat_of(agent: str, folder: Path, model: ModelOptions | None) -> "ChatModel | None":
+    """Return the language model of an agent's name or address; None for other agents."""
+    from world2minecraft.external_models.chat_transport import is_endpoint
+
+    return (model or ModelOptions()).open(agent, folder) if is_endpoint(agent) else None
+
+
+def _vlm_answerer(chat: "ChatModel", images: Path, style: str, max_pixels: int) -> "Answerer":
+    from world2minecraft.navigation.agents.question_answering import VlmAnswerer
+
+    return VlmAnswerer(chat, images, style, max_px=max_pixels)
+
+
+def _baseline(
+    name: str, every: "list[Item]", items: "list[Item]", images: Path
+) -> "tuple[Answerer, list[Item]]":
+    """Return a baseline and the items that it can answer."""
+    from world2minecraft.external_models.chat_transport import ENDPOINTS
+    from world2minecraft.navigation.agents.question_answering import LetterAnswerer
+    from world2minecraft.navigation.data.blind_baselines import BASELINES, baseline_letters
+
+    if name not in BASELINES:
+        raise UnknownNameError("agent", name, [*BASELINES, *ENDPOINTS])
+    letters = baseline_letters(name, every, items, images)
+    known = [item for item in items if item.item_id in letters]
+    if not known:
+        raise UsageError(f"the baseline {name} cannot answer this task; add --task both")
+    return LetterAnswerer(name, letters), known
