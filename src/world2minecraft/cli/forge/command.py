@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from world2minecraft.cli.browser import open_link
+from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ Host = Annotated[
     typer.Option(
         "--host",
         help="Address to listen on; one that is not local lets other machines in.",
-        rich_help_panel="More options",
+        rich_help_panel=MORE,
     ),
 ]
 Port = Annotated[
@@ -40,7 +41,7 @@ AllowHost = Annotated[
     typer.Option(
         "--allow-host",
         help="A further name of this machine. Repeatable.",
-        rich_help_panel="More options",
+        rich_help_panel=MORE,
     ),
 ]
 Home = Annotated[
@@ -49,7 +50,7 @@ Home = Annotated[
         "--home",
         help="Folder for captures and rooms made in the editor.",
         show_default="SceneForge in your data folder",
-        rich_help_panel="More options",
+        rich_help_panel=MORE,
     ),
 ]
 PhotosOf = Annotated[
@@ -65,7 +66,7 @@ MaxUpload = Annotated[
         metavar="MB",
         min=1,
         help="Limit of one dropped capture.",
-        rich_help_panel="More options",
+        rich_help_panel=MORE,
     ),
 ]
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from world2minecraft.cli.panels import MORE
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ def _option(*names: str, text: str, metavar: str | None = None, default: str | b
 def _more(*names: str, text: str, metavar: str | None = None, default: str | bool = True) -> Any:
     """Return an option that is rarely used, listed under the others."""
     return typer.Option(
-        *names, help=text, metavar=metavar, show_default=default, rich_help_panel="More options"
+        *names, help=text, metavar=metavar, show_default=default, rich_help_panel=MORE
     )
 
 
