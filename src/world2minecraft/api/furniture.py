@@ -9,6 +9,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id, display_name
 from world2minecraft.core.errors import UsageError
+from world2minecraft.core.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from world2minecraft.furniture import Template
@@ -224,7 +225,12 @@ def _free_file(name: str, force: bool) -> Path:
 
 
 def draw_furniture(
-    out: str | Path, names: Sequence[str] = (), *, class_name: str = "", columns: int = 4
+    out: str | Path,
+    names: Sequence[str] = (),
+    *,
+    class_name: str = "",
+    columns: int = 4,
+    progress: Progress = no_progress,
 ) -> list["Template"]:
     """Draw furniture by class at 1, 2 and 4 blocks per metre; write the picture as a PNG.
 
@@ -233,6 +239,7 @@ def draw_furniture(
         names: the pieces to draw; all by default.
         class_name: draw this class only.
         columns: how many pieces to draw side by side.
+        progress: called before and after the drawing.
 
     Returns:
         The pieces that were drawn.
@@ -258,7 +265,9 @@ def draw_furniture(
     }
     if not any(groups.values()):
         raise UsageError("nothing to draw: no piece has blocks at 1, 2 or 4 blocks per metre")
+    progress("render", 0, 1)
     write_bytes(out, sheet_png(contact_sheet(groups, columns)))
+    progress("render", 1, 1)
     return chosen
 
 

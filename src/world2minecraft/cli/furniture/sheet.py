@@ -33,8 +33,10 @@ def run(
         UnknownNameError: there is no such piece or class. OutputError: it cannot be written.
     """
     from world2minecraft.api.furniture import draw_furniture
-    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.api.progress import show_progress
+    from world2minecraft.cli.outcome import with_compile_note
 
-    print_compile_note()
-    drawn = draw_furniture(out, names or (), class_name=kind)
+    with show_progress() as progress:
+        noted = with_compile_note(progress)
+        drawn = draw_furniture(out, names or (), class_name=kind, progress=noted)
     print(f"{out}: {len(drawn)} designs")

@@ -68,12 +68,10 @@ def run(
     """
     from world2minecraft.api import render_files
     from world2minecraft.api.progress import show_progress
-    from world2minecraft.cli.outcome import print_compile_note
+    from world2minecraft.cli.outcome import with_compile_note
 
     flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
     view = option.view_of(flags, pose, poses)
-    if not as_json:
-        print_compile_note()
     with show_progress() as progress:
         drawn = render_files(
             source, out, view=view, poses=option.poses_of(pose, poses), frames=frames,
@@ -83,7 +81,8 @@ def run(
             quality=quality, fps=fps, light=light, hour=hour, brightness=brightness,
             exposure=exposure, sun_shadow=sun_shadow, samples=samples, texture_px=textures,
             packs=pack or (), photo=photo, photo_samples=photo_samples, device=device,
-            threads=threads, jobs=jobs, progress=progress,
+            threads=threads, jobs=jobs,
+            progress=with_compile_note(progress),
         )  # fmt: skip
     if as_json:
         print(json.dumps(drawn.poses, indent=1))
