@@ -19,7 +19,7 @@ from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGri
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from world2minecraft.minecraftocc.store import OccStore
+    from world2minecraft.api.datasets import Dataset
     from world2minecraft.procgen import Room as GeneratedRoom
 
 MAX_LISTED = 12  # Objects in the text and in the notebook view of a run.
@@ -247,7 +247,7 @@ class Run:
             return _img(picture.resize((640, 480)))
 
 
-def load(path: str | Path) -> "Run | GeneratedRoom | OccStore":
+def load(path: str | Path) -> "Run | GeneratedRoom | Dataset":
     """Open a folder that the program wrote.
 
     Args:
@@ -273,9 +273,9 @@ def load(path: str | Path) -> "Run | GeneratedRoom | OccStore":
 
         return read_generated(folder)
     if (folder / "shards").is_dir():
-        from world2minecraft.minecraftocc.store import open_store
+        from world2minecraft.api.datasets import open_dataset
 
-        return open_store(folder)
+        return open_dataset(folder)
     if not folder.exists():
         raise InputError(folder, "not found; give the folder of a run, a room or a data set")
     raise InputError(
