@@ -7,6 +7,9 @@ from made_layouts import gpt_record, placed, shell, write
 from tests.external_models.scripted_server import scripted
 
 from world2minecraft import cli
+from world2minecraft.api import comparison
+from world2minecraft.cli.compare import options as option
+from world2minecraft.paper.layouts.importers import PX_M
 
 
 @pytest.fixture
@@ -40,6 +43,24 @@ def test_layouts_are_scored_side_by_side(layouts, tmp_path, capsys):
     assert told["LayoutGPT"]["collisions"] == 0.5
     assert told["I-Design"]["unplaced"] == 1
     assert told["I-Design"]["semantic_integrity"] == 1.0
+
+
+def test_scores_are_printed_as_json(layouts, capsys):
+    assert cli.run(["compare", "layouts", *map(str, layouts), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told.keys() == {"LayoutGPT", "I-Design"}
+
+
+def test_json_output_does_not_overwrite_a_layout(layouts, capsys):
+    gpt, idesign = layouts
+    before = gpt.read_bytes()
+    assert cli.run(["compare", "layouts", "--json", str(gpt), str(idesign)]) == 2
+    assert "--json would overwrite the layout" in capsys.readouterr().err
+    assert gpt.read_bytes() == before
+
+
+def test_the_default_pixel_is_that_of_layoutgpt():
+    assert option.DEFAULT_PX_M == comparison.DEFAULT_PX_M == PX_M
 
 
 def test_scenes_can_be_told_one_by_one(layouts, capsys):
