@@ -8,9 +8,9 @@ import pytest
 from test_plan_grid import layout
 
 from roomplans import captured_room, session_of
-from world2minecraft import cli
+from world2minecraft import cli, load
 from world2minecraft.capture.readers.roomplan_detection import find_lone_roomplan
-from world2minecraft.cli.reconstruct import print_plan_outcome
+from world2minecraft.cli.reconstruct import print_run
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.progress import no_progress
@@ -241,9 +241,9 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
     assert find_lone_roomplan(place) == place
     assert find_lone_roomplan(place.parent) == place
     out = tmp_path / "OUT"
-    built = run_plan(place, out, Parameters(blocks_per_metre=2.0), no_progress, "flat")
-    print_plan_outcome(out, built)
-    assert "1 room of a plan, 4.0 x 3.2 x 2.4 m, 4 objects." in capsys.readouterr().out
+    run_plan(place, out, Parameters(blocks_per_metre=2.0), no_progress, "flat")
+    print_run(load(out))
+    assert "1 room of a floor plan, 4.0 x 3.2 x 2.4 m, 4 objects." in capsys.readouterr().out
     assert "flat: build report" in (out / "report.html").read_text()
     assert (out / "preview.png").is_file()
     facts = json.loads((out / "report.json").read_text())
