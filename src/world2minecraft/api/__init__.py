@@ -1,7 +1,8 @@
-"""The public functions and types, one module for each noun; the command line calls nothing else.
+"""The public functions and types, grouped into one module per topic.
 
-``world2minecraft`` offers the same names, so that ``w2m.reconstruct`` is ``api.rooms.reconstruct``.
-A module is imported when one of its names is first used.
+The command line is built on these modules alone. The package ``world2minecraft`` exports the same
+names, so ``w2m.reconstruct`` is ``api.rooms.reconstruct``. Each module is imported on first use of
+one of its names.
 """
 
 from importlib import import_module
@@ -152,7 +153,7 @@ _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
-    """Import the module of a public name when it is first used."""
+    """Import the module that defines a public name when the name is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module 'world2minecraft' has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -1,4 +1,4 @@
-"""Agents that walk or answer: run them, evaluate them on a navigation set, compare the results."""
+"""Run navigation agents, evaluate them on a navigation set and compare the results."""
 
 import webbrowser
 from collections.abc import Callable, Mapping, Sequence
@@ -25,14 +25,15 @@ Table = list[list[str]]
 
 @dataclass(frozen=True, eq=False)
 class AgentRun:
-    """The walks of an agent, as they were written to a folder.
+    """The walks of an agent, stored in a folder.
 
     Attributes:
-        folder: holds ``result.json``, ``episodes.jsonl`` and the trace of each walk.
-        result: what ``result.json`` holds: the scores, and those of Stop, Random and the oracle.
-        episodes: what was walked.
-        model: the language model that was asked; empty where none was.
-        cost: its questions, tokens and dollars; empty where none was asked.
+        folder: Folder with ``result.json``, ``episodes.jsonl`` and the trace of each walk.
+        result: Contents of ``result.json``: the scores of the agent and those of the Stop, Random
+            and oracle agents.
+        episodes: Episodes that the agent walked.
+        model: Name of the language model. Empty if no model was used.
+        cost: Number of requests and tokens and the cost in dollars. Empty if no model was used.
     """
 
     folder: Path
@@ -43,11 +44,11 @@ class AgentRun:
 
     @property
     def summary(self) -> Mapping[str, Any]:
-        """The mean scores: ``spl``, ``ne_m``, ``success_1m`` ...; docs/vln-scores.md."""
+        """The mean scores, such as ``spl``, ``ne_m`` and ``success_1m``. See docs/vln-scores.md."""
         return self.result["summary"]
 
     def walk_folder(self, number: int = 0) -> Path:
-        """Return the folder with the trace, and the film, of one walk."""
+        """Return the folder with the trace, and the video if any, for one walk."""
         from world2minecraft.navigation.agent_runs import walk_folder
 
         return walk_folder(self.folder, number, self.episodes)
@@ -79,38 +80,44 @@ def run_agent(
     observers: "Sequence[Observer]" = (),
     on_page: Callable[[str], object] = webbrowser.open,
 ) -> AgentRun:
-    """Let an agent follow an instruction, and score it beside Stop, Random and the oracle.
+    """Run an agent on an instruction and score it next to the Stop, Random and oracle agents.
 
-    The goal is the object that the instruction names last. A run that was interrupted continues
-    when it is called again: replies of a model are recorded and not requested twice.
+    The goal is the last object named in the instruction. Call the function again to resume an
+    interrupted run. Replies from a model are recorded and are not requested twice.
 
     Args:
-        scene: a run, a generated house, a world or a block file; or a navigation set or an
-            ``episodes.jsonl``, whose episodes are walked.
-        instruction: what to do, such as "Go to the piano"; empty for episodes.
-        agent: ``oracle``, ``shortest``, ``random``, ``forward``, ``stop``, ``human``; ``gemini``,
-            ``openai``, ``qwen`` or ``local``, each with ``:MODEL`` if wanted; the address of a
-            server, ``http://HOST/v1``; or an object with ``begin`` and ``decide``.
-        out: the folder to write; ``vln_AGENT`` by default.
-        goal: the name of the goal, where the instruction does not name it.
-        start: the feet in world blocks, (x, y, z) or (x, y, z, yaw in degrees).
+        scene: A run, a generated house, a world or a block file. For a navigation set or an
+            ``episodes.jsonl`` file, the agent walks all its episodes.
+        instruction: Instruction such as "Go to the piano". Leave empty for episodes.
+        agent: ``oracle``, ``shortest``, ``random``, ``forward``, ``stop`` or ``human``. For a
+            language model, ``gemini``, ``openai``, ``qwen`` or ``local``, optionally followed by
+            ``:MODEL``, or a server address ``http://HOST/v1``. Also accepts an object with the
+            methods ``begin`` and ``decide``.
+        out: Output folder. Defaults to ``vln_AGENT``.
+        goal: Name of the goal object, if the instruction does not name it.
+        start: Start position of the feet in world blocks, as (x, y, z) or (x, y, z, yaw in
+            degrees).
         moves: ``vlnce`` (0.25 m, 15 degrees), ``rxr`` (30 degrees) or ``block``.
-        max_steps: the most moves of a walk.
-        chunk: the most moves in one reply of a model, 1 to 4.
-        history: the earlier views that a model sees.
+        max_steps: Maximum number of moves per walk.
+        chunk: Maximum number of moves per reply from a model, from 1 to 4.
+        history: Number of earlier views included in each request to a model.
         map_kind: ``none``, ``text`` (earlier positions in words) or ``plan`` (a floor plan).
-        count: walk only the first episodes of a set.
-        seed: of agents that draw.
-        video: write ``walk.mp4`` of each walk.
-        server: HOST or HOST:PORT of a game server where the scene stands; a player walks there.
-        max_pixels: the most pixels of a picture that a model sees; larger ones are reduced.
-        model: options of a language model.
-        observers: called as walks go on; see ``navigation.running.episode_runner.Observer``.
-        on_page: called with the address of the page where a human walks.
+        count: Number of episodes to walk, from the start of the set. Defaults to all.
+        seed: Random seed for agents that act at random.
+        video: Whether to write ``walk.mp4`` for each walk.
+        server: HOST or HOST:PORT of a game server that contains the scene. The agent then controls
+            a player on this server.
+        max_pixels: Maximum image size in pixels for a model. Larger images are scaled down.
+        model: Options for the language model.
+        observers: Callbacks that are called during each walk. See
+            ``navigation.running.episode_runner.Observer``.
+        on_page: Callback that receives the URL of the page on which a human controls the walk.
 
     Raises:
-        UsageError: a name or an option is wrong. InputError: the scene or the goal is not found.
-        ServerError: a model does not reply. BudgetError: a cap is reached.
+        UsageError: If a name or an option is invalid.
+        InputError: If the scene or the goal is not found.
+        ServerError: If a model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
 
     Example:
         >>> import world2minecraft as w2m
@@ -148,13 +155,15 @@ def run_agent(
 
 @dataclass(frozen=True, eq=False)
 class AgentAnswers:
-    """The answers of a model to the items of a navigation set.
+    """Answers from an agent to the items in a navigation set.
 
     Attributes:
-        folder: holds ``answers.jsonl`` and ``result.json``.
-        result: what ``result.json`` holds; ``result["accuracy"]`` is by task and composition.
-        count: how many items were asked.
-        cost: questions, tokens and dollars of a language model; empty for a baseline.
+        folder: Folder with ``answers.jsonl`` and ``result.json``.
+        result: Contents of ``result.json``. ``result["accuracy"]`` is grouped by task and
+            composition.
+        count: Number of items.
+        cost: Number of requests and tokens and the cost in dollars. Empty if no language model was
+            used.
     """
 
     folder: Path
@@ -164,7 +173,7 @@ class AgentAnswers:
 
     @property
     def accuracy(self) -> Mapping[str, Any]:
-        """Accuracy by task, then by composition: share, interval, hits, total, chance."""
+        """Accuracy by task, then by composition: share, interval, hits, total and chance."""
         return self.result["accuracy"]
 
     def __repr__(self) -> str:
@@ -188,33 +197,36 @@ def evaluate_agent(
     model: ModelOptions | None = None,
     progress: Progress = no_progress,
 ) -> AgentAnswers:
-    """Ask a model the items of a navigation set, and score its answers.
+    """Evaluate an agent on the items in a navigation set and score its answers.
 
-    A reply without a letter is requested twice more and then counts as wrong. An evaluation that
-    was interrupted continues when it is called again.
+    If a reply contains no letter, the request is repeated up to two times, and the answer then
+    counts as wrong. Call the function again to resume an interrupted evaluation.
 
     Args:
-        navigation_set: the folder of a set, or its ``items.jsonl``.
-        agent: ``gemini``, ``openai``, ``qwen`` or ``local``, each with ``:MODEL`` if wanted; the
-            address of a server, ``http://HOST/v1``; a baseline: ``uniform``, ``majority``,
-            ``blind``, ``repeat``, ``nearest``, ``alike``, ``odd``, ``oracle``; or an object with
-            ``name`` and ``answer(item)``.
-        out: the folder to write; ``vln_AGENT`` by default.
-        split: ``train``, ``val_seen``, ``val_unseen``, ``test`` (both val) or ``all``.
+        navigation_set: Folder of a navigation set, or its ``items.jsonl``.
+        agent: ``gemini``, ``openai``, ``qwen`` or ``local``, optionally followed by ``:MODEL``, or
+            a server address ``http://HOST/v1``. For a baseline, ``uniform``, ``majority``,
+            ``blind``, ``repeat``, ``nearest``, ``alike``, ``odd`` or ``oracle``. Also accepts an
+            object with ``name`` and ``answer(item)``.
+        out: Output folder. Defaults to ``vln_AGENT``.
+        split: ``train``, ``val_seen``, ``val_unseen``, ``test`` (both validation splits) or
+            ``all``.
         task: ``next_view``, ``next_action`` or ``both``.
         composition: ``base``, ``extend`` or ``combined``.
-        count: ask this many items, drawn by ``seed``.
-        seed: of the draw.
-        style: ``letter``, ``think`` or ``json``: the form of the replies.
-        training: how the model was trained, for tables: ``none``, ``sft`` or ``rft``.
-        jobs: simultaneous questions.
-        max_pixels: the most pixels of a picture that a model sees.
-        model: options of a language model.
-        progress: called after each answer.
+        count: Number of randomly sampled items. Defaults to all.
+        seed: Random seed for sampling the items.
+        style: Format of the replies: ``letter``, ``think`` or ``json``.
+        training: How the model was trained, for result tables: ``none``, ``sft`` or ``rft``.
+        jobs: Number of concurrent requests.
+        max_pixels: Maximum image size in pixels for a model. Larger images are scaled down.
+        model: Options for the language model.
+        progress: Callback that is called after each answer.
 
     Raises:
-        UsageError: a name or an option is wrong. InputError: the set cannot be read.
-        ServerError: the model does not reply. BudgetError: a cap is reached.
+        UsageError: If a name or an option is invalid.
+        InputError: If the set cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
 
     Example:
         >>> import world2minecraft as w2m
@@ -260,13 +272,15 @@ def evaluate_agent(
 
 @dataclass(frozen=True)
 class RunTables:
-    """Results of runs side by side, as tables of text; the first row holds the titles.
+    """Results of several runs as tables of text. The first row of each table contains the titles.
 
     Attributes:
-        results: what each ``result.json`` holds.
-        walks: a row for each agent that walked; empty where none did.
-        answers: the paper's table: model by training, accuracy by task and composition.
-        paired: how answers differ pair by pair (McNemar's exact test); empty for fewer than two.
+        results: Contents of each ``result.json``.
+        walks: Table with one row per agent. Empty if no run contains walks.
+        answers: Accuracy table of the paper, with one row per model and training, and one column
+            per task and composition. Empty if no run contains answers.
+        paired: Pairwise comparison of the answers with McNemar's exact test. Empty if fewer than
+            two runs contain answers.
     """
 
     results: Sequence[Mapping[str, Any]]
@@ -275,7 +289,7 @@ class RunTables:
     paired: Table
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the results without those of single episodes and items, for JSON."""
+        """Return JSON-compatible results, without the data on individual episodes and items."""
         single = ("episodes", "right")
         results = [{k: v for k, v in one.items() if k not in single} for one in self.results]
         heads = [head.replace(" ", "_") for head in self.paired[0]] if self.paired else []
@@ -284,13 +298,14 @@ class RunTables:
 
 
 def compare_runs(runs: Sequence[str | Path]) -> RunTables:
-    """Read the results of ``run_agent`` and ``evaluate_agent`` and put them into tables.
+    """Compare results from ``run_agent`` and ``evaluate_agent`` in tables.
 
     Args:
-        runs: the folders of the runs.
+        runs: Folders of the runs.
 
     Raises:
-        InputError: a run has no result. DamagedFileError: its result cannot be read.
+        InputError: If a run has no result.
+        DamagedFileError: If a result cannot be read.
 
     Example:
         >>> from world2minecraft.api.agents import compare_runs, run_agent
@@ -316,10 +331,11 @@ def compare_runs(runs: Sequence[str | Path]) -> RunTables:
 
 
 def read_run_result(path: str | Path) -> dict[str, Any]:
-    """Return what the ``result.json`` of a run holds.
+    """Return the contents of a run's ``result.json``.
 
     Raises:
-        InputError: it is missing. DamagedFileError: it cannot be read.
+        InputError: If the file is missing.
+        DamagedFileError: If the file cannot be read.
     """
     from world2minecraft.navigation.running.result_tables import read_result
 
@@ -327,7 +343,7 @@ def read_run_result(path: str | Path) -> dict[str, Any]:
 
 
 def table_text(table: Table, *, markdown: bool = False) -> str:
-    """Return a table as aligned text, or as Markdown.
+    """Format a table as aligned text or as Markdown.
 
     Example:
         >>> from world2minecraft.api.agents import table_text
@@ -341,21 +357,21 @@ def table_text(table: Table, *, markdown: bool = False) -> str:
 
 
 def walks_note() -> str:
-    """Return what the titles of the table of walks mean."""
+    """Return an explanation of the column titles in the table of walks."""
     from world2minecraft.navigation.running.result_tables import HEADS_NOTE
 
     return HEADS_NOTE
 
 
 def decision_text(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
-    """Return what a decision of an agent did, in a few words."""
+    """Return a short description of the moves that resulted from an agent's decision."""
     from world2minecraft.navigation.running.trace import decision_text as text
 
     return text(decision, made)
 
 
 def walk_end_text(walk: "EpisodeWalk") -> str:
-    """Return how a walk ended, in a line."""
+    """Return a one-line description of how a walk ended."""
     from world2minecraft.navigation.running.film import end_text
 
     return end_text(walk)
@@ -363,14 +379,14 @@ def walk_end_text(walk: "EpisodeWalk") -> str:
 
 @dataclass(frozen=True)
 class ServerCheck:
-    """What a player on a game server saw.
+    """Result of a test connection to a game server.
 
     Attributes:
-        version: that of the game.
-        name: that of the player.
-        position: where it stands, in blocks.
-        blocks: how many blocks are around it.
-        states: of how many states.
+        version: Game version.
+        name: Name of the player.
+        position: Position of the player in blocks.
+        blocks: Number of non-air blocks in the 16x16x16 region around the player.
+        states: Number of distinct block states in this region.
     """
 
     version: str
@@ -381,16 +397,16 @@ class ServerCheck:
 
 
 def check_server(address: str, *, name: str = "w2m_walker", version: str = "") -> ServerCheck:
-    """Join a game server, look around, and leave.
+    """Join a game server, read the blocks around the player and disconnect.
 
     Args:
         address: HOST or HOST:PORT of a server with ``online-mode=false``.
-        name: of the player.
-        version: of the game; the server reports it by default.
+        name: Name of the player.
+        version: Game version. Defaults to the version that the server reports.
 
     Raises:
-        UsageError: mineflayer is not installed, or the name is wrong.
-        ServerError: the server refuses the player.
+        UsageError: If mineflayer is not installed or the name is invalid.
+        ServerError: If the server refuses the connection.
     """
     from world2minecraft.navigation.server.player import join
 
@@ -403,13 +419,14 @@ def check_server(address: str, *, name: str = "w2m_walker", version: str = "") -
 
 
 def mineflayer_folder(*, install: bool = False) -> Path:
-    """Return the folder of mineflayer, which plays on servers; fetch it first if wanted.
+    """Return the folder of mineflayer, the game server client, and optionally install it first.
 
     Args:
-        install: fetch it by npm, in the pinned versions; nothing of it is executed.
+        install: Download the pinned versions with npm. Install scripts are not executed.
 
     Raises:
-        UsageError: Node or npm is missing, or mineflayer is not installed. ServerError: npm failed.
+        UsageError: If Node or npm is missing, or mineflayer is not installed.
+        ServerError: If npm fails.
     """
     from world2minecraft.navigation.server import mineflayer_install as installing
 
@@ -417,7 +434,7 @@ def mineflayer_folder(*, install: bool = False) -> Path:
 
 
 def default_run_folder(agent: str) -> Path:
-    """Return the folder of a run of an agent, where none is given.
+    """Return the default output folder for an agent.
 
     Example:
         >>> from world2minecraft.api.agents import default_run_folder
@@ -442,7 +459,7 @@ def _stance(start: Sequence[float] | None) -> "Stance | None":
 
 
 def _chat_of(agent: str, folder: Path, model: ModelOptions | None) -> "ChatModel | None":
-    """Return the language model of an agent's name or address; None for other agents."""
+    """Return the language model for an agent's name or address, or None for other agents."""
     from world2minecraft.external_models.chat_transport import is_endpoint
 
     return (model or ModelOptions()).open(agent, folder) if is_endpoint(agent) else None

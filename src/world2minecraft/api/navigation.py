@@ -1,4 +1,4 @@
-"""MinecraftVLN: an environment to walk in, and sets of questions about walks."""
+"""MinecraftVLN: a navigation environment, and data sets of questions about walks."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -26,23 +26,25 @@ if TYPE_CHECKING:
     from world2minecraft.navigation.types import Item
     from world2minecraft.sceneforge.server.server_process import PageServer
 
-REPLIES_FOLDER = "rewriting"  # Of a set, with the recorded replies of a model.
+REPLIES_FOLDER = "rewriting"  # Folder in a set for recorded model replies.
 
 
 def make_env(scene: Run | str | Path, **options: Any) -> "gymnasium.Env":
-    """Make the Gymnasium environment of a world.
+    """Create a Gymnasium environment for a world.
 
-    ``gymnasium.make("world2minecraft/MinecraftVLN-v0", scene=...)`` makes the same one. Its
-    observations are ``rgb`` and ``pose``; ``info["instruction"]`` holds the instruction.
+    ``gymnasium.make("world2minecraft/MinecraftVLN-v0", scene=...)`` creates the same environment.
+    The observations are ``rgb`` and ``pose``, and ``info["instruction"]`` contains the instruction.
 
     Args:
-        scene: a run, its folder, a world or a block file.
-        **options: those of ``navigation.environment.env.VlnEnv``, such as ``actions``,
-            ``observations``, ``episodes`` and ``render_mode``; docs/vln-environment.md lists them.
+        scene: A run, a run folder, a world or a block file.
+        **options: Options for ``navigation.environment.env.VlnEnv``, such as ``actions``,
+            ``observations``, ``episodes`` and ``render_mode``. See docs/vln-environment.md for a
+            list.
 
     Raises:
-        MissingExtraError: Gymnasium is not installed. UsageError: an option is wrong.
-        InputError: the world cannot be read.
+        MissingExtraError: If Gymnasium is not installed.
+        UsageError: If an option is invalid.
+        InputError: If the world cannot be read.
 
     Example:
         >>> import world2minecraft as w2m
@@ -53,7 +55,7 @@ def make_env(scene: Run | str | Path, **options: Any) -> "gymnasium.Env":
     """
     from world2minecraft.navigation.environment import ENV_ID
 
-    import gymnasium  # isort: skip  # An extra; the line above says so where it is missing.
+    import gymnasium  # isort: skip  # Optional; the import above reports if it is missing.
 
     return gymnasium.make(ENV_ID, scene=path_of(scene), **options)
 
@@ -80,38 +82,45 @@ def build_navigation_set(
     workers: int | None = None,
     progress: Progress = no_progress,
 ) -> "BuiltSet":
-    """Walk through scenes, describe each walk in English, and ask what is seen and done next.
+    """Build a navigation set: walks through scenes, instructions in English and questions.
 
-    A scene is toured from object to object; each leg becomes moves that the game's physics can
-    make. The same arguments and seed give the same bytes, with any number of workers.
+    The walks lead from object to object, and each section is converted to moves that are possible
+    with the game's physics. The questions are about the next view and the next action. The same
+    arguments and seed produce identical files with any number of workers.
 
     Args:
-        scenes: runs, generated houses, worlds and block files.
-        out: the folder of the set.
-        rooms: generate, scan and reconstruct this many rooms in ``out/scenes`` first.
-        houses: generate this many houses in ``out/scenes`` first.
-        streams: recorded walks: tour files, and folders of ``run_agent``.
-        at: what the positions of streams are: ``eye`` or ``feet``.
+        scenes: Runs, generated houses, worlds and block files.
+        out: Output folder.
+        rooms: Number of rooms to generate, scan and reconstruct in ``out/scenes`` first.
+        houses: Number of houses to generate in ``out/scenes`` first.
+        streams: Recorded walks, as tour files or folders written by ``run_agent``.
+        at: Reference point of the positions in ``streams`` that do not specify it: ``eye`` or
+            ``feet``.
         composition: ``base`` (reconstructions), ``extend`` (all other scenes) or ``combined``.
-        trajectories: walks of each scene; 30 of base and 110 of extend by default.
-        views: the most Next-View items of a walk.
-        paper_size: have no more items than the paper, part by part.
-        paper_split: hold out walks instead of scenes, as many as the paper.
-        unseen_share: the share of the scenes of each kind that is held out.
-        annotations: instructions that people wrote, CSV or JSONL: trajectory_id, instruction.
-        every_keyframe: ask at every keyframe; then blind guesses score high.
+        trajectories: Number of walks per scene. Defaults to 30 for base scenes and 110 for extend
+            scenes.
+        views: Maximum number of Next-View items per walk.
+        paper_size: Limit the number of items for each task and composition to that of the paper.
+        paper_split: Hold out walks instead of scenes, as many as the paper does.
+        unseen_share: Fraction of the scenes to hold out, for base and extend scenes separately.
+        annotations: CSV or JSONL file with instructions written by people, with the columns
+            trajectory_id and instruction.
+        every_keyframe: Ask a Next-Action question at every suitable keyframe instead of one
+            question per action. Guessing without images then achieves high scores.
         moves: ``vlnce``, ``rxr``, ``block`` or ``macro``.
-        size: the width and height of pictures, 16 to 4096 pixels.
-        seed: 0 or more.
-        workers: processes; one for each core by default.
-        progress: called with the walks done.
+        size: Image width and height, each from 16 to 4096 pixels.
+        seed: Random seed. Must be 0 or more.
+        workers: Number of processes. Defaults to one per core.
+        progress: Callback that receives the number of completed walks.
 
     Returns:
-        The items, what came of each scene, and what train shares with the held-out splits.
+        The items, the results for each scene, and the overlap between the train and held-out
+        splits.
 
     Raises:
-        UsageError: an argument is wrong, or no scene gives an item.
-        InputError: a scene cannot be read. OutputError: the folder cannot be written.
+        UsageError: If an argument is invalid or the scenes produce no items.
+        InputError: If a scene cannot be read.
+        OutputError: If the folder cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -165,30 +174,37 @@ def export_navigation_set(
     seed: int | None = None,
     progress: Progress = no_progress,
 ) -> "ExportResult":
-    """Write a set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as R2R's JSON.
+    """Export a navigation set for LLaMA-Factory, EasyR1, TRL or VLN-CE, or as JSON in R2R format.
 
-    The folder gets the rows, the pictures, the paper's recipe and the command that runs it.
+    The output folder contains the rows, the images, the paper's training recipe and the command to
+    run it.
 
     Args:
-        navigation_set: the folder of ``build_navigation_set``.
-        out: the folder to write; new, empty, or of an export with the same arguments.
+        navigation_set: Folder written by ``build_navigation_set``.
+        out: Output folder. Must be new, empty or contain an export with the same arguments.
         to: ``llamafactory``, ``easyr1``, ``trl``, ``vlnce`` or ``r2r``.
-        task: ``next_view`` or ``next_action`` alone; both by default.
-        composition: ``base``, ``extend`` or ``combined`` alone; all by default.
-        model: what is tuned, a name on the hub or a path; Qwen2.5-VL-3B-Instruct by default.
-        max_samples: the rows of one SFT run; 1000 by default, as in the paper; 0 for all.
-        gpus: those of the recipe; 1 for SFT and 8 for GRPO by default.
-        max_pixels: trainers reduce larger pictures; 262144 by default.
-        images: of easyr1, ``paths`` (the default) or ``embedded`` in the parquet file.
-        seed: of the order of rows; 0 by default.
-        progress: called at each step.
+        task: Export only ``next_view`` or only ``next_action``. Defaults to both.
+        composition: Export only ``base``, ``extend`` or ``combined``. Defaults to all.
+        model: Model to fine-tune, as a name on the Hugging Face Hub or a path. Defaults to
+            Qwen2.5-VL-3B-Instruct.
+        max_samples: Number of rows for one SFT run, or 0 for all. Defaults to 1000, as in the
+            paper.
+        gpus: Number of GPUs in the recipe. Defaults to 1 for SFT and 8 for GRPO.
+        max_pixels: Maximum image size in pixels during training. Trainers scale down larger images.
+            Defaults to 262144.
+        images: How images are stored: ``paths`` or ``embedded`` in the parquet file. Only for
+            ``easyr1``. Defaults to ``paths``.
+        seed: Random seed for the order of the rows. Defaults to 0.
+        progress: Callback that reports each step.
 
     Returns:
-        The files that were written, with rows, tokens, steps, commands and notes.
+        The files that were written, with the number of rows, tokens and steps, the commands and
+        notes.
 
     Raises:
-        UsageError: a name is wrong, or nothing is left to export. InputError: the set cannot be
-        read. ConflictError: the folder holds something else.
+        UsageError: If an argument is invalid or no items match.
+        InputError: If the set cannot be read.
+        ConflictError: If the output folder contains other files.
 
     Example:
         >>> import world2minecraft as w2m
@@ -215,13 +231,13 @@ def export_navigation_set(
 
 @dataclass(frozen=True, eq=False)
 class NavigationStatistics:
-    """The figures of a navigation set; as text, the tables beside those of the paper.
+    """Statistics for a navigation set. ``str()`` returns them as tables next to those of the paper.
 
     Attributes:
-        items: those of the set.
-        statistics: lengths of instructions, answers and wrong choices, by task and composition.
-        leaks: what train shares with the held-out splits.
-        baselines: what guessing scores; empty where it was not scored.
+        items: All items in the set.
+        statistics: Lengths of instructions, answers and distractors by task and composition.
+        leaks: Overlap between the train and held-out splits.
+        baselines: Scores for the guessing baselines. Empty if the baselines were not scored.
     """
 
     items: "Sequence[Item]"
@@ -237,16 +253,17 @@ class NavigationStatistics:
         return statistics_text(self.statistics, self.leaks)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every figure, for JSON."""
+        """Return all statistics as JSON-compatible values."""
         from world2minecraft.navigation.data.statistics import statistics_json
 
         return statistics_json(self.statistics, self.leaks, self.baselines)
 
     def plot(self, path: str | Path) -> None:
-        """Draw the histograms of the lengths, as the paper's figure, to a PNG file.
+        """Plot histograms of the lengths, as in the paper's figure, to a PNG file.
 
         Raises:
-            MissingExtraError: matplotlib is not installed. OutputError: it cannot be written.
+            MissingExtraError: If matplotlib is not installed.
+            OutputError: If the file cannot be written.
         """
         from world2minecraft.navigation.data.statistics import write_histograms
 
@@ -262,17 +279,18 @@ class NavigationStatistics:
 def navigation_statistics(
     navigation_set: str | Path, *, baselines: bool = True
 ) -> NavigationStatistics:
-    """Count items, lengths of instructions, answers and wrong choices, as the paper's table does.
+    """Count items and measure the lengths of their texts, as in the paper's table.
 
-    Lengths are in characters. Baselines are scored on the held-out splits; one that sees no picture
-    and is ten points above chance is flagged, as such a set does not test vision.
+    The lengths of instructions, answers and distractors are in characters. The baselines are scored
+    on the held-out splits. If a baseline without access to images scores ten points above chance,
+    it is flagged, because the set is then not a valid test of vision.
 
     Args:
-        navigation_set: the folder of ``build_navigation_set``, or its ``items.jsonl``.
-        baselines: score the baselines, which reads the pictures.
+        navigation_set: Folder written by ``build_navigation_set``, or its ``items.jsonl``.
+        baselines: Whether to score the baselines, which requires reading the images.
 
     Raises:
-        InputError: it is no set, or a picture is missing.
+        InputError: If the folder is not a navigation set or an image is missing.
 
     Example:
         >>> from world2minecraft.api.navigation import build_navigation_set, navigation_statistics
@@ -294,12 +312,13 @@ def navigation_statistics(
 
 @dataclass(frozen=True)
 class RewordedSet:
-    """What rewording a set gave.
+    """Result of rewording the instructions in a navigation set.
 
     Attributes:
-        sources: how many items use the words of ``human``, ``llm`` or ``template``.
-        outcomes: how many texts of a model were accepted (``""``) or rejected, by the reason.
-        cost: questions, tokens and dollars of the model; None where none was asked.
+        sources: Number of items by source of the instruction: ``human``, ``llm`` or ``template``.
+        outcomes: Number of texts from a model by outcome: ``""`` if accepted, otherwise the reason
+            for rejection.
+        cost: Number of requests and tokens and the cost in dollars. None if no model was used.
     """
 
     sources: Mapping[str, int]
@@ -317,24 +336,26 @@ def reword_navigation_set(
     model: "ModelOptions | None" = None,
     progress: Progress = no_progress,
 ) -> RewordedSet:
-    """Let a set ask in the words of people, or of a language model.
+    """Use instructions from people or from a language model in a navigation set.
 
-    Words are added and none is removed. Items and episodes use a person's words where there are
-    some, else a model's, else the generated ones. A model's words are accepted only where the same
-    turns and objects are read from them in the same order.
+    Instructions are added and never removed. Each item and episode uses an instruction from a
+    person if available, then one from a model, then the generated one. An instruction from a model
+    is accepted only if it contains the same turns and objects in the same order.
 
     Args:
-        navigation_set: the folder of the set; it is changed.
-        annotations: instructions that people wrote, CSV or JSONL: trajectory_id, instruction.
-        rewrite: a provider or the address of a server whose model rewrites the instructions.
-        plain: use the generated words again.
-        jobs: simultaneous questions.
-        model: options of the language model.
-        progress: called after each reply.
+        navigation_set: Folder of the navigation set, which is modified in place.
+        annotations: CSV or JSONL file with instructions written by people, with the columns
+            trajectory_id and instruction.
+        rewrite: Provider or server address of a model that rewrites the instructions.
+        plain: Use the generated instructions again.
+        jobs: Number of concurrent requests.
+        model: Options for the language model.
+        progress: Callback that is called after each reply.
 
     Raises:
-        UsageError: nothing is asked for, or an option is wrong. InputError: a file cannot be read.
-        ServerError: the model does not reply.
+        UsageError: If no change is requested or an option is invalid.
+        InputError: If a file cannot be read.
+        ServerError: If the model does not reply.
 
     Example:
         >>> from world2minecraft.api.navigation import build_navigation_set, reword_navigation_set
@@ -368,12 +389,12 @@ def reword_navigation_set(
 
 @dataclass(frozen=True, eq=False)
 class AnnotationPage:
-    """A page on which people write instructions for the walks of a set.
+    """A web page on which people write instructions for the walks in a navigation set.
 
     Attributes:
-        server: the server behind the page.
-        out: the file to which lines are added.
-        walks: how many walks there are.
+        server: Web server for the page.
+        out: File to which annotations are appended.
+        walks: Number of walks.
     """
 
     server: "PageServer"
@@ -382,26 +403,28 @@ class AnnotationPage:
 
     @property
     def link(self) -> str:
-        """The address of the page, with the token that admits this user."""
+        """The URL of the page, including the access token for the current user."""
         return self.server.link
 
     def run(self, ready: Callable[[], None] = lambda: None) -> None:
-        """Serve until interrupted; ``ready`` is called once the page can be opened."""
+        """Serve the page until interrupted; call ``ready`` as soon as the page is available."""
         self.server.run(ready)
 
 
 def annotation_page(
     navigation_set: str | Path, out: str | Path | None = None, *, port: int | None = None
 ) -> AnnotationPage:
-    """Prepare the page on which people write instructions; ``run`` serves it.
+    """Prepare the web page on which people write instructions. Call ``run`` to serve it.
 
     Args:
-        navigation_set: the folder of the set.
-        out: the file to add lines to; ``annotations.jsonl`` of the set by default.
-        port: the port to listen on; 8484, or any free one, by default.
+        navigation_set: Folder of the navigation set.
+        out: File to append annotations to. Defaults to ``annotations.jsonl`` in the folder of the
+            set.
+        port: Port to listen on. Defaults to 8484, or to any free port if 8484 is in use.
 
     Raises:
-        InputError: the set has no walk, or cannot be read. UsageError: the port is in use.
+        InputError: If the set cannot be read or contains no walks.
+        UsageError: If the port is in use.
     """
     from world2minecraft.sceneforge.annotation.app import annotation_server
     from world2minecraft.sceneforge.annotation.store import AnnotationStore

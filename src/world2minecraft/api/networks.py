@@ -1,4 +1,4 @@
-"""Occupancy networks: train, export and evaluate them, and predict the cells of a room."""
+"""Train, export and evaluate occupancy networks, and predict the cells of a frame or a room."""
 
 import tempfile
 from collections.abc import Sequence
@@ -21,24 +21,25 @@ if TYPE_CHECKING:
     from world2minecraft.networks.config import DataSource, RunConfig
 
 TRAINING_MODULES = ("torch", "lightning", "safetensors", "tensorboard")
-LAST_STAGE = "label"  # Of a reconstruction, for ``predict_occupancy``.
+LAST_STAGE = "label"  # Last reconstruction stage that ``predict_occupancy`` runs.
 
 Source = str | Path | Dataset
 
 
 @dataclass(frozen=True, eq=False)
 class TrainedNetwork:
-    """A network that was trained, and its scores.
+    """A trained network with its scores.
 
     Attributes:
-        folder: the run's folder, with ``weights.safetensors``, ``run.yaml`` and ``scores.json``.
-        config: every setting of the run.
-        steps: the steps that were trained.
-        best_step: the step of the best weights.
-        stopped_early: whether training ended because the network improved no more.
-        seconds: of training and validation, all attempts together.
-        scores: of the best weights, as in ``scores.json``.
-        data: one line for each data set, with its format and its numbers of frames.
+        folder: Run folder with ``weights.safetensors``, ``run.yaml`` and ``scores.json``.
+        config: All settings of the run.
+        steps: Number of completed training steps.
+        best_step: Step with the best weights.
+        stopped_early: Whether training stopped early because the validation score stopped
+            improving.
+        seconds: Duration of training and validation in seconds, including interrupted attempts.
+        scores: Scores for the best weights, as in ``scores.json``.
+        data: One line per data set with its format and its number of frames.
     """
 
     folder: Path
@@ -79,41 +80,47 @@ def train_network(
     cache: str = "",
     progress: Progress = no_progress,
 ) -> TrainedNetwork:
-    """Train an occupancy network, keep its best weights and score them.
+    """Train an occupancy network, save the best weights and score them.
 
-    A run that was interrupted continues when it is called again with the same arguments.
-    ``run.yaml`` in its folder holds every setting; settings without an argument are changed there.
+    Call the function again with the same arguments to resume an interrupted run. ``run.yaml`` in
+    the run folder contains all settings. To change a setting that is not an argument of this
+    function, pass an edited copy of this file as ``config``.
 
     Args:
-        network: ``monoscene``, ``iso``, ``ndc_scene``, ``symphonies`` or ``embodied``; left out
-            with ``config``.
-        data: data sets; with ``(data, weight)`` one is drawn from more or less often. The first
-            is validated and scored on.
-        out: the folder of the run.
-        config: a ``run.yaml`` with all settings.
-        preset: ``smoke``, ``quick``, ``1k`` or ``8k``: sizes and steps together; ``1k`` by
-            default.
-        size: ``tiny``, ``small`` or ``full``.
-        backbone: a model of transformers that sees the images, ``hf:ID``.
-        grid: the side of a cell in metres, ``0.16`` or ``0.08``.
-        image: width and height of the images; 320x240 by default.
-        depth: ``taught`` to the network, ``given`` to it, or ``none``.
-        steps: 2,000 by default.
-        batch: frames per step; 4 by default.
-        learning_rate: 5e-4 by default.
+        network: ``monoscene``, ``iso``, ``ndc_scene``, ``symphonies`` or ``embodied``. Must be
+            omitted with ``config``.
+        data: One or more data sets. A pair ``(data, weight)`` sets how often a data set is sampled,
+            relative to the others. Validation and scoring use the first data set.
+        out: Run folder.
+        config: A ``run.yaml`` file with all settings.
+        preset: Predefined sizes and number of steps: ``smoke``, ``quick``, ``1k`` or ``8k``.
+            Defaults to ``1k``.
+        size: Network size: ``tiny``, ``small`` or ``full``.
+        backbone: Image backbone from transformers, as ``hf:ID``.
+        grid: Cell size in metres: ``0.16`` or ``0.08``.
+        image: Image width and height in pixels. Defaults to 320x240.
+        depth: Use of depth: ``taught`` (as a training target), ``given`` (also as an input) or
+            ``none``.
+        steps: Number of training steps. Defaults to 2,000.
+        batch: Number of frames per step. Defaults to 4.
+        learning_rate: Learning rate. Defaults to 5e-4.
         precision: ``auto``, ``bf16`` or ``32``.
-        val_share: the share of scenes that are held out for validation; 0 for the test split.
-        patience: validations without improvement before training stops.
-        seed: the same seed gives the same run.
-        threads: of the CPU; all by default.
-        workers: processes that prepare batches.
+        val_share: Fraction of the training scenes to hold out for validation. 0 validates on the
+            test split.
+        patience: Number of validations without improvement after which training stops. 0 never
+            stops early.
+        seed: Random seed. The same seed reproduces the same run.
+        threads: Number of CPU threads. Defaults to all.
+        workers: Number of processes that prepare batches.
         device: ``auto``, ``cpu`` or ``cuda``.
-        cache: the folder of decoded frames, or ``off``; the user's cache folder by default.
-        progress: called for frames, steps and scores.
+        cache: Cache folder for decoded frames, or ``off``. Defaults to the user's cache folder.
+        progress: Callback that reports progress on frames, steps and scores.
 
     Raises:
-        UsageError: an argument is wrong. MissingExtraError: torch is not installed.
-        ConflictError: the folder holds a run with other settings. InputError: a set cannot be read.
+        UsageError: If an argument is invalid.
+        MissingExtraError: If torch or another training dependency is not installed.
+        ConflictError: If the folder contains a run with other settings.
+        InputError: If a data set cannot be read.
 
     Example:
         >>> import world2minecraft as w2m
@@ -150,18 +157,20 @@ def train_network(
 
 @dataclass(frozen=True)
 class ExportedNetwork:
-    """An ONNX file that was written, compared with its network on one image.
+    """An exported ONNX file, compared with the original network on one image.
 
     Attributes:
-        path: the file.
-        name: what reports call the network.
-        weights: how they are stored: ``float``, ``half`` or ``int8``.
-        bytes: the size of the file.
-        difference: the largest difference of a logit from the network's.
-        moved_mean: by how much stored weights move a logit on average; 0 of ``float``,
-        moved: and at most.
-        spread: the standard deviation of all logits.
-        relabelled: the share of the cells that get another class by it.
+        path: Path of the file.
+        name: Name of the network in reports.
+        weights: Storage type of the weights: ``float``, ``half`` or ``int8``.
+        bytes: File size in bytes.
+        difference: Maximum absolute difference in a logit between the network and the ONNX model
+            before the weights are compressed.
+        moved_mean: Mean absolute change in a logit when the weights are compressed. 0 for
+            ``float``.
+        moved: Maximum absolute change in a logit when the weights are compressed.
+        spread: Standard deviation of all logits.
+        relabelled: Fraction of the cells whose class changes when the weights are compressed.
     """
 
     path: Path
@@ -178,20 +187,23 @@ class ExportedNetwork:
 def export_network(
     run: str | Path, out: str | Path, *, name: str = "", weights: str = "float"
 ) -> ExportedNetwork:
-    """Write a trained occupancy network as one ONNX file, which runs without torch.
+    """Export a trained occupancy network as a single ONNX file, which runs without torch.
 
-    The file and the network are compared on one image; nothing is written where they differ.
-    docs/networks-onnx.md describes the file.
+    The ONNX model is compared with the network on one image. If their outputs differ, the function
+    raises an error and writes no file. docs/networks-onnx.md describes the file.
 
     Args:
-        run: the folder of a run, or a file of weights.
-        out: the ONNX file to write.
-        name: what reports call the network.
-        weights: how they are stored: ``float``, ``half`` or ``int8`` (a quarter of the size).
+        run: Run folder or weights file.
+        out: ONNX file to write.
+        name: Name of the network in reports.
+        weights: Storage type of the weights: ``float``, ``half`` or ``int8`` (a quarter of the
+            size).
 
     Raises:
-        InputError: there are no weights. UnknownNameError: weights are not stored so.
-        MissingExtraError: torch or onnx is not installed. OutputError: the file cannot be written.
+        InputError: If the weights are missing.
+        UnknownNameError: If the storage type is unknown.
+        MissingExtraError: If torch or onnx is not installed.
+        OutputError: If the outputs differ or the file cannot be written.
 
     Example:
         >>> import world2minecraft as w2m
@@ -248,32 +260,37 @@ def evaluate_network(
     cache: str = "",
     progress: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Score occupancy by the published protocols, with confidence intervals over scenes.
+    """Score occupancy predictions with the published protocols.
 
-    docs/occupancy-scores.md states what each protocol counts, and how it treats unknown cells.
+    The scores have confidence intervals over scenes. docs/occupancy-scores.md describes which cells
+    each protocol counts and how it handles unknown cells.
 
     Args:
-        predicted: the folder of a run, weights, an ``.onnx`` file, or saved predictions (a file,
-            or a folder of KEY.npz, .npy or .pkl).
-        data: any occupancy data set.
-        protocols: ``monoscene``, ``iso``, ``embodied``, ``ssc`` and ``visible``; all by default.
-        split: ``train``, ``test`` or ``all``; ``test`` by default, where there is one.
-        limit: score this many frames at most, spread evenly.
-        order: the axes of saved predictions: ``xyz``, ``xzy`` (NYUv2) or ``yxz``; by their shape
-            by default.
-        classes: the classes of saved predictions: ``ours``, or ``embodied`` (12 is empty).
-        labels: of NYUv2, the folder of MonoScene's preprocessed ``base/``, if elsewhere.
-        seed: of the intervals.
+        predicted: A run folder, a weights file, an ``.onnx`` file, or saved predictions (one file,
+            or a folder of KEY.npz, .npy or .pkl files).
+        data: An occupancy data set in any supported format.
+        protocols: ``monoscene``, ``iso``, ``embodied``, ``ssc`` or ``visible``. Defaults to all.
+        split: ``train``, ``test`` or ``all``. Defaults to ``test`` if the data set has a test
+            split, and to ``all`` otherwise.
+        limit: Maximum number of frames to score, spread evenly over the split.
+        order: Axis order of saved predictions: ``xyz``, ``xzy`` (NYUv2) or ``yxz``. Inferred from
+            their shape by default.
+        classes: Class numbering of saved predictions: ``ours`` or ``embodied`` (12 is empty).
+        labels: Folder with MonoScene's preprocessed ``base/``, if it is stored elsewhere. Only for
+            NYUv2.
+        seed: Random seed for the confidence intervals.
         device: ``auto``, ``cpu`` or ``cuda``.
-        cache: the folder of decoded frames, or ``off``; the user's cache folder by default.
-        progress: called after each frame.
+        cache: Cache folder for decoded frames, or ``off``. Defaults to the user's cache folder.
+        progress: Callback that is called after each frame.
 
     Returns:
-        ``["protocols"][name]`` with the ``micro`` and ``macro`` figures, such as
-        ``["micro"]["miou"]``; ``["left_out"]`` with the reason by name.
+        A dictionary. ``["protocols"][name]`` contains the ``micro`` and ``macro`` scores, such as
+        ``["micro"]["miou"]``. ``["left_out"]`` contains the reason for each protocol that was
+        skipped.
 
     Raises:
-        InputError: a file is missing or cannot be read. UsageError: a protocol cannot be scored.
+        InputError: If a file is missing or cannot be read.
+        UsageError: If a protocol cannot be scored.
 
     Example:
         >>> import world2minecraft as w2m
@@ -301,11 +318,11 @@ def evaluate_network(
 
 
 def scores_latex(scores: dict[str, Any], name: str) -> str:
-    """Return scores as rows of a LaTeX table in the columns of the paper, one per protocol.
+    """Return scores as rows of a LaTeX table with the paper's columns, one row per protocol.
 
     Args:
-        scores: of ``evaluate_network``.
-        name: what the rows call the method.
+        scores: Scores returned by ``evaluate_network``.
+        name: Name of the method in the table.
     """
     from world2minecraft.networks.scoring import latex_rows
 
@@ -326,32 +343,38 @@ def predict_occupancy(
     run_folder: str | Path | None = None,
     progress: Progress = no_progress,
 ) -> "PredictedCells":
-    """Predict the class of every cell: of one frame's grid, or of a whole captured room.
+    """Predict the class of every cell in the grid of one frame or in a whole captured room.
 
-    With ``grid`` and a picture, the cells are those of the file: 60x36x60 of 8 cm, x right, z up,
-    y forward. Of a ``.bin`` only the places of grid and camera are read, never its labels.
-    Without ``grid``, a capture is registered, fused and labelled, and the cells are the room's.
+    With ``grid`` and a single image, the function predicts the cells of the grid file: 60x36x60
+    cells with a size of 8 cm and the axes x right, z up, y forward. From a ``.bin`` file only the
+    position of the grid and the camera is read, never the labels. Without ``grid``, the capture is
+    registered, fused and labelled, and the function returns the cells of the room.
 
     Args:
-        source: a depth PNG of 16 bits, a photo, or a capture.
-        out: an ``.npz`` file to write: ``labels``, ``confidence``, ``observed`` and their place.
-        grid: an SSCNet ``.bin``, or an ``.npz`` with ``origin_m`` and ``camera_to_world``.
-        colour: of a depth picture, the photo of its camera.
-        depth_code: how a depth PNG holds metres: ``auto``, ``rotated``, ``mm`` or ``8000``.
-        focal_px: of a frame, the focal length at its size; NYUv2's by default.
-        predictor: ``depth``; or ``mono`` or ``mono:FILE.onnx``, a network that sees photos.
-        labels: of a capture, a folder of 2D label images.
-        fov_deg: of one photo without ``grid``, its vertical field of view in degrees.
-        run_folder: of a capture, the folder for the files of the run.
-        progress: called at each step.
+        source: A 16-bit depth PNG, a photo or a capture.
+        out: Optional ``.npz`` file for ``labels``, ``confidence``, ``observed`` and the grid
+            position.
+        grid: An SSCNet ``.bin`` file, or an ``.npz`` file with ``origin_m`` and
+            ``camera_to_world``.
+        colour: Photo from the same camera as a depth image.
+        depth_code: Encoding of a depth PNG: ``auto``, ``rotated``, ``mm`` or ``8000``.
+        focal_px: Focal length in pixels at the size of the image. Only for a single frame. Defaults
+            to that of NYUv2.
+        predictor: ``depth``, or ``mono`` or ``mono:FILE.onnx`` for a network that uses photos.
+        labels: Folder of 2D label images. Only for a capture.
+        fov_deg: Vertical field of view in degrees. Only for a single photo without ``grid``.
+        run_folder: Folder for the files of the run. Only for a capture. Defaults to a temporary
+            folder.
+        progress: Callback that reports each step.
 
     Returns:
-        ``labels`` (uint8 [X, Y, Z], 0 to 11, 255 unknown), ``confidence`` and ``observed`` of each
-        cell, along the axes x, y, z up.
+        The ``labels`` (uint8 [X, Y, Z], 0 to 11, or 255 for unknown), ``confidence`` and
+        ``observed`` arrays, with the axes x, y and z (up).
 
     Raises:
-        UsageError: arguments contradict each other. InputError: a file cannot be read.
-        UnknownNameError: there is no such predictor.
+        UsageError: If arguments contradict each other.
+        InputError: If a file cannot be read.
+        UnknownNameError: If the predictor is unknown.
 
     Example:
         >>> import world2minecraft as w2m
@@ -395,7 +418,7 @@ def _capture_cells(
     run_folder: str | Path | None,
     progress: Progress,
 ) -> "tuple[PredictedCells, Any]":
-    """Reconstruct a capture up to its labels; return its cells, and ``scan_to_room``."""
+    """Reconstruct a capture up to the label stage and return its cells and ``scan_to_room``."""
     from world2minecraft.formats.run_arrays import read_room
     from world2minecraft.minecraftocc.cell_predictions import cells_of_room, resample_to_grid
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
@@ -417,7 +440,7 @@ def _capture_cells(
 
 
 def _check_no_depth(source: Path) -> None:
-    """Raise UsageError for a depth picture without a grid."""
+    """Raise UsageError if the source is a depth image, which requires a grid."""
     from world2minecraft.capture.images import read_header
 
     if source.suffix.lower() == ".png" and read_header(source).mode.startswith("I"):
@@ -425,7 +448,10 @@ def _check_no_depth(source: Path) -> None:
 
 
 def _mono_network(predictor: str) -> str | None:
-    """Return the ONNX file of a predictor of photos, empty for the shipped one; None for depth."""
+    """Return the ONNX file of a photo predictor, or None for the depth predictor.
+
+    An empty string selects the ONNX file that is included in the package.
+    """
     kind, _, file = predictor.partition(":")
     if kind not in ("depth", "mono"):
         raise UnknownNameError("predictor", kind, ("depth", "mono"))
@@ -439,7 +465,13 @@ def _run_config(
     preset: str,
     changes: dict[str, Any],
 ) -> "RunConfig":
-    """Return the settings of a run. Raises UsageError, UnknownNameError or InputError."""
+    """Return the settings for a run.
+
+    Raises:
+        UsageError: If arguments contradict each other or no network is given.
+        UnknownNameError: If the preset or a setting is unknown.
+        InputError: If the configuration file cannot be read.
+    """
     from world2minecraft.networks.config import RunConfig, read_config
 
     if config is not None:
@@ -454,7 +486,7 @@ def _run_config(
 
 
 def _data_sources(data: Any) -> "tuple[DataSource, ...]":
-    """Return what data sets with or without weights mean; texts may be ``DIR:WEIGHT``."""
+    """Convert data sets with or without weights to data sources. Strings can be ``DIR:WEIGHT``."""
     from world2minecraft.networks.config import DataSource
 
     is_single = isinstance(data, str | Path | Dataset) or (
@@ -473,7 +505,7 @@ def _data_sources(data: Any) -> "tuple[DataSource, ...]":
 
 
 def _check_training_extra() -> None:
-    """Raise MissingExtraError where torch or what training needs is not installed."""
+    """Raise MissingExtraError if torch or another training dependency is not installed."""
     from importlib.util import find_spec
 
     if any(find_spec(name) is None for name in TRAINING_MODULES):

@@ -1,4 +1,4 @@
-"""The tables and figures of the paper, with what we measured."""
+"""The tables and figures of the paper, with our own measurements."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class FilledTable:
-    """A table of the paper with our figures in it; as text, for a terminal.
+    """A table of the paper with our results. ``str()`` formats it for a terminal.
 
     Attributes:
-        table: the table as printed.
-        ours: our rows by their keys, each with what it was measured on and the command.
+        table: The table as printed in the paper.
+        ours: Our rows by key, each with the data it was measured on and the command.
     """
 
     table: "PaperTable"
@@ -28,12 +28,12 @@ class FilledTable:
 
     @property
     def cells(self) -> int:
-        """How many cells are ours."""
+        """Number of cells with our results."""
         return sum(len(one.cells) for one in self.ours.values())
 
     @property
     def lacking(self) -> int:
-        """How many cells need data or hardware that we lack."""
+        """Number of cells that require data or hardware we do not have."""
         from world2minecraft.paper.table_writer import lacking
 
         return lacking(self.table, self.ours)
@@ -51,13 +51,13 @@ class FilledTable:
         return as_markdown(self.table, self.ours)
 
     def latex(self) -> str:
-        """Return the table as LaTeX, for booktabs."""
+        """Return the table as LaTeX that uses booktabs."""
         from world2minecraft.paper.table_writer import as_latex
 
         return as_latex(self.table, self.ours)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every key, value and source, for JSON."""
+        """Return all keys, values and sources as JSON-compatible values."""
         from world2minecraft.paper.table_writer import as_values
 
         return as_values(self.table, self.ours)
@@ -72,16 +72,18 @@ class FilledTable:
 def paper_tables(
     which: int | str = "all", *, results: str | Path | None = None
 ) -> list[FilledTable]:
-    """Return tables of the paper with our figures beside the printed ones.
+    """Return tables of the paper with our results next to the printed ones.
 
-    A cell of ours that needs what we lack says so and names the command that fills it.
+    A cell that requires data or hardware we do not have is marked, with a note on the requirement
+    and the command that fills the cell.
 
     Args:
-        which: a table by its number or its name, or ``all``.
-        results: results of your own, YAML or JSON, in place of ours.
+        which: Number or name of a table, or ``all``.
+        results: YAML or JSON file with your own results, used instead of ours.
 
     Raises:
-        UnknownNameError: there is no such table. InputError: the results cannot be read.
+        UnknownNameError: If the table is unknown.
+        InputError: If the results cannot be read.
 
     Example:
         >>> from world2minecraft.api.paper import paper_tables
@@ -102,20 +104,20 @@ def paper_figure(
     walk: str | Path | None = None,
     out: str | Path | None = None,
 ) -> "Image":
-    """Draw the paper's figure of a room: photo, world, predicted cells, construction.
+    """Draw the paper's figure for a room: photo, world, predicted cells and construction.
 
-    The photo and the world are seen from one pose, the cells and the construction from outside,
-    without ceiling and near walls.
+    The photo and the world are shown from the same pose. The cells and the construction are shown
+    from outside, without the ceiling and the near walls.
 
     Args:
-        run: a finished reconstruction, or its folder.
-        capture: what it was reconstructed from; ``capture`` of the run by default.
-        walk: the folder of ``run_agent``, for a strip of what its agent saw.
-        out: the PNG file to write.
+        run: A finished reconstruction or its folder.
+        capture: Capture that was reconstructed. Defaults to ``capture`` in the run folder.
+        walk: Folder written by ``run_agent``. Adds a strip with the agent's views.
+        out: Optional PNG file to write.
 
     Raises:
-        CaptureError: the capture has no posed photo that the run used.
-        InputError: a file is missing or damaged.
+        CaptureError: If the capture has no posed photo that the run used.
+        InputError: If a file is missing or damaged.
 
     Example:
         >>> from world2minecraft.api.paper import paper_figure

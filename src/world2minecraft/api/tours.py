@@ -1,4 +1,4 @@
-"""Tours: planned walks through a world, or the poses of screenshots, as files of views."""
+"""Write tour files, which contain the views of planned walks or the poses of screenshots."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from world2minecraft.minecraftocc.scene_sources import SceneSource
     from world2minecraft.minecraftocc.tours import PlannedView
 
-GAME_FOV_DEG = 70.0  # Of screenshots that do not state theirs.
+GAME_FOV_DEG = 70.0  # For screenshots that do not record their own.
 
 
 @dataclass(frozen=True)
 class TourFile:
-    """A tour file that was written.
+    """Summary of a tour file that was written.
 
     Attributes:
-        path: the file, one JSON object per line.
-        views: how many views it holds.
-        tours: how many walks they belong to.
-        rooms: how many rooms they are taken in; 0 of screenshots.
-        kinds: how many views there are of each kind: ``axis``, ``diagonal`` and ``free``; of
-            screenshots, how many have their pose from each source.
-        notes: remarks on the world.
+        path: Path of the file, which contains one JSON object per line.
+        views: Number of views.
+        tours: Number of walks that the views belong to.
+        rooms: Number of rooms with views. Always 0 for screenshots.
+        kinds: Number of views by type: ``axis``, ``diagonal`` and ``free``. For screenshots, the
+            number of views by source of the pose.
+        notes: Remarks about the world.
     """
 
     path: Path
@@ -53,24 +53,24 @@ def plan_tour(
     blocks_per_metre: float | None = None,
     progress: Progress = no_progress,
 ) -> TourFile:
-    """Plan smooth walks through all rooms of a world, with views that are worth an image.
+    """Plan smooth walks through all rooms of a world, with views that are suitable for images.
 
     Args:
-        world: a world, a run's folder or a block file.
-        out: the tour file to write, JSONL.
-        count: how many views; rooms that give fewer give fewer.
-        seed: 0 or more.
+        world: A world, a run folder or a block file.
+        out: Tour file to write, in JSONL format.
+        count: Maximum number of views. Small rooms can result in fewer views.
+        seed: Random seed. Must be 0 or more.
         camera: ``nyu`` or ``paper``.
-        size: width and height in pixels, instead of the camera's.
-        fov_deg: the vertical field of view in degrees, instead of the camera's.
-        reachable: leave out rooms that cannot be walked to from the spawn.
-        block_map: the map from blocks to classes: ``nyu``, ``paper`` or a YAML file.
-        blocks_per_metre: the scale of a world that does not state it.
-        progress: called as rooms are looked at.
+        size: Image width and height in pixels. Overrides the size of the camera.
+        fov_deg: Vertical field of view in degrees. Overrides that of the camera.
+        reachable: Skip rooms that cannot be reached on foot from the spawn point.
+        block_map: Mapping from blocks to classes: ``nyu``, ``paper`` or a YAML file.
+        blocks_per_metre: Scale for a world that does not record its own.
+        progress: Callback that reports progress on the rooms.
 
     Raises:
-        UsageError: an argument is wrong, or nobody can stand in the world.
-        InputError: the world cannot be read.
+        UsageError: If an argument is invalid or the world has no position where a player can stand.
+        InputError: If the world cannot be read.
 
     Example:
         >>> from world2minecraft.api.tours import plan_tour
@@ -107,21 +107,23 @@ def tour_of_screenshots(
     block_map: str = "nyu",
     blocks_per_metre: float | None = None,
 ) -> TourFile:
-    """Write the poses of the game's own screenshots of a world as a tour file.
+    """Write a tour file with the poses of in-game screenshots.
 
     Args:
-        world: what they show.
-        screenshots: their folder.
-        out: the tour file to write, JSONL.
-        at: what their positions are: ``feet`` or ``eye``.
-        poses: a JSONL or CSV file with the poses.
-        pattern: how their names hold the poses, such as ``{x}_{y}_{z}_{yaw}_{pitch}``.
-        fov_deg: the vertical field of view of those that do not state it; 70 by default.
-        block_map: the map from blocks to classes: ``nyu``, ``paper`` or a YAML file.
-        blocks_per_metre: the scale of a world that does not state it.
+        world: World that the screenshots show.
+        screenshots: Folder of the screenshots.
+        out: Tour file to write, in JSONL format.
+        at: Reference point of the positions: ``feet`` or ``eye``.
+        poses: JSONL or CSV file with the poses.
+        pattern: Pattern for poses in file names, such as ``{x}_{y}_{z}_{yaw}_{pitch}``.
+        fov_deg: Vertical field of view in degrees for screenshots that do not record their own.
+            Defaults to 70.
+        block_map: Mapping from blocks to classes: ``nyu``, ``paper`` or a YAML file.
+        blocks_per_metre: Scale for a world that does not record its own.
 
     Raises:
-        UsageError: ``at`` is neither. InputError: the world or a screenshot cannot be read.
+        UsageError: If ``at`` is neither ``feet`` nor ``eye``.
+        InputError: If the world or a screenshot cannot be read.
 
     Example:
         >>> from PIL import Image

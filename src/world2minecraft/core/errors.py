@@ -1,22 +1,23 @@
-"""The exceptions that the program raises on purpose, one for each way to fail.
+"""The exceptions that the program raises on purpose.
 
 ::
 
     World2MinecraftError            exit code 1
-    ├── UsageError                  2   the command or a parameter is wrong
-    │   ├── UnknownNameError        2   a name that no registry holds
+    ├── UsageError                  2   a command, an option or a parameter is invalid
+    │   ├── UnknownNameError        2   a name is not registered
     │   └── MissingExtraError       2   an optional dependency is not installed
-    ├── ServerError                 1   a running server refuses, or cannot be reached
-    ├── WorkerError                 1   a process that shares the work has ended or failed
-    ├── BudgetError                 1   a cap on calls or money is reached
+    ├── ServerError                 1   a server refuses a request or cannot be reached
+    ├── WorkerError                 1   a worker process has exited or failed
+    ├── BudgetError                 1   a limit on requests or cost is reached
     └── InputError                  3   a file or folder cannot be used
-        ├── DamagedFileError        3   a file is not what its format says
-        ├── LimitError              3   a file asks for more than the program allows
-        ├── CaptureError            3   a capture lacks what a reconstruction needs
-        ├── ConflictError           3   something changed since, so that a step would destroy it
+        ├── DamagedFileError        3   a file is not valid in its format
+        ├── LimitError              3   a file exceeds a limit of the program
+        ├── CaptureError            3   a capture lacks data that a reconstruction requires
+        ├── ConflictError           3   a step would overwrite a later change or other data
         └── OutputError             3   the output folder cannot be written
 
-Each message says what was expected, what was given and what to type next, on one line.
+Each message is a single line with the expected value, the given value and the next step for the
+user.
 """
 
 import difflib
@@ -25,11 +26,11 @@ from typing import Any
 
 
 class World2MinecraftError(Exception):
-    """The root of the tree."""
+    """Base class for all exceptions in this module."""
 
     exit_code = 1
 
-    def __reduce__(self):  # So that one process can send it to another, whatever makes it.
+    def __reduce__(self):  # Makes subclasses picklable whatever their __init__ accepts.
         return _restore, (type(self), str(self), self.__dict__)
 
 
@@ -41,16 +42,16 @@ def _restore(kind: type[World2MinecraftError], text: str, facts: dict[str, Any])
 
 
 class UsageError(World2MinecraftError):
-    """A command, an option or a parameter is wrong."""
+    """A command, an option or a parameter is invalid."""
 
     exit_code = 2
 
 
-MAX_LISTED, FIRST_LISTED = 60, 20  # Of more names than a terminal's screen, the first are listed.
+MAX_LISTED, FIRST_LISTED = 60, 20  # Limits for the list of known names.
 
 
 class UnknownNameError(UsageError):
-    """A name that no registry holds; the message suggests the nearest."""
+    """A name is not registered. The message suggests the closest match."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         choices = sorted(known)
@@ -62,26 +63,26 @@ class UnknownNameError(UsageError):
 
 
 class MissingExtraError(UsageError):
-    """An optional dependency is not installed; the message is the install line."""
+    """An optional dependency is not installed. The message contains the install command."""
 
     def __init__(self, feature: str, extra: str):
         super().__init__(f"{feature} needs an extra: pip install 'world2minecraft[{extra}]'")
 
 
 class ServerError(World2MinecraftError):
-    """A running server cannot be reached, refuses, or does not do what it was asked to."""
+    """A server cannot be reached, refuses a request or does not perform it."""
 
 
 class WorkerError(World2MinecraftError):
-    """A process that shares the work has ended, or failed with an error that cannot be sent."""
+    """A worker process has exited, or failed with an exception that cannot be pickled."""
 
 
 class BudgetError(World2MinecraftError):
-    """A cap on calls of a model, or on what they cost, is reached."""
+    """A limit on the number or the cost of model requests is reached."""
 
 
 class InputError(World2MinecraftError):
-    """A file or folder cannot be used. The message names it, then the reason."""
+    """A file or folder cannot be used. The message contains its path and the reason."""
 
     exit_code = 3
 
@@ -91,27 +92,27 @@ class InputError(World2MinecraftError):
 
 
 class DamagedFileError(InputError):
-    """A file is not what its format says."""
+    """A file is not valid in its format."""
 
 
 class LimitError(InputError):
-    """A file asks for more memory, depth or size than the program allows."""
+    """A file exceeds the program's limits on memory, nesting depth or size."""
 
 
 class CaptureError(InputError):
-    """A capture lacks what a reconstruction needs, or contradicts itself."""
+    """A capture lacks data that a reconstruction requires, or contains contradictory data."""
 
 
 class ConflictError(InputError):
-    """Something changed, or is in use, since a step was prepared or done."""
+    """A file or folder is in use, or has changed since a step was prepared or completed."""
 
 
 class OutputError(InputError):
-    """The output folder is a file, is full or may not be written."""
+    """The output folder is a file, is full or is not writable."""
 
 
 def one_line(text: object, most: int | None = None) -> str:
-    """Return a text with each run of white space as one space, cut at ``most`` letters.
+    """Collapse white space to single spaces and truncate the text to ``most`` characters.
 
     Example:
         >>> one_line(ValueError("no   table here"), 10)
@@ -121,7 +122,7 @@ def one_line(text: object, most: int | None = None) -> str:
 
 
 def reason_of(error: BaseException, most: int = 100) -> str:
-    """Return what an error of another library says as one line, or its kind where it says nothing.
+    """Return an exception's message on one line, or its type if the message is empty.
 
     Example:
         >>> reason_of(EOFError())
@@ -131,5 +132,5 @@ def reason_of(error: BaseException, most: int = 100) -> str:
 
 
 def first_line(error: BaseException) -> str:
-    """Return the first line of what an error of another library says, or its kind."""
+    """Return the first line of an exception's message, or its type if the message is empty."""
     return (str(error).strip().splitlines() or [type(error).__name__])[0]
