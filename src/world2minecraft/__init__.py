@@ -14,6 +14,7 @@ pass between the stages are in ``core.types``, axis conventions in ``core.coordi
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from world2minecraft.core import former_names
 from world2minecraft.navigation.gymnasium_plugin import register_with_gymnasium
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 register_with_gymnasium()  # As soon as Gymnasium is imported, which this does not do.
+former_names.install()
 
 
 def __getattr__(name: str) -> Any:

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.errors import LimitError
+from world2minecraft.core.former_names import getter
 from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.rules.block_traits import is_among
@@ -33,6 +34,8 @@ from world2minecraft.minecraft.rules.supports import (
     WEST,
     faces_of,
 )
+
+__getattr__ = getter(__name__)
 
 (OTHER, STAIRS, PANE, FENCE, BRICK_FENCE, GATE, WALL, DOOR, CHEST, LEAVES, SNOWY, CAMPFIRE,
  LOG, OLD_WALL) = range(14)  # fmt: skip

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.former_names import getter
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.block_traits import pattern_of
@@ -29,6 +30,8 @@ from world2minecraft.minecraft.rules.supports import (
     has_centre_below,
     is_solid,
 )
+
+__getattr__ = getter(__name__)
 
 DATA_FILE = "data/support_rules.json"
 _AIR = ("minecraft:air", "minecraft:cave_air", "minecraft:void_air")
