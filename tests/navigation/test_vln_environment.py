@@ -259,6 +259,7 @@ def test_the_former_id_works_with_a_warning(flat_path):
     with pytest.warns(DeprecationWarning, match="World2Minecraft-VLN-v0 is deprecated; use world2"):
         env = gymnasium.make("World2Minecraft-VLN-v0", scene=flat_path, eyes=EYES)
     assert isinstance(env.unwrapped, VlnEnv)
+    assert set(env.observation_space) == {"rgb", "pose", "instruction"}, "the former default"
 
 
 def test_default_spaces_suit_stable_baselines3(flat_path):

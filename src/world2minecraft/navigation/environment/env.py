@@ -17,7 +17,12 @@ from world2minecraft.navigation.environment.action_spaces import (
     DiscreteActions,
 )
 from world2minecraft.navigation.environment.episode_sampling import EpisodeSampler
-from world2minecraft.navigation.environment.observations import DEFAULT_SENSORS, Eyes, SensorSuite
+from world2minecraft.navigation.environment.observations import (
+    DEFAULT_SENSORS,
+    FORMER_SENSORS,
+    Eyes,
+    SensorSuite,
+)
 from world2minecraft.navigation.episodes import score_walk
 from world2minecraft.navigation.gymnasium_plugin import ENV_ID
 from world2minecraft.navigation.moves import get_move_set
@@ -219,11 +224,11 @@ class VlnEnv(gymnasium.Env):
 
 
 class FormerIdEnv(VlnEnv):
-    """The environment under its former id, ``World2Minecraft-VLN-v0``."""
+    """The environment under its former id, with the default observations of that version."""
 
     def __init__(self, *args: Any, **options: Any):
         warn_of_former_id("World2Minecraft-VLN-v0", ENV_ID)
-        super().__init__(*args, **options)
+        super().__init__(*args, **{"observations": FORMER_SENSORS, **options})
 
 
 def warn_of_former_id(former: str, current: str) -> None:

@@ -17,6 +17,7 @@ from world2minecraft.rendering.shading_parameters import DAY
 
 SENSORS = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
 DEFAULT_SENSORS = ("rgb", "pose")  # A text is a space that Stable-Baselines3 cannot train on.
+FORMER_SENSORS = ("rgb", "pose", "instruction")  # The default of version 0.1.
 FAR_M = 1_000.0  # Depths beyond are cut; where a ray meets nothing depth is 0.
 MIN_TEXT_LENGTH = 512  # Characters of an instruction, or those of the longest there is.
 MAX_SIDE_PX = 4_096

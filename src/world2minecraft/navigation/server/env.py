@@ -6,6 +6,7 @@ from typing import Any
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.environment.action_spaces import ActionController
 from world2minecraft.navigation.environment.env import VlnEnv, warn_of_former_id
+from world2minecraft.navigation.environment.observations import FORMER_SENSORS
 from world2minecraft.navigation.gymnasium_plugin import SERVER_ENV_ID
 from world2minecraft.navigation.server.actions import ServerContinuousActions, ServerDiscreteActions
 from world2minecraft.navigation.server.player import DEFAULT_NAME, ServerPlayer, join
@@ -71,8 +72,8 @@ class ServerEnv(VlnEnv):
 
 
 class FormerIdServerEnv(ServerEnv):
-    """The environment under its former id, ``World2Minecraft-VLN-Server-v0``."""
+    """The environment under its former id, with the default observations of that version."""
 
     def __init__(self, *args: Any, **options: Any):
         warn_of_former_id("World2Minecraft-VLN-Server-v0", SERVER_ENV_ID)
-        super().__init__(*args, **options)
+        super().__init__(*args, **{"observations": FORMER_SENSORS, **options})
