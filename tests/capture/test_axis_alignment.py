@@ -1,15 +1,12 @@
-"""One small turn lays all faces along the axes; a face's place is that of its most surface."""
+"""One small rotation lays all faces along the axes; a face lies where most of its surface is."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from world2minecraft.capture.alignment.axis_profiles import face_position_m, points_per_cell
-from world2minecraft.capture.alignment.room_frame import (
-    align_surface,
-    axis_aligning_rotation,
-    find_faces,
-)
+from world2minecraft.capture.alignment.plane_alignment import align_planes, find_faces
+from world2minecraft.capture.alignment.room_frame import align_surface
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
 
 
@@ -43,19 +40,75 @@ def test_a_small_tilt_is_found(box_room, degrees):
     surface = collect_oriented_points(box_room.views(14, noise_seed=1))
     lean = np.eye(4)
     lean[:3, :3] = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
-    left = axis_aligning_rotation(surface.transformed(lean)) @ lean[:3, :3]
+    left = align_planes(surface.transformed(lean)).rotation @ lean[:3, :3]
     assert np.degrees(Rotation.from_matrix(left).magnitude()) < 0.05
 
 
 def test_without_faces_nothing_is_rotated():
     nothing = sheet(0.0, 0.0, 0.0)
-    np.testing.assert_array_equal(axis_aligning_rotation(nothing), np.eye(3))
-    assert find_faces(nothing).count == 0
+    found = align_planes(nothing)
+    np.testing.assert_array_equal(found.rotation, np.eye(3))
+    assert (found.sigma_deg > 180).all(), "nothing is known"
+    assert find_faces(nothing) == []
 
 
 def test_faces_near_each_other_are_not_counted_twice():
-    assert find_faces(both(sheet(0.0, 0, 2), sheet(0.05, 0, 1))).count == 1
-    assert find_faces(both(sheet(0.0, 0, 2), sheet(0.5, 0, 1.5))).count == 2
+    assert len(find_faces(both(sheet(0.0, 0, 2), sheet(0.05, 0, 1)))) == 1
+    assert len(find_faces(both(sheet(0.0, 0, 2), sheet(0.5, 0, 1.5)))) == 2
+
+
+def level_face(
+    height_m: float, side_m: float, *, lean_deg: float = 0.0, bend_per_m2: float = 0.0
+) -> OrientedPoints:
+    """Return a square face that looks up, seen from 2 m above its middle."""
+    x, y = np.meshgrid(*[np.arange(-side_m / 2, side_m / 2, 0.03)] * 2)
+    lean = np.radians(lean_deg)
+    eye = np.eye(4)
+    eye[2, 3] = height_m + 2.0
+    squared_distance = x**2 + y**2 + 4.0
+    bend = bend_per_m2 * squared_distance * np.sign(x)  # One half high, one low: it seems to lean.
+    z = height_m + x * np.tan(lean) + bend
+    normal = np.array([-np.sin(lean), 0.0, np.cos(lean)])
+    return OrientedPoints(
+        np.column_stack([x.ravel(), y.ravel(), z.ravel()]),
+        np.tile(normal, (x.size, 1)),
+        eye[None],
+        np.full(x.size, 0.002),
+        np.zeros(x.size, np.int32),
+    )
+
+
+def tilt_deg(rotation: np.ndarray) -> float:
+    return float(np.degrees(np.arccos(min(1.0, rotation[2, 2]))))
+
+
+def test_a_leaning_table_does_not_tip_a_level_floor():
+    scene = both(level_face(0.0, 3.0), level_face(0.72, 1.2, lean_deg=2.0))
+    assert tilt_deg(align_planes(scene).rotation) < 0.1
+
+
+def test_a_scrap_of_floor_does_not_tip_a_room_with_a_large_table():
+    """The bend of the depth makes a small face lean; only its extent tells how much to trust it."""
+    scrap = level_face(0.0, 0.55, bend_per_m2=0.0008)
+    scene = both(scrap, level_face(0.72, 1.8))
+    alone, together = (tilt_deg(align_planes(surface).rotation) for surface in (scrap, scene))
+    assert alone > 0.15
+    assert together < 0.7 * alone
+
+
+def test_more_points_on_a_bent_face_do_not_make_it_surer():
+    bent = level_face(0.0, 2.0, bend_per_m2=0.002)
+    seen_often = both(bent, both(bent, bent))
+    once, often = align_planes(bent).sigma_deg, align_planes(seen_often).sigma_deg
+    np.testing.assert_allclose(once[:2], often[:2], rtol=0.05)
+    assert (once[:2] > align_planes(level_face(0.0, 2.0)).sigma_deg[:2]).all()
+
+
+def test_gravity_of_the_device_decides_where_no_face_does():
+    wall = sheet(0.0, 0, 2)
+    up = np.array([0.0, np.sin(np.radians(2)), np.cos(np.radians(2))])
+    level = align_planes(wall, up).rotation @ up
+    assert np.degrees(np.arccos(level[2])) < 0.3
 
 
 @pytest.mark.parametrize("leaf", [-0.05, -0.02, 0.02, 0.04])

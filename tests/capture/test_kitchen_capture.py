@@ -93,3 +93,27 @@ def test_a_folder_of_another_kind_is_refused(shared_data):
 
     with pytest.raises(CaptureError, match="of another kind, which holds .*; a capture"):
         open_scan(shared_data / "layoutgpt_outputs")
+
+
+# Up in the kitchen's world frame and the floor's distance below its origin, measured on other
+# frames; good to about 0.4 degrees.
+TRUE_UP, FLOOR_BELOW_M = np.array([0.0136, -0.8910, -0.4539]), 1.535
+
+
+@pytest.mark.parametrize("first", [0, 5, 10, 15, 20])
+def test_windows_of_twenty_frames_are_level(shared_data, tmp_path, first):
+    """A window sees scraps of the floor, or the table alone; none may tip the room."""
+    source = shared_data / "redkitchen_rgbd"
+    names = sorted(path.name[:12] for path in (source / "frames").glob("*.pose.txt"))
+    (tmp_path / "frames").mkdir()
+    (tmp_path / "camera-intrinsics.txt").symlink_to(source / "camera-intrinsics.txt")
+    for name in names[first : first + 20]:
+        for path in (source / "frames").glob(f"{name}*"):
+            (tmp_path / "frames" / path.name).symlink_to(path)
+    scan = open_scan(tmp_path)
+    up = scan.scan_to_room[2, :3]
+    tilt_deg = np.degrees(np.arccos(up @ TRUE_UP / np.linalg.norm(TRUE_UP)))
+    assert tilt_deg < 0.9
+    assert scan.scan_to_room[2, 3] == pytest.approx(FLOOR_BELOW_M, abs=0.03)
+    assert scan.frame_sigmas is not None
+    assert tilt_deg < 3 * scan.frame_sigmas.tilt_deg

@@ -80,6 +80,7 @@ def open_scan(
         notes=(*notes, *alignment.notes),
         depth_kind=validated.capture.depth_kind,
         world_up=validated.capture.world_up,
+        frame_sigmas=alignment.sigmas,
     )
 
 

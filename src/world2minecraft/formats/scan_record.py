@@ -5,7 +5,7 @@ applied on the left of a frame's pose; ``depth_scale`` float64 [F], what its dep
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
-from world2minecraft.core.types import Corrections, Scan
+from world2minecraft.core.types import Corrections, FrameSigmas, Scan
 
 POSE_ARRAYS = ("names", "pose_change", "depth_scale")
 MAX_NAME_LENGTH = 60
@@ -55,6 +55,7 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
             "name": scan.name,
             "scan_to_room": scan.scan_to_room.tolist(),
             "room_size_m": scan.room_size_m.tolist(),
+            "frame_sigmas": None if scan.frame_sigmas is None else asdict(scan.frame_sigmas),
             "frames_used": list(scan.frames_used),
             "frames_skipped": [{"frame": n, "reason": r} for n, r in scan.frames_skipped],
             "scale": scan.scale,
@@ -118,9 +119,15 @@ def with_recorded_alignment(scan: Scan, path: str | Path) -> Scan:
             scan_to_room=np.array(found["scan_to_room"], np.float64),
             room_size_m=read_room_size(path),
             notes=tuple(str(note) for note in found["notes"]),
+            frame_sigmas=_frame_sigmas(found.get("frame_sigmas")),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(path, f"holds no place of a room ({error})") from error
+
+
+def _frame_sigmas(stated: Any) -> FrameSigmas | None:
+    """Return the uncertainties of a ``scan.json``; version 0.1 wrote none."""
+    return None if stated is None else FrameSigmas(**stated)
 
 
 def read_room_size(path: str | Path) -> np.ndarray:

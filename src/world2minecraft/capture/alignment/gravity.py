@@ -1,7 +1,7 @@
-"""Estimation of the up direction and of the floor's plane.
+"""First estimate of the up direction and of the floor's height.
 
-Up is the direction that much surface faces, that the cameras' image rows are level to, and that
-their image columns point away from; the floor is then fitted as a plane.
+Up is the direction that much surface faces, that the image rows of the cameras are level to, and
+that their image columns point away from. ``plane_alignment`` refines it.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,6 @@ MAX_HINT_OFFSET_DEG = 10.0  # ARKit's own world leans by under a degree, one tha
 MIN_FLOOR_M2 = 0.3
 # Of the largest level surface: a table top is smaller than that many floors.
 MIN_FLOOR_SHARE = 0.15
-FLOOR_BAND_M = 0.15  # The first guess of up is off by under 2 degrees, over 4 m.
-PATCH_M = 0.05
 MAX_BELOW_SHARE = 0.02  # Points that reflections and noise put under a true floor.
 
 
@@ -46,13 +44,6 @@ def find_ground(surface: OrientedPoints, up_hint: np.ndarray | None = None) -> G
     refined = _refine_up(surface.normals, voted)
     up = refined if _is_near(refined, up_hint) else voted
     height, area = _floor_height(surface, up)
-    if area == 0:
-        return Ground(up, height, 0.0)
-    for _ in range(2):
-        fitted, fitted_height = _fit_floor(surface, up, height)
-        if not _is_near(fitted, up_hint):
-            break
-        up, height = fitted, fitted_height
     return Ground(up, height, area)
 
 
@@ -113,44 +104,3 @@ def rotation_to_z(up: np.ndarray) -> np.ndarray:
     x = np.cross(other, up)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(up, x), up])
-
-
-def _fit_floor(
-    surface: OrientedPoints, up: np.ndarray, height_m: float
-) -> tuple[np.ndarray, float]:
-    """Fit the floor's plane by reweighted least squares (Tukey), starting from ``up``.
-
-    Patches weigh alike however often they were looked at: by pixels alone, the floor nearest to
-    the camera, with its own bend of the depth, would tip the kitchen's floor by 0.3 degrees.
-    """
-    frame = rotation_to_z(up)
-    points = surface.points_m @ frame.T
-    level = surface.normals @ up > np.cos(np.radians(MAX_FACING_DEG))
-    points = points[level & (np.abs(points[:, 2] - height_m) < FLOOR_BAND_M)]
-    share = 1 / (_patch_counts(points) + 3.0)
-    plane = np.array([0.0, 0.0, height_m])  # z = a x + b y + c
-    middle = np.zeros(2)
-    for limit_m in (0.08, 0.06, 0.04, 0.03, 0.03):
-        off = points[:, 2] - (points[:, :2] - middle) @ plane[:2] - plane[2]
-        weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
-        if np.count_nonzero(weight) < 20:
-            break
-        weight *= share
-        shift = np.average(points[:, :2], axis=0, weights=weight)
-        columns = np.column_stack([points[:, :2] - shift, np.ones(len(points))])
-        moment = columns.T @ (columns * weight[:, None])
-        # A floor strip narrower than about 20 cm cannot say how it leans across.
-        moment[[0, 1], [0, 1]] += 0.01 * weight.sum() * 0.2**2
-        plane, middle = np.linalg.solve(moment, columns.T @ (weight * points[:, 2])), shift
-    normal = np.array([-plane[0], -plane[1], 1.0])
-    size = np.linalg.norm(normal)
-    return normal / size @ frame, float((plane[2] - plane[:2] @ middle) / size)
-
-
-def _patch_counts(points: np.ndarray) -> np.ndarray:
-    """Return for each point how many points its patch of the plan holds."""
-    patches = np.floor(points[:, :2] / PATCH_M).astype(np.int64)
-    patches -= patches.min(axis=0, initial=0)
-    code = patches[:, 0] * (patches[:, 1].max(initial=0) + 1) + patches[:, 1]
-    _, index, counts = np.unique(code, return_inverse=True, return_counts=True)
-    return counts[index]

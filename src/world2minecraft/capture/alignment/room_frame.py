@@ -15,144 +15,26 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.capture.alignment.axis_profiles import (
-    BIN_M,
-    MIN_SIGMA_M,
-    AxisProfile,
-    axis_profile,
-    face_position_m,
-    points_per_cell,
-)
+from world2minecraft.capture.alignment.axis_profiles import face_position_m
 from world2minecraft.capture.alignment.gravity import Ground, find_ground, rotation_to_z
+from world2minecraft.capture.alignment.plane_alignment import (
+    MIN_FACING_COSINE,
+    PlaneAlignment,
+    align_planes,
+)
 from world2minecraft.capture.alignment.walls import RoomBox, find_room_box, find_yaw
 from world2minecraft.core.coordinates import COMPASS_OF_SIDE, rotation_about_z
-from world2minecraft.core.types import Scan, View
+from world2minecraft.core.types import FrameSigmas, Scan, View
 from world2minecraft.geometry.oriented_points import OrientedPoints, collect_oriented_points
-from world2minecraft.geometry.rotations import rotation_from_vector
 
-MIN_FACING_COSINE = 0.97  # Cosine of 14 degrees.
-MIN_FACE_M2 = 0.5
-MIN_FACE_SHARE = 0.15  # Of the largest that looks the same way.
-LIMITS_M = (0.05, 0.03, 0.02, 0.012, 0.012)
-SPREAD_FACTOR = 8.0  # A level face's limit is at least that many times the median distance from it.
-# Walls lean and tables stand askew more often than floors slope: with equal weights, the shared
-# kitchen's floor would lean by 0.5 degrees.
-WALL_WEIGHT, FLOOR_WEIGHT = 0.1, 4.0
-DAMPING_M2 = 0.02  # Moments that a face must exceed to count: 0.15 m from its middle on average.
 SIDE_RANGE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_RANGE_M = (1.5, 12.0)
 MIN_POINTS = 500
+FLOOR_BAND_M, MIN_FLOOR_SIGMA_M = 0.06, 0.003
+MAX_TILT_SIGMA_DEG, MAX_YAW_SIGMA_DEG = 90.0, 45.0  # Nothing is known.
 DECIMALS = 9
 UNSEEN_NOTE_STARTS = ("no floor was seen", "no wall was seen", "no ceiling was seen")
 CAMERA_CLEARANCE_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
-
-
-@dataclass(frozen=True, eq=False)
-class Faces:
-    """Patches on large faces: ``points_m`` float64 [N, 3], ``axis`` and ``face`` int64 [N]."""
-
-    points_m: np.ndarray
-    axis: np.ndarray
-    face: np.ndarray
-    weight: np.ndarray
-    count: int
-
-
-def axis_aligning_rotation(level: OrientedPoints) -> np.ndarray:
-    """Return the small rotation [3, 3] that lays large faces along the axes.
-
-    Args:
-        level: in a frame that is right within about two degrees; the turn is about its origin.
-    """
-    turn = np.eye(3)
-    faces = find_faces(level)
-    if faces.count == 0:
-        return turn
-    for limit_m in LIMITS_M:
-        turn = (
-            rotation_from_vector(_gauss_newton_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
-        )
-    return turn
-
-
-def find_faces(level: OrientedPoints) -> Faces:
-    """Return the patches that lie on large faces across an axis, each in one face."""
-    points, axes, owners, weights, count = [], [], [], [], 0
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            facing = np.flatnonzero(sign * level.normals[:, axis] > MIN_FACING_COSINE)
-            along = level.points_m[facing, axis]
-            found = axis_profile(level.points_m[facing], axis)
-            least = max(MIN_FACE_M2, MIN_FACE_SHARE * float(found.area_m2.max()))
-            for place in _separate_peaks(found, least):
-                near = facing[np.abs(along - place) < LIMITS_M[0]]
-                points.append(level.points_m[near])
-                axes.append(np.full(len(near), axis))
-                owners.append(np.full(len(near), count))
-                noise = 1 / (level.sigma_m[near] ** 2 + MIN_SIGMA_M**2)
-                face_weight = (
-                    WALL_WEIGHT if axis < 2 else FLOOR_WEIGHT if abs(place) < LIMITS_M[0] else 1.0
-                )
-                weights.append(face_weight * noise / points_per_cell(level.points_m[near], axis))
-                count += 1
-    if not count:
-        return Faces(np.zeros((0, 3)), np.zeros(0, int), np.zeros(0, int), np.zeros(0), 0)
-    points, weights = np.concatenate(points), np.concatenate(weights)
-    return Faces(points, np.concatenate(axes), np.concatenate(owners), weights, count)
-
-
-def _separate_peaks(found: AxisProfile, min_area_m2: float) -> list[float]:
-    """Return the peaks that have no larger one within twice the first limit."""
-    largest_first = sorted(found.peaks(min_area_m2), key=lambda place: -found.area_at(float(place)))
-    separate: list[float] = []
-    for place in largest_first:
-        if all(abs(place - other) > 2 * LIMITS_M[0] for other in separate):
-            separate.append(float(place))
-    return separate
-
-
-def _gauss_newton_step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
-    """Return the turn vector [3] that flattens the faces, by one reweighted step (Tukey)."""
-    index = np.arange(len(points))
-    along = points[index, faces.axis]
-    places = _densest_positions(faces, along)
-    # Where depth bends, a narrow limit would choose among the bends of a floor; a wall's parts a
-    # few centimetres apart are to be told apart whatever the spread.
-    off = np.abs(along - places[faces.face])
-    level = faces.axis == 2
-    spread_m = float(np.median(off[level])) if level.any() else 0.0
-    limits_m = np.where(level, max(limit_m, SPREAD_FACTOR * spread_m), limit_m)
-    # A turn w moves a point by w x p; these are its parts along the face's axis.
-    rows = np.zeros_like(points)
-    rows[index, (faces.axis + 1) % 3] = points[index, (faces.axis + 2) % 3]
-    rows[index, (faces.axis + 2) % 3] = -points[index, (faces.axis + 1) % 3]
-    turn = np.zeros(3)
-    for _ in range(3):
-        off = along + rows @ turn - places[faces.face]
-        weight = faces.weight * np.where(
-            np.abs(off) < limits_m, (1 - (off / limits_m) ** 2) ** 2, 0
-        )
-        mass = np.bincount(faces.face, weight, faces.count)
-        mass = np.maximum(mass, 1e-12)
-        places = places + np.bincount(faces.face, weight * off, faces.count) / mass
-        means = [np.bincount(faces.face, weight * rows[:, a], faces.count) / mass for a in range(3)]
-        centred = rows - np.stack(means, axis=1)[faces.face]
-        off = along + rows @ turn - places[faces.face]
-        moment = centred.T @ (centred * weight[:, None])
-        moment[range(3), range(3)] += DAMPING_M2 * weight.sum()
-        turn = turn - np.linalg.solve(moment, centred.T @ (weight * off))
-    return turn
-
-
-def _densest_positions(faces: Faces, along: np.ndarray) -> np.ndarray:
-    """Return where most weight of each face gathers within 3 cm, in steps of 1 cm."""
-    places = np.zeros(faces.count)
-    for face in range(faces.count):
-        own, weight = along[faces.face == face], faces.weight[faces.face == face]
-        bins = np.floor((own - own.min()) / BIN_M).astype(np.int64)
-        held = np.convolve(np.bincount(bins, weight), np.ones(3), mode="same")
-        places[face] = own.min() + (int(np.argmax(held)) + 0.5) * BIN_M
-    return places
 
 
 @dataclass(frozen=True)
@@ -162,6 +44,7 @@ class Alignment:
     scan_to_room: np.ndarray
     room_size_m: np.ndarray
     notes: tuple[str, ...]
+    sigmas: FrameSigmas | None = None
 
 
 class ImplausibleRoomError(ValueError):
@@ -196,7 +79,9 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     level = surface.transformed(scan_to_level)
     scan_to_level = _rotation_to_walls(level) @ scan_to_level
     level = surface.transformed(scan_to_level)
-    scan_to_level = _axis_alignment(level, ground.floor_area_m2 > 0) @ scan_to_level
+    level_hint = None if up_hint is None else scan_to_level[:3, :3] @ up_hint
+    planes = align_planes(level, level_hint)
+    scan_to_level = _axis_alignment(level, planes, ground.floor_area_m2 > 0) @ scan_to_level
     level = surface.transformed(scan_to_level)
     box = find_room_box(level)
     low_m, high_m = _extend_to_cameras(box, level)
@@ -206,7 +91,9 @@ def align_surface(surface: OrientedPoints, up_hint: np.ndarray | None = None) ->
     _check_size(size)
     # Sums in another order, as with other threads, differ in the last bits; files must not.
     scan_to_room = np.round(level_to_room @ scan_to_level, DECIMALS)
-    return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(ground, box, size))
+    sigmas = _frame_sigmas(level, planes, ground.floor_area_m2 > 0)
+    notes = _notes(ground, box, size)
+    return Alignment(scan_to_room, np.round(size, DECIMALS), notes, sigmas)
 
 
 def realign(scan: Scan, surface: OrientedPoints) -> Scan:
@@ -226,6 +113,7 @@ def realign(scan: Scan, surface: OrientedPoints) -> Scan:
         scan_to_room=found.scan_to_room,
         room_size_m=found.room_size_m,
         notes=(*notes, *found.notes),
+        frame_sigmas=found.sigmas,
     )
 
 
@@ -238,16 +126,32 @@ def _rotation_to_walls(level: OrientedPoints) -> np.ndarray:
     return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
 
 
-def _axis_alignment(level: OrientedPoints, has_floor: bool) -> np.ndarray:
+def _axis_alignment(level: OrientedPoints, planes: PlaneAlignment, has_floor: bool) -> np.ndarray:
     """Return the small move that lays all large faces along the axes and the floor on 0."""
     move = np.eye(4)
-    move[:3, :3] = axis_aligning_rotation(level)
+    move[:3, :3] = planes.rotation
     if has_floor:
         turned = level.transformed(move)
         move[2, 3] = -face_position_m(
             turned.subset(turned.normals[:, 2] > MIN_FACING_COSINE), 2, 0.0
         )
     return move
+
+
+def _frame_sigmas(level: OrientedPoints, planes: PlaneAlignment, has_floor: bool) -> FrameSigmas:
+    """Return the uncertainty of an aligned frame; the floor's is the bend of the depth at it."""
+    tilt_deg = min(float(np.sqrt(np.mean(planes.sigma_deg[:2] ** 2))), MAX_TILT_SIGMA_DEG)
+    yaw_deg = min(float(planes.sigma_deg[2]), MAX_YAW_SIGMA_DEG)
+    floor_m = None
+    if has_floor:
+        on_floor = (level.normals[:, 2] > MIN_FACING_COSINE) & (
+            np.abs(level.points_m[:, 2]) < FLOOR_BAND_M
+        )
+        eyes = level.cameras[level.owner[on_floor], :3, 3]
+        squared_m2 = np.sum((level.points_m[on_floor] - eyes) ** 2, axis=1)
+        bend_m = planes.bend_per_m2 * float(np.median(squared_m2)) if len(squared_m2) else 0.0
+        floor_m = round(float(np.hypot(bend_m, MIN_FLOOR_SIGMA_M)), 4)
+    return FrameSigmas(round(tilt_deg, 3), round(yaw_deg, 3), floor_m)
 
 
 def _extend_to_cameras(box: RoomBox, level: OrientedPoints) -> tuple[np.ndarray, np.ndarray]:

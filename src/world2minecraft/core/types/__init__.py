@@ -5,7 +5,14 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 """
 
 from world2minecraft.core.types.block_volume import AIR, BlockEntity, BlockVolume, Entity
-from world2minecraft.core.types.capture import Camera, Corrections, Scan, View, ViewStream
+from world2minecraft.core.types.capture import (
+    Camera,
+    Corrections,
+    FrameSigmas,
+    Scan,
+    View,
+    ViewStream,
+)
 from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
 from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
 from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
@@ -34,6 +41,7 @@ __all__ = [
     "Corrections",
     "DepthMap",
     "Entity",
+    "FrameSigmas",
     "FusedEvidence",
     "GridCells",
     "GridEvidence",

@@ -134,6 +134,27 @@ class ViewStream(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class FrameSigmas:
+    """Uncertainty (one sigma) of the room's frame in the scan.
+
+    Attributes:
+        tilt_deg: Of the up direction.
+        yaw_deg: Of the rotation about it that lays the walls along x and y.
+        floor_m: Of the floor's height; None if no floor was seen.
+    """
+
+    tilt_deg: float
+    yaw_deg: float
+    floor_m: float | None
+
+    def __post_init__(self):
+        checks.positive("tilt_deg", self.tilt_deg)
+        checks.positive("yaw_deg", self.yaw_deg)
+        if self.floor_m is not None:
+            checks.positive("floor_m", self.floor_m)
+
+
 @dataclass(frozen=True, eq=False)
 class Scan:
     """A capture that is aligned: where the room is in it, and how sure its scale is.
@@ -141,7 +162,8 @@ class Scan:
     ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
     from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
     the scene is called; ``depth_kind`` says what made the depth, and so how it errs. ``world_up``
-    is a unit vector of the scan's frame where the capture knows which way is up.
+    is a unit vector of the scan's frame where the capture knows which way is up. ``frame_sigmas``
+    is None where the room's frame is stated rather than estimated.
     """
 
     views: ViewStream
@@ -156,6 +178,7 @@ class Scan:
     name: str = ""
     depth_kind: Literal["sensor", "stereo", "network", "exact"] = "sensor"
     world_up: np.ndarray | None = None
+    frame_sigmas: FrameSigmas | None = None
 
     def __post_init__(self):
         put = object.__setattr__

@@ -6,6 +6,7 @@ what is in it, and how it came about.
 """
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -160,6 +161,7 @@ def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:
         "frames_skipped": [{"frame": n, "reason": r} for n, r in scan.frames_skipped],
         "scale": scan.scale,
         "scale_sigma": scan.scale_sigma,
+        "frame_sigmas": None if scan.frame_sigmas is None else asdict(scan.frame_sigmas),
         "notes": list(scan.notes),
         "registration": read_registration(folder / "scan.json"),
     }
