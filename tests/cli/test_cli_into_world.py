@@ -151,7 +151,11 @@ def test_force_brings_the_old_files_back(schem, world):
             2,
             "the build would reach from layer 400 to 401, but the world has -64 to 319",
         ),
-        (["{schem}", "--out", "x"], 2, "a.schem holds blocks, and --out takes a room; w2m convert"),
+        (
+            ["{schem}", "--out", "x"],
+            2,
+            "contains blocks, but --out requires a room; use w2m convert",
+        ),
         (["nothing.npz", "--into", "{world}", "--at", "1", "70", "3"], 3, "nothing.npz: is not"),
     ],
 )

@@ -211,5 +211,5 @@ def test_parts_turn_as_a_whole(turns):
 
 
 def test_an_unknown_set_of_shapes_is_refused():
-    with pytest.raises(UsageError, match="build.shapes must be calm or cubes, not 'round'"):
+    with pytest.raises(UsageError, match="build.shapes must be calm or cubes, got 'round'"):
         BuildParameters(shapes="round")

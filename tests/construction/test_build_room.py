@@ -91,9 +91,13 @@ def test_old_words_for_ceiling_and_lights_still_count():
     assert (old.ceiling, old.lights) == ("off", "off")
     assert BuildParameters(ceiling="True", lights="1") == BuildParameters()
     for key, value, message in (
-        ("ceiling", "wood", "build.ceiling must be on, off, glass, not 'wood'"),
-        ("lights", "sun", "build.lights must be hidden, off, lamps, not 'sun'"),
-        ("plaque", "a\nb", r"build.plaque must be auto, off, or up to 60 letters, not 'a\nb'"),
+        ("ceiling", "wood", "build.ceiling must be one of on, off, glass, got 'wood'"),
+        ("lights", "sun", "build.lights must be one of hidden, off, lamps, got 'sun'"),
+        (
+            "plaque",
+            "a\nb",
+            r"a text of up to 60 printable characters, got 'a\nb'",
+        ),
     ):
         with pytest.raises(UsageError) as caught:
             BuildParameters(**{key: value})

@@ -264,13 +264,13 @@ def test_a_room_of_unknown_corner_takes_its_own():
 
 def test_what_cannot_be_built_is_refused():
     grid = Sketch().grid()
-    with pytest.raises(UsageError, match="blocks_per_metre must be above 0, not -1; try 4"):
+    with pytest.raises(UsageError, match="blocks_per_metre must be above 0, got -1; try 4"):
         build_volume(grid, (), (), blocks_per_metre=-1)
-    with pytest.raises(UsageError, match="Give fewer, such as --blocks-per-metre 2"):
+    with pytest.raises(UsageError, match="use fewer, such as --blocks-per-metre 2"):
         build_volume(grid, (), (), blocks_per_metre=900)
     with pytest.raises(UnknownNameError, match="no palette is named 'vanila'; did you mean"):
         build_volume(grid, (), (), parameters=BuildParameters(palette="vanila"))
-    with pytest.raises(UsageError, match="build.edge must be barrier or none, not 'wall'"):
+    with pytest.raises(UsageError, match="build.edge must be barrier or none, got 'wall'"):
         BuildParameters(edge="wall")
-    with pytest.raises(UsageError, match="build.object_share must be above 0, up to 1, not 0"):
+    with pytest.raises(UsageError, match="build.object_share must be above 0 and at most 1, got 0"):
         BuildParameters(object_share=0)

@@ -139,7 +139,7 @@ def test_pairs_that_make_one_box_are_joined():
 def test_nothing_gives_no_boxes_and_wrong_questions_are_refused():
     assert partition_boxes(np.zeros((3, 4, 5), int)).shape == (0, 7)
     assert cover_boxes(np.zeros((3, 4, 5), int)).shape == (0, 7)
-    with pytest.raises(ValueError, match=r"labels must have shape \[X, Y, Z\], not \(3, 4\)"):
+    with pytest.raises(ValueError, match=r"labels must have shape \[X, Y, Z\], got \(3, 4\)"):
         partition_boxes(np.zeros((3, 4), int))
-    with pytest.raises(ValueError, match=r"least_iou must be above 0, up to 1, not 1\.5"):
+    with pytest.raises(ValueError, match=r"least_iou must be above 0 and at most 1, got 1\.5"):
         simplify_boxes(np.zeros((3, 4, 5), int), 1.5)

@@ -81,12 +81,12 @@ def test_placing_costs_linear_time_in_frames(views, tmp_path, monkeypatch):
 
 def test_before_a_view_there_is_no_map_and_no_view_comes_twice(views, tmp_path):
     room = LiveRoom(tmp_path / "OUT")
-    with pytest.raises(CaptureError, match="no view gave any evidence"):
+    with pytest.raises(CaptureError, match="no view contains usable depth"):
         room.fused()
     room.add(views[0])
-    with pytest.raises(UsageError, match="was added before"):
+    with pytest.raises(UsageError, match="was already added"):
         room.add(views[0])
-    with pytest.raises(UsageError, match="holds the frames of another run"):
+    with pytest.raises(UsageError, match="contains frames of another run"):
         LiveRoom(tmp_path / "OUT")
 
 
@@ -177,4 +177,4 @@ def test_following_ends_as_it_says_and_has_shown_the_room(batch, tmp_path, endin
 def test_follow_and_from_exclude_each_other(tmp_path, capsys):
     words = ["reconstruct", str(tmp_path), "--out", str(tmp_path / "OUT")]
     assert w2m([*words, "--follow", "--from", "build"]) == 2
-    assert "leave out --from" in capsys.readouterr().err
+    assert "omit --from" in capsys.readouterr().err

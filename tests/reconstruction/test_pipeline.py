@@ -132,12 +132,12 @@ def test_from_tells_the_settings_of_the_stages_that_it_keeps(out, capture, tmp_p
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "again"), "--from"]
     assert w2m([*words, "find", "--set", "find.min_cells=12"]) == 0
     assert w2m([*words, "build", "--blocks-per-metre", "2"]) == 0
-    assert "kept from before: find.min_cells=12" in capsys.readouterr().out
+    assert "kept from the earlier run: find.min_cells=12" in capsys.readouterr().out
     manifest = json.loads((tmp_path / "again/manifest.json").read_text())
     assert manifest["parameters"]["find"]["min_cells"] == 12
     before = digests(tmp_path / "again")
     assert w2m([*words, "build", "--set", "find.min_cells=20"]) == 2
-    assert "leave find.min_cells out, or begin with --from find" in capsys.readouterr().err
+    assert "omit find.min_cells, or start with --from find" in capsys.readouterr().err
     assert digests(tmp_path / "again") == before, "nothing is touched"
 
 

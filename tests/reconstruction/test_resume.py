@@ -42,7 +42,7 @@ def test_what_is_left_out_stays_as_it_was(tmp_path):
     assert parameters.find.cluster_radius == 3 and parameters.capture == {"every": "2"}
     assert parameters.known == ("table height", 0.72)
     assert parameters.blocks_per_metre == 4, "the build is made anew, as asked"
-    assert kept.notes[0].startswith("kept from before: voxel_m=0.1, known=")
+    assert kept.notes[0].startswith("kept from the earlier run: voxel_m=0.1, known=")
 
 
 def test_stages_that_run_again_read_what_is_asked(tmp_path):
@@ -78,8 +78,8 @@ def test_what_contradicts_kept_stages_is_refused(tmp_path, start, setting, was, 
     with pytest.raises(UsageError) as caught:
         resume_parameters(tmp_path, start, STAGES, with_settings(Parameters(), [setting]))
     assert str(caught.value) == (
-        f"--from {start} keeps what was made with {key} {was}, not {now}; "
-        f"leave {key} out, or begin with --from {stage}"
+        f"--from {start} keeps results made with {key}={was}, got {now}; "
+        f"omit {key}, or start with --from {stage}"
     )
 
 
@@ -90,10 +90,10 @@ def test_files_that_kept_stages_read_are_told_as_they_were(tmp_path):
     assert resume_manifest(tmp_path, "label", now, kept) == {**now, "labels": "l"}
     kept = resume_parameters(tmp_path, "fuse", STAGES, Parameters())
     assert resume_manifest(tmp_path, "fuse", now, kept) == now, "fuse reads labels anew"
-    with pytest.raises(InputError, match="made of another capture, or its files have changed"):
+    with pytest.raises(InputError, match="made from another capture, or the capture has changed"):
         resume_manifest(tmp_path, "fuse", {**now, "capture": "d"}, kept)
     kept = resume_parameters(tmp_path, "build", STAGES, Parameters())
-    with pytest.raises(UsageError, match="without these --labels; begin with --from fuse"):
+    with pytest.raises(UsageError, match="without these --labels; start with --from fuse"):
         resume_manifest(tmp_path, "build", {**now, "labels": "m"}, kept)
 
 

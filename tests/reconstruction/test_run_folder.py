@@ -58,7 +58,7 @@ def test_from_begins_at_a_stage_even_with_other_parameters(tmp_path):
 
 
 def test_what_is_built_must_be_of_one_run(tmp_path):
-    with pytest.raises(InputError, match=r"no finished run: room.npz is missing; w2m reconstruct"):
+    with pytest.raises(InputError, match=r"room.npz not found; run w2m reconstruct"):
         check_finished(tmp_path)
     for name in BUILT_FROM:
         (tmp_path / name).write_text("")
@@ -75,12 +75,12 @@ def test_what_is_built_must_be_of_one_run(tmp_path):
         if is_whole:
             check_finished(tmp_path)
         else:
-            with pytest.raises(InputError, match="it was cut off before its furniture"):
+            with pytest.raises(InputError, match="it was interrupted before the furnish stage"):
                 check_finished(tmp_path)
 
 
 def test_from_needs_the_stages_before(tmp_path):
-    with pytest.raises(InputError, match="stage 'scan' was never finished here"):
+    with pytest.raises(InputError, match="the stage 'scan' has not been completed"):
         run_until(tmp_path, {}, start="fuse")
     with pytest.raises(UnknownNameError, match="did you mean 'build'"):
         run_until(tmp_path, {}, start="biuld")
@@ -114,7 +114,7 @@ def test_stage_times_add_up_and_are_written_from_begin_on(tmp_path):
 def test_an_out_that_is_a_file_is_refused_and_kept(tmp_path):
     target = tmp_path / "out"
     target.write_text("mine")
-    with pytest.raises(OutputError, match="is a file; --out needs a folder"):
+    with pytest.raises(OutputError, match="is a file; --out must be a folder"):
         RunFolder(target, STAGES)
     with pytest.raises(OutputError):
         check_writable(target)
@@ -124,7 +124,7 @@ def test_an_out_that_is_a_file_is_refused_and_kept(tmp_path):
 def test_a_full_disk_is_refused(tmp_path, monkeypatch):
     usage = type("Usage", (), {"free": 3 << 20})()
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
-    with pytest.raises(OutputError, match="its disk has 3 MB free; 64 needed"):
+    with pytest.raises(OutputError, match="the disk has 3 MB free, 64 MB are required"):
         check_writable(tmp_path / "out")
 
 

@@ -149,7 +149,7 @@ def join_rooms(
         >>> w2m.join_rooms([run], tmp / "home")
         Traceback (most recent call last):
         ...
-        world2minecraft.core.errors.UsageError: give 2 to 50 finished runs to join, not 1
+        world2minecraft.core.errors.UsageError: expected 2 to 50 finished runs to join, got 1
     """
     from world2minecraft.evaluation.report import write_brief_report
     from world2minecraft.reconstruction.homes import join

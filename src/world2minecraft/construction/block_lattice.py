@@ -102,8 +102,8 @@ def lattice_over(
     east, up, south = (high - low).tolist()
     if float(east) * up * south > MAX_BLOCKS:
         raise UsageError(
-            f"{blocks_per_metre:g} blocks a metre make {east} x {up} x {south} blocks of this "
-            f"room; at most {MAX_BLOCKS:,} are built. Give fewer, such as --blocks-per-metre 2"
+            f"the room has {east} x {up} x {south} blocks at {blocks_per_metre:g} blocks per "
+            f"metre, the limit is {MAX_BLOCKS:,}; use fewer, such as --blocks-per-metre 2"
         )
     return Lattice(tuple(low.tolist()), (east, south, up), corner_m, blocks_per_metre)
 

@@ -61,12 +61,14 @@ def parse_meanings(raw: Any) -> Meanings:
         ValueError: it holds none.
     """
     if not isinstance(raw, dict) or set(raw) != {"namespaces", "words"}:
-        raise ValueError("reads must have namespaces and words")
+        raise ValueError("reads must contain exactly the keys namespaces and words")
     spaces, words = raw["namespaces"], raw["words"]
     if not (isinstance(spaces, list) and spaces and all(isinstance(s, str) and s for s in spaces)):
-        raise ValueError(f"namespaces must be a list of names, not {spaces!r}")
+        raise ValueError(f"namespaces must be a list of names, got {spaces!r}")
     if not isinstance(words, dict) or not words:
-        raise ValueError(f"words must be keys with values such as chair/stool, not {words!r}")
+        raise ValueError(
+            f"words must map words to meanings, such as stool: chair/stool, got {words!r}"
+        )
     return Meanings(tuple(spaces), {str(w): _meaning(str(w), text) for w, text in words.items()})
 
 
@@ -99,6 +101,7 @@ def _meaning(word: str, text: Any) -> Meaning:
     if not 0 < len(word) <= LONGEST_WORD or name not in CLASS_NAMES:
         classes = ", ".join(CLASS_NAMES)
         raise ValueError(
-            f"{word!r} must mean a class, such as chair/stool, not {text!r}: {classes}"
+            f"the meaning of {word!r} must be CLASS or CLASS/DESIGN, such as chair/stool, "
+            f"got {text!r}; classes: {classes}"
         )
     return Meaning(CLASS_NAMES.index(name), design)

@@ -90,17 +90,20 @@ def parse_piece(raw: Any) -> FurniturePiece:
     """
     known = ("for", "id", "properties", "cells", "fill", "facing", "joins")
     if not isinstance(raw, dict) or not set(raw) <= set(known) or "for" not in raw:
-        raise ValueError(f"furniture must have for and id, and may have {', '.join(known[2:])}")
+        raise ValueError(
+            "a furniture entry must contain the keys for and id, and optionally "
+            f"{', '.join(known[2:])}"
+        )
     designs = raw["for"]
     if not (isinstance(designs, list) and designs and all(isinstance(d, str) for d in designs)):
-        raise ValueError(f"for must be a list of designs or families, not {designs!r}")
+        raise ValueError(f"for must be a list of design or family names, got {designs!r}")
     for key, choices in (("fill", FILLS), ("facing", tuple(FACINGS)), ("joins", JOINS)):
         if key in raw and raw[key] not in choices:
-            raise ValueError(f"{key} must be one of {', '.join(choices)}, not {raw[key]!r}")
+            raise ValueError(f"{key} must be one of {', '.join(choices)}, got {raw[key]!r}")
     listed = raw.get("cells", [{"id": raw.get("id"), "properties": raw.get("properties", {})}])
     cells = tuple(_cell(one) for one in listed)
     if len(cells) > 1 and raw.get("fill", "one") != "one":
-        raise ValueError("a piece of several cells cannot fill a place")
+        raise ValueError("a furniture piece of several cells must have fill: one")
     return FurniturePiece(
         tuple(designs), cells, raw.get("fill", "one"), raw.get("facing"), raw.get("joins")
     )
@@ -108,14 +111,14 @@ def parse_piece(raw: Any) -> FurniturePiece:
 
 def _cell(raw: Any) -> PieceBlock:
     if not isinstance(raw, dict) or not isinstance(raw.get("id"), str):
-        raise ValueError(f"a piece of furniture needs an id, such as mod:oak_chair, not {raw!r}")
+        raise ValueError(f"a furniture piece must have an id, such as mod:oak_chair, got {raw!r}")
     at = raw.get("at", [0, 0, 0])
     good = isinstance(at, list) and len(at) == 3 and all(type(v) is int for v in at)
     if not good or not all(0 <= v < LARGEST for v in at):
-        raise ValueError(f"at must be three whole numbers from 0 to {LARGEST - 1}, not {at!r}")
+        raise ValueError(f"at must be three integers from 0 to {LARGEST - 1}, got {at!r}")
     properties = raw.get("properties", {})
     if not isinstance(properties, dict):
-        raise ValueError(f"properties must be keys with values, not {properties!r}")
+        raise ValueError(f"properties must be a mapping of names to values, got {properties!r}")
     texts = {str(key): str(value).lower() for key, value in properties.items()}
     for kind in (WOODS[0], DYES[0]):
         BlockState(raw["id"].replace("{wood}", kind).replace("{dye}", kind), texts)
@@ -160,7 +163,7 @@ def load_palette(name: str) -> Palette:
     if name.endswith(FILE_SUFFIXES):
         return read_palette(Path(name))
     if Path(name).is_file():
-        raise InputError(name, f"a palette's file ends with {', '.join(FILE_SUFFIXES)}")
+        raise InputError(name, f"a palette file must end with {' or '.join(FILE_SUFFIXES)}")
     raise UnknownNameError("palette", name, PALETTE_FILES)
 
 
@@ -181,7 +184,7 @@ def read_palette(path: Path) -> Palette:
         raw = json.loads(text) if path.suffix == ".json" else load_plain_yaml(text)
     except (ValueError, RecursionError) as error:
         kind = "JSON" if path.suffix == ".json" else "YAML"
-        raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error
+        raise InputError(path, f"is not valid {kind} ({one_line(error, 200)})") from error
     try:
         return parse_palette(raw)
     except (ValueError, UsageError) as error:
@@ -203,7 +206,7 @@ def parse_palette(raw: Any) -> Palette:
     keys = _mapping("a palette", raw, KEYS)
     name = keys.get("name")
     if not isinstance(name, str) or not name:
-        raise ValueError("a palette needs a name, such as name: nordic")
+        raise ValueError("a palette must have a name, such as name: nordic")
     whole = dict(keys)
     if "extends" in keys or "blocks" in keys:
         whole = _extend(keys)
@@ -237,7 +240,7 @@ def _extend(keys: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a palette over those of the one it begins from."""
     base = keys.get("extends", "vanilla")
     if base not in PALETTE_FILES:
-        raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, not {base!r}")
+        raise ValueError(f"extends must be one of {', '.join(PALETTE_FILES)}, got {base!r}")
     below = json.loads(shipped_palette_text(base))
     if "extends" in below:
         below = _extend(below)
@@ -254,7 +257,7 @@ def _only(named: Any) -> frozenset[str] | None:
         return None
     names = frozenset(_state(block).partition("[")[0] for block in _names("blocks", named))
     if not any(is_full_cube(str(complete(parse_state(name)))) for name in names):
-        raise ValueError("blocks must name one full block at least, such as white_concrete")
+        raise ValueError("blocks must contain at least one full block, such as white_concrete")
     return names
 
 
@@ -265,7 +268,9 @@ def _usable(
     usual = chosen.get(number, ())
     if only is None:
         if not usual:
-            raise ValueError(f"classes lacks {CLASS_NAMES[number]!r}; give it a list of groups")
+            raise ValueError(
+                f"classes does not contain {CLASS_NAMES[number]!r}; add it with a list of groups"
+            )
         return usual
     kept = tuple(block for block in usual if block.partition("[")[0] in only)
     if kept:
@@ -283,7 +288,9 @@ def _by_class(
     result = {}
     for name, listed in _mapping(what, raw).items():
         if name not in CLASS_NAMES[1:]:
-            raise ValueError(f"{what} has no {name!r}; classes: {', '.join(CLASS_NAMES[1:])}")
+            raise ValueError(
+                f"{what} contains an unknown class {name!r}; known: {', '.join(CLASS_NAMES[1:])}"
+            )
         result[CLASS_NAMES.index(name)] = tuple(
             block
             for group in _names(f"{what} of {name}", listed)
@@ -317,7 +324,7 @@ def _shapes(what: str, raw: Any, only: frozenset[str] | None) -> dict[str, str]:
 def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
     """Return what windows are of: as stated where it is usable, else a glass of ``only``."""
     if stated is None:
-        raise ValueError(f"a palette needs {what}, such as {what}: glass")
+        raise ValueError(f"a palette must contain the key {what}, such as {what}: glass")
     state = str(complete(parse_state(_state(stated))))
     if only is None or state.partition("[")[0] in only:
         return state
@@ -326,7 +333,9 @@ def _glass(what: str, stated: Any, only: frozenset[str] | None) -> str:
         for name in sorted(only):
             if name.endswith(kind):
                 return str(complete(parse_state(name)))
-    raise ValueError("blocks must name a glass for windows, such as glass or white_stained_glass")
+    raise ValueError(
+        "blocks must contain a glass for windows, such as glass or white_stained_glass"
+    )
 
 
 def _cube(text: Any) -> str:
@@ -334,7 +343,7 @@ def _cube(text: Any) -> str:
     state = str(complete(parse_state(_state(text))))
     name = state.partition("[")[0].partition(":")[2]
     if not is_full_cube(state):
-        raise ValueError(f"{text} is no full block; surfaces are made of full ones")
+        raise ValueError(f"{text} is not a full block; surfaces require full blocks")
     passing = any(part in name.split("_") or name.endswith(part) for part in _PASSING)
     passing |= any(part in name for part in _WEATHERING) and not name.startswith("waxed_")
     if passing and not any(part in name for part in _LASTING):
@@ -345,24 +354,28 @@ def _cube(text: Any) -> str:
 def _state(text: Any) -> str:
     """Return a block state as text, checked; blocks of other namespaces are taken as they are."""
     if not isinstance(text, str):
-        raise ValueError(f"a block must be a name such as oak_planks, not {_short(text)}")
+        raise ValueError(f"a block must be a name such as oak_planks, got {_short(text)}")
     state = parse_state(text)
     return str(check_state(state)) if state.name.startswith("minecraft:") else str(state)
 
 
 def _mapping(what: str, value: Any, known: Iterable[str] = ()) -> dict[str, Any]:
     if not isinstance(value, dict) or not all(isinstance(key, str) for key in value):
-        raise ValueError(f"{what} must be keys with values, not {_short(value)}")
+        raise ValueError(f"{what} must be a mapping, got {_short(value)}")
     names = tuple(known)
     strange = [key for key in value if names and key not in names]
     if strange:
-        raise ValueError(f"{what} has no {strange[0]!r}; it has: {', '.join(names)}")
+        raise ValueError(
+            f"{what} contains an unknown key {strange[0]!r}; known: {', '.join(names)}"
+        )
     return value
 
 
 def _list(what: str, value: Any) -> list[Any]:
     if not isinstance(value, list) or len(value) > MAX_NAMES:
-        raise ValueError(f"{what} must be a list of {MAX_NAMES} at most, not {_short(value)}")
+        raise ValueError(
+            f"{what} must be a list of at most {MAX_NAMES} entries, got {_short(value)}"
+        )
     return value
 
 
@@ -370,7 +383,7 @@ def _names(what: str, value: Any) -> list[str]:
     listed = _list(what, value)
     wrong = [one for one in listed if not isinstance(one, str)]
     if wrong or not listed:
-        raise ValueError(f"{what} must be a list of names, not {_short(wrong[0] if wrong else [])}")
+        raise ValueError(f"{what} must be a list of names, got {_short(wrong[0] if wrong else [])}")
     return listed
 
 

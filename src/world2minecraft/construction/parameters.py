@@ -158,24 +158,25 @@ class BuildParameters:
         self._choose("lights", LIGHTS)
         if not (0 < len(self.plaque) <= MAX_TEXT and self.plaque.isprintable()):
             raise UsageError(
-                f"build.plaque must be auto, off, or up to {MAX_TEXT} letters, not {self.plaque!r}"
+                f"build.plaque must be auto, off or a text of up to {MAX_TEXT} printable "
+                f"characters, got {self.plaque!r}"
             )
         if self.edge not in EDGES:
-            raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")
+            raise UsageError(f"build.edge must be {' or '.join(EDGES)}, got {self.edge!r}")
         if self.style not in STYLES:
-            raise UsageError(f"build.style must be {', '.join(STYLES)}, not {self.style!r}")
+            raise UsageError(f"build.style must be one of {', '.join(STYLES)}, got {self.style!r}")
         if self.shapes not in SHAPES:
-            raise UsageError(f"build.shapes must be {' or '.join(SHAPES)}, not {self.shapes!r}")
+            raise UsageError(f"build.shapes must be {' or '.join(SHAPES)}, got {self.shapes!r}")
         for name in names_where(self, bounds=AT_LEAST_1):
             if getattr(self, name) < 1:
-                raise UsageError(f"build.{name} must be 1 or more, not {getattr(self, name)}")
+                raise UsageError(f"build.{name} must be 1 or more, got {getattr(self, name)}")
         for name in names_where(self, bounds=NOT_BELOW_0):
             if not 0 <= getattr(self, name) < 1e6:
-                raise UsageError(f"build.{name} must be 0 or more, not {getattr(self, name)}")
+                raise UsageError(f"build.{name} must be 0 or more, got {getattr(self, name)}")
         for name in names_where(self, bounds=SHARE):
             if not 0 < getattr(self, name) <= 1:
                 raise UsageError(
-                    f"build.{name} must be above 0, up to 1, not {getattr(self, name)}"
+                    f"build.{name} must be above 0 and at most 1, got {getattr(self, name)}"
                 )
 
     def _choose(self, name: str, known: tuple[str, ...]) -> None:
@@ -184,5 +185,5 @@ class BuildParameters:
         value = given.lower() if isinstance(given, str) else given
         value = known[0] if value in _YES else known[1] if value in _NO else value
         if value not in known:
-            raise UsageError(f"build.{name} must be {', '.join(known)}, not {given!r}")
+            raise UsageError(f"build.{name} must be one of {', '.join(known)}, got {given!r}")
         object.__setattr__(self, name, value)

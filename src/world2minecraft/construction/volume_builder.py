@@ -56,7 +56,7 @@ def build_volume(
     """
     chosen = parameters or BuildParameters()
     if not 0 < blocks_per_metre < 1e4:
-        raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
+        raise UsageError(f"blocks_per_metre must be above 0, got {blocks_per_metre}; try 4")
     corner = grid_corner_m(grid) if corner_m is None else snap_corner_m(grid, corner_m)
     canvas = Canvas(add_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)

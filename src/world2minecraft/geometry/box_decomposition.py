@@ -46,7 +46,7 @@ def partition_boxes(labels: np.ndarray) -> np.ndarray:
         [[1, 0, 0, 0, 1, 2, 2]]
     """
     if labels.ndim != 3:
-        raise ValueError(f"labels must have shape [X, Y, Z], not {labels.shape}")
+        raise ValueError(f"labels must have shape [X, Y, Z], got {labels.shape}")
     low, inner = _crop(labels)
     if not inner.size:
         return np.empty((0, 7), np.int32)
@@ -182,7 +182,7 @@ def simplify_boxes(
         ValueError: the bound lies outside its range, or ``labels`` have not three axes.
     """
     if not 0 < least_iou <= 1:
-        raise ValueError(f"least_iou must be above 0, up to 1, not {least_iou}")
+        raise ValueError(f"least_iou must be above 0 and at most 1, got {least_iou}")
     boxes = partition_boxes(labels).astype(np.int64)
     if not enough < len(boxes) <= MAX_BOXES:
         return boxes.astype(np.int32)

@@ -45,11 +45,11 @@ class LabelRegion:
         put = object.__setattr__
         put(self, "shape", tuple(int(side) for side in self.shape))
         if len(self.shape) != 3 or min(self.shape) < 1:
-            raise ValueError(f"a region has three sides of a cell or more, not {self.shape}")
+            raise ValueError(f"shape must be three positive cell counts, got {self.shape}")
         put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
         put(self, "region_to_room", checks.transform("region_to_room", self.region_to_room))
         if abs(self.region_to_room[2, 2] - 1) > 1e-9:
-            raise ValueError("region_to_room must keep z up")
+            raise ValueError("region_to_room must keep the z axis pointing up")
 
     def centers_m(self) -> np.ndarray:
         """Return the centres of all cells in the room, float64 [X, Y, Z, 3]."""
@@ -75,9 +75,9 @@ class RegionRule:
         if self.kind not in REGION_KINDS:
             raise UnknownNameError("kind of region", self.kind, REGION_KINDS)
         if len(self.shape) != 3 or min(self.shape) < 1:
-            raise UsageError(f"a region has three sides of a cell or more, not {self.shape}")
+            raise UsageError(f"the region shape must be three positive integers, got {self.shape}")
         if not self.voxel_m > 0:
-            raise UsageError(f"the cells of a region are larger than 0 m, not {self.voxel_m}")
+            raise UsageError(f"the cell size of a region must be above 0 m, got {self.voxel_m}")
 
 
 def label_region(

@@ -36,10 +36,10 @@ def rebuild(
         UsageError: ``out`` is ``source``, or ``source`` holds blocks and no room.
     """
     if out.exists() and source.exists() and out.samefile(source):
-        raise UsageError(f"{out} is the source; give another folder to --out")
+        raise UsageError(f"--out {out} is the source folder; choose another output folder")
     if is_block_file(source):
-        ways = f"w2m convert {source} {out} makes a world of it, --into WORLD --at X Y Z adds it"
-        raise UsageError(f"{source} holds blocks, and --out takes a room; {ways} to one")
+        ways = f"use w2m convert {source} {out} to make a world, or --into WORLD --at X Y Z"
+        raise UsageError(f"{source} contains blocks, but --out requires a room; {ways}")
     if source.is_dir():
         _copy_run(source, out)
         stages: tuple[str, ...] = ("build",)

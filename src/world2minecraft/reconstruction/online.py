@@ -112,7 +112,9 @@ class LiveRoom:
         self.out, self.parameters = Path(out), parameters or Parameters()
         self.frames_folder = self.out / "frames"
         if self.frames_folder.exists():
-            raise UsageError(f"{self.frames_folder} holds the frames of another run; remove it")
+            raise UsageError(
+                f"{self.frames_folder} contains frames of another run; remove the folder"
+            )
         check_writable(self.out)
         self._live = LiveMap(self.parameters)
         self._stated: dict[str, Any] = {}
@@ -126,7 +128,7 @@ class LiveRoom:
             UsageError: a view of this name was added before. OutputError: it cannot be kept.
         """
         if view.name in self._names:
-            raise UsageError(f"a view named {view.name!r} was added before")
+            raise UsageError(f"view names must be unique, but {view.name!r} was already added")
         self._names.add(view.name)
         self._keep(view)
         self._live.add(view)

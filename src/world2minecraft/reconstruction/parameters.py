@@ -75,11 +75,11 @@ class Parameters:
 
     def __post_init__(self):
         if not 0.01 <= self.voxel_m <= 0.5:
-            raise UsageError(f"voxel_m must be 0.01 to 0.5 m, not {self.voxel_m}")
+            raise UsageError(f"voxel_m must be 0.01 to 0.5 m, got {self.voxel_m}")
         if not 0.25 <= self.blocks_per_metre <= 100:
             raise UsageError(
-                f"blocks_per_metre must be 0.25 to 100, not {self.blocks_per_metre}; "
-                "try 1, 2, 4 or 12.5"
+                f"blocks_per_metre must be 0.25 to 100, got {self.blocks_per_metre}; "
+                "common values are 1, 2, 4 and 12.5"
             )
         check_name("predictor", self.predictor.partition(":")[0], PREDICTORS.names())
         check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
@@ -144,7 +144,7 @@ def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
         key, equals, text = setting.partition("=")
         if not equals:
             raise UsageError(
-                f"--set takes key=value, not {setting!r}, such as --set find.cluster_radius=3"
+                f"--set must be KEY=VALUE, such as find.cluster_radius=3, got {setting!r}"
             )
         parameters = _with_one(parameters, key.strip().split("."), text.strip(), key.strip())
     return parameters
@@ -185,7 +185,7 @@ def _with_one(value: Any, path: list[str], text: str, key: str) -> Any:
         return replace(value, capture={**value.capture, path[1]: text})
     declared = {entry.name: entry for entry in fields(value)}
     if len(path) == 1 and name in declared and "typed" in declared[name].metadata:
-        raise UsageError(f"--set does not take {key}; type {declared[name].metadata['typed']}")
+        raise UsageError(f"--set cannot change {key}; use {declared[name].metadata['typed']}")
     if name not in declared:
         raise UnknownNameError("parameter", key, parameter_keys())
     inner = getattr(value, name)
@@ -209,10 +209,10 @@ def _parse(example: Any, text: str, key: str) -> Any:
             return _finite(type(example)(text))
     except (ValueError, KeyError, OverflowError):
         words = TYPES_IN_WORDS[type(example)]
-        raise UsageError(f"--set {key} takes {words} such as {example}, not {text!r}") from None
+        raise UsageError(f"--set {key} must be {words} such as {example}, got {text!r}") from None
     if isinstance(example, str) or example is None:
         return text
-    raise UsageError(f"--set does not take {key}: it has several values")
+    raise UsageError(f"--set cannot change {key}, since it has several values")
 
 
 def _finite(value: float) -> float:

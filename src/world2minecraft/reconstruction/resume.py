@@ -33,7 +33,7 @@ class Resumed:
     @property
     def notes(self) -> tuple[str, ...]:
         """A line for the user, where something is other than a new run would have it."""
-        return (f"kept from before: {', '.join(self.changed)}",) if self.changed else ()
+        return (f"kept from the earlier run: {', '.join(self.changed)}",) if self.changed else ()
 
 
 def resume_parameters(
@@ -56,8 +56,8 @@ def resume_parameters(
     for key, was, now in _differing(old.get("parameters"), requested.as_json(), retained):
         if now != _at(default, key):
             raise UsageError(
-                f"--from {start} keeps what was made with {key} {_shown(was)}, not {_shown(now)}; "
-                f"leave {key} out, or begin with --from {first_reader(key)}"
+                f"--from {start} keeps results made with {key}={_shown(was)}, got {_shown(now)}; "
+                f"omit {key}, or start with --from {first_reader(key)}"
             )
         chosen = _with_value(chosen, key.split("."), was, out)
         changed.append(f"{key}={_shown(was)}")
@@ -75,11 +75,11 @@ def resume_manifest(
     """
     if retained.facts.get("capture", now["capture"]) != now["capture"]:
         raise InputError(
-            out, "was made of another capture, or its files have changed since; leave out --from"
+            out, "was made from another capture, or the capture has changed since; omit --from"
         )
     if now["labels"] is not None and retained.facts.get("labels", now["labels"]) != now["labels"]:
         raise UsageError(
-            f"--from {start} keeps what was made without these --labels; begin with --from fuse"
+            f"--from {start} keeps results made without these --labels; start with --from fuse"
         )
     return {**now, **retained.facts}
 
@@ -131,7 +131,9 @@ def _with_value(value: Any, path: Sequence[str], was: Any, out: Path) -> Any:
     try:
         return replace(value, **{path[0]: tuple(was) if isinstance(was, list) else was})
     except (TypeError, ValueError, UsageError) as error:
-        raise DamagedFileError(out / "manifest.json", f"states {path[0]} {was!r}") from error
+        raise DamagedFileError(
+            out / "manifest.json", f"contains an invalid value for {path[0]}: {was!r}"
+        ) from error
 
 
 def _shown(value: Any) -> str:

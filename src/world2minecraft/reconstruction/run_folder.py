@@ -47,7 +47,7 @@ class RunFolder:
         if start is not None and start not in stages:
             raise UnknownNameError("stage", start, stages)
         if folder.exists() and not folder.is_dir():
-            raise OutputError(folder, "is a file; --out needs a folder")
+            raise OutputError(folder, "is a file; --out must be a folder")
         self.folder = folder
         self.stages = tuple(stages)
         self.start = start
@@ -75,7 +75,7 @@ class RunFolder:
             missing = [stage for stage in wanted if stage not in self._recorded()]
             if missing:
                 raise InputError(
-                    self.folder, f"stage {missing[0]!r} was never finished here; leave out --from"
+                    self.folder, f"the stage {missing[0]!r} has not been completed; omit --from"
                 )
             done = wanted
         self.finished = done
@@ -161,15 +161,15 @@ def check_finished(folder: Path) -> None:
     if missing:
         raise InputError(
             folder,
-            f"is no finished run: {missing[0]} is missing; "
-            f"w2m reconstruct CAPTURE --out {folder} makes one",
+            f"is not a finished run: {missing[0]} not found; "
+            f"run w2m reconstruct CAPTURE --out {folder}",
         )
     finished = finished_stages(folder)
     if "label" in finished and "furnish" not in finished:
         raise InputError(
             folder,
-            "is no finished run: it was cut off before its furniture, and what lies there is of "
-            "the run before; give its w2m reconstruct again, and it goes on",
+            "is not a finished run: it was interrupted before the furnish stage; repeat its "
+            "w2m reconstruct command to continue",
         )
 
 
@@ -180,17 +180,17 @@ def check_writable(folder: Path) -> None:
         OutputError: it is a file, may not be written or its disk is full.
     """
     if folder.exists() and not folder.is_dir():
-        raise OutputError(folder, "is a file; --out needs a folder")
+        raise OutputError(folder, "is a file; --out must be a folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
+        raise OutputError(folder, f"cannot create the folder: {error.strerror or error}") from error
     if not os.access(folder, os.W_OK):
-        raise OutputError(folder, "may not be written; give another folder to --out")
+        raise OutputError(folder, "the folder is not writable; choose another --out")
     free = shutil.disk_usage(folder).free
     if free < FREE_BYTES:
-        needed = f"{FREE_BYTES >> 20} needed, there or in another --out"
-        raise OutputError(folder, f"its disk has {free >> 20} MB free; {needed}")
+        needed = f"{FREE_BYTES >> 20} MB are required; free some space or choose another --out"
+        raise OutputError(folder, f"the disk has {free >> 20} MB free, {needed}")
 
 
 def hash_capture(path: Path, without: Path | None = None) -> str:

@@ -183,7 +183,7 @@ def test_a_plan_of_another_room_is_refused(tmp_path, held):
     other = replace(layout(np.array([[0, 0], [7, 0], [7, 2], [0, 2]], float)), openings=())
     path = tmp_path / "other.json"
     path.write_text(json.dumps(captured_room(other, SESSION)))
-    with pytest.raises(PlanMismatchError, match="is no plan of this room"):
+    with pytest.raises(PlanMismatchError, match="the plan does not match the scan"):
         align_plan(read_roomplan(path), evidence_of(held, np.eye(4)))
 
 

@@ -203,7 +203,7 @@ def test_a_damaged_table_says_which_file(tmp_path, monkeypatch):
     path.write_text(json.dumps({"labellers": {"votes": {"occupied": [1, 2]}}}))
     monkeypatch.setattr(confidence, "TABLES", path)
     confidence._tables.cache_clear()
-    with pytest.raises(DamagedFileError, match="holds no confidence tables"):
+    with pytest.raises(DamagedFileError, match="is not a valid confidence table file"):
         confidence_table("votes")
     confidence._tables.cache_clear()
 

@@ -44,7 +44,10 @@ def test_a_long_thin_look_fills_few_blocks_of_its_box():
 
 def test_a_box_of_a_town_is_refused_before_memory_is_taken():
     blocks = Blocks()
-    with pytest.raises(CaptureError, match="spans 8000 x 8000 x 800 m; a larger --voxel"):
+    with pytest.raises(
+        CaptureError,
+        match="spans 8000 x 8000 x 800 m, too large for the grid",
+    ):
         blocks.reserve_box(np.array([0, 0, 0]), np.array([10**5, 10**5, 10**4]), 0.08)
     assert blocks.table.size == 0
 
@@ -83,7 +86,7 @@ def test_a_capture_that_fills_too_many_cells_is_refused():
     blocks.used[0] = MAX_CELLS // BLOCK_CELLS
     blocks.reserve_box(np.zeros(3, np.int64), np.array([8, 8, 8]), 0.08)
     blocks.used[0] += 1
-    with pytest.raises(CaptureError, match="fills more cells than fit; a larger --voxel"):
+    with pytest.raises(CaptureError, match="needs too many cells; use a larger --voxel"):
         blocks.reserve_box(np.zeros(3, np.int64), np.array([8, 8, 8]), 0.08)
 
 
@@ -99,5 +102,5 @@ def test_maps_whose_votes_cannot_be_read_back_are_refused(share, fits):
         assert map_._dense()[0].shape == (side,) * 3
     else:
         extent = " x ".join([f"{side * 0.08:.0f}"] * 3)
-        with pytest.raises(CaptureError, match=f"spans {extent} m, with little seen of that"):
+        with pytest.raises(CaptureError, match=f"spans {extent} m but most of that is empty"):
             map_._dense()

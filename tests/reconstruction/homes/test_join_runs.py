@@ -89,8 +89,8 @@ def test_rooms_find_their_doors_from_any_frame(turns):
         assert run.layouts[0].floor_polygon_m.min(axis=0) == pytest.approx(
             true.layouts[0].floor_polygon_m.min(axis=0), abs=0.09
         )
-    assert "hall was set beside kitchen at a door 0.80 m wide" in placed.lines
-    assert "bed was set beside kitchen at a door 1.00 m wide" in placed.lines
+    assert "hall was placed next to kitchen at a door 0.80 m wide" in placed.lines
+    assert "bed was placed next to kitchen at a door 1.00 m wide" in placed.lines
 
 
 def test_each_room_stays_as_it_was_and_doors_are_open():
@@ -107,7 +107,7 @@ def test_each_room_stays_as_it_was_and_doors_are_open():
     assert label_components(shoulder == 0, corners=False)[1] == 1
     assert len(home.run.layouts) == 3
     assert home.size_m == pytest.approx([5.2, 6.0, 2.5], abs=0.17)
-    assert "2 doors between the rooms stand open" in home.lines
+    assert "2 doors between the rooms left open" in home.lines
 
 
 def inside(grid, polygon):
@@ -174,11 +174,11 @@ def test_what_was_seen_through_the_door_decides():
 def test_a_room_without_a_door_needs_a_place():
     closed = run_of("store", room((0.0, 0.0, 2.0, 2.0)))
     with pytest.raises(
-        UsageError, match="no door was found in it; say where it stands: --at store="
+        UsageError, match="it has no detected door.*; set its position with --at store="
     ):
         place_runs([kitchen(), closed])
     placed = place_runs([kitchen(), closed], {"store": Move(1, (100, 0, 0))})
-    assert "store stands where it was put by hand" in placed.lines
+    assert "store was placed at the position given with --at" in placed.lines
 
 
 def test_rooms_in_one_place_are_refused():
@@ -225,7 +225,7 @@ def test_the_verb_leaves_a_run_with_a_world_and_a_report(tmp_path, capsys):
     out = tmp_path / "HOME"
     words = ["join", str(first), str(second), "--out", str(out), "--blocks-per-metre", "2"]
     assert w2m(words) == 0
-    assert "bed was set beside kitchen" in capsys.readouterr().out
+    assert "bed was placed next to kitchen" in capsys.readouterr().out
     assert (out / "build" / "world" / "level.dat").is_file()
     assert (out / "preview.png").is_file()
     grid, _ = read_room(out / "room.npz")

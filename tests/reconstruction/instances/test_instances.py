@@ -190,10 +190,10 @@ def _slow_growth(labels, candidates, clusters):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"density_kernel": 4}, "find.density_kernel must be odd and above 0, not 4"),
-        ({"density_threshold": 1.5}, "find.density_threshold must lie between 0 and 1, not 1.5"),
-        ({"cluster_radius": 0.0}, "find.cluster_radius must be above 0, not 0.0"),
-        ({"join_radius": -1.0}, "find.join_radius must not be negative, not -1.0"),
+        ({"density_kernel": 4}, "find.density_kernel must be odd and above 0, got 4"),
+        ({"density_threshold": 1.5}, "find.density_threshold must be between 0 and 1, got 1.5"),
+        ({"cluster_radius": 0.0}, "find.cluster_radius must be above 0, got 0.0"),
+        ({"join_radius": -1.0}, "find.join_radius must be 0 or more, got -1.0"),
     ],
 )
 def test_parameters_out_of_bounds_are_refused(changed, message):

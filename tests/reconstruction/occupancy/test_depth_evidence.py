@@ -73,5 +73,5 @@ def test_predictors_are_found_by_name():
 
 
 def test_depth_takes_no_file():
-    with pytest.raises(UsageError, match="--predictor depth takes no file, not 'depth:3'; mono:"):
+    with pytest.raises(UsageError, match="--predictor depth accepts no file, got 'depth:3'; for"):
         predictor("depth:3")

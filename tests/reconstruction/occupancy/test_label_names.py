@@ -131,10 +131,10 @@ def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
     ("text", "reason"),
     [
         ("chairs: [stool]", "no class is named 'chairs'; did you mean 'chair'"),
-        ("chair: stool", "needs a list of names after chair:"),
-        ("[", "is not YAML"),
+        ("chair: stool", "the entry 'chair' must be a list of label names"),
+        ("[", "is not valid YAML"),
         ("chair: &a [stool]\nsofa: *a", "aliases .* are not read"),
-        ("", "needs lines such as  chair:"),
+        ("", "must map classes to label names, such as chair:"),
         ("empty: [air]", "no class is named 'empty'"),
     ],
 )

@@ -50,16 +50,22 @@ def test_a_network_may_do_without_the_camera(tmp_path):
     ("changes", "reason"),
     [
         ({"changes": {"w2m_contract": "other"}}, "is of the contract 'other', not 'occupancy-1'"),
-        ({"changes": {"w2m_classes": "a,b"}}, "has other classes than empty, ceiling"),
-        ({"changes": {"w2m_grid_shape": "30,30"}}, "has no grid of three sides: '30,30'"),
-        ({"changes": {"w2m_grid_shape": "9,9,9"}}, r"has no output 'logits' of \[1, 12, 9, 9, 9\]"),
-        ({"changes": {"w2m_voxel_m": "wide"}}, "states no number w2m_voxel_m: 'wide'"),
-        ({"changes": {"w2m_region": "round"}}, "a region that makes no sense"),
-        ({"output": "other"}, "has no output 'logits'"),
-        ({"inputs": {"image": (1, 3, "h", "w")}}, "float32 of fixed sizes"),
+        ({"changes": {"w2m_classes": "a,b"}}, "must list the classes empty, ceiling"),
+        ({"changes": {"w2m_grid_shape": "30,30"}}, "in all, got '30,30'"),
+        (
+            {"changes": {"w2m_grid_shape": "9,9,9"}},
+            r"an output 'logits' of shape \[1, 12, 9, 9, 9\]",
+        ),
+        (
+            {"changes": {"w2m_voxel_m": "wide"}},
+            "w2m_voxel_m must be a number or .* got 'wide'",
+        ),
+        ({"changes": {"w2m_region": "round"}}, "and 'round'"),
+        ({"output": "other"}, "expected an output 'logits'"),
+        ({"inputs": {"image": (1, 3, "h", "w")}}, "float32 with fixed shape"),
         (
             {"inputs": {"image": (1, 3, 24, 32), "mask": (1, 24, 32)}},
-            "has an input 'mask'; known: image, intrinsics, camera_to_grid, depth_m",
+            "unknown network input 'mask'; known: image, intrinsics, camera_to_grid, depth_m",
         ),
     ],
 )
@@ -68,12 +74,12 @@ def test_what_breaks_the_contract_is_refused_in_one_line(tmp_path, changes, reas
     with pytest.raises(DamagedFileError, match=reason) as caught:
         OccupancyNetwork(path)
     assert "\n" not in str(caught.value)
-    assert str(caught.value).endswith("docs/networks-onnx.md says what such a file holds")
+    assert str(caught.value).endswith("is described in docs/networks-onnx.md")
 
 
 def test_what_is_no_onnx_file_is_refused(tmp_path):
     (tmp_path / "n.onnx").write_bytes(b"no network")
-    with pytest.raises(DamagedFileError, match="is no ONNX file"):
+    with pytest.raises(DamagedFileError, match="is not a valid ONNX file"):
         OccupancyNetwork(tmp_path / "n.onnx")
     with pytest.raises(InputError, match="cannot be read"):
         OccupancyNetwork(tmp_path / "missing.onnx")
@@ -82,5 +88,5 @@ def test_what_is_no_onnx_file_is_refused(tmp_path):
 def test_values_that_are_no_numbers_are_refused(tmp_path):
     bias = np.full((12, 30, 30, 18), np.nan)
     network = OccupancyNetwork(write_network(tmp_path / "n.onnx", bias=bias))
-    with pytest.raises(DamagedFileError, match="gives values that are no numbers"):
+    with pytest.raises(DamagedFileError, match="returned NaN or infinite values"):
         network.probabilities(IMAGE, *EYES)

@@ -134,8 +134,8 @@ def test_unknown_names_are_told_once_with_the_file_to_edit(monkeypatch):
     used = predictor("depth", OccupancyParameters(semantics="fake:halves"))
     list(used.predict(Scan([view(), view(name="w")], np.eye(4), np.ones(3), ("v", "w"))))
     assert notes_of(used) == (
-        "1 of 3 labels of fake:halves are in no table and vote for nothing: gizmo; "
-        "see label_names.yaml and --set occupy.label_names=FILE",
+        "1 of 3 labels of fake:halves have no class and do not vote: gizmo; "
+        "assign classes with --set occupy.label_names=FILE, see label_names.yaml",
     )
 
 
@@ -165,7 +165,7 @@ def test_monocular_network_votes_by_the_cell_of_a_point(tmp_path):
 
 
 def test_voters_are_for_depth_alone(tmp_path):
-    with pytest.raises(UsageError, match="vote on what depth sees, not on 'mono'"):
+    with pytest.raises(UsageError, match="require --predictor depth, got 'mono'"):
         predictor("mono:x.onnx", OccupancyParameters(semantics="hf:a/b"))
     with pytest.raises(UsageError, match="set that too"):
         predictor("depth", OccupancyParameters(network="x.onnx"))

@@ -36,7 +36,7 @@ def test_a_run_with_a_segmenter(tmp_path, capture, monkeypatch):
     voted = sorted(np.unique(np.nonzero(votes.reshape(-1, 12).sum(axis=0))[0]).tolist())
     assert voted and set(voted) <= {2, 3, 5, 6, 7}, "the classes that its five labels mean"
     assert (votes % 1 > 0.01).any(), "votes are soft"
-    told = [note for note in scan.notes if "in no table" in note]
+    told = [note for note in scan.notes if "have no class" in note]
     assert len(told) == 1 and "1 of 7 labels of hf:model" in told[0] and "gizmo" in told[0]
     notes = json.loads((tmp_path / "OUT" / "scan.json").read_text())["notes"]
     assert told[0] in notes

@@ -59,7 +59,7 @@ def test_a_photo_becomes_a_world_by_the_monocular_network(tmp_path, photo, netwo
     assert (out / "build" / "world" / "level.dat").is_file() and facts
     scan = json.loads((out / "scan.json").read_text())
     assert scan["source"] == "photo" and scan["scale"] == "estimated"
-    assert any("stand 1.5 m over the floor and to look straight ahead" in n for n in scan["notes"])
+    assert any("be 1.5 m above the floor and to look straight ahead" in n for n in scan["notes"])
     room = np.load(out / "room.npz")
     at_floor = room["labels"][:, :, round((0.0 - room["origin_m"][2]) / 0.08) - 1]
     assert (at_floor == 2).sum() > 200
@@ -81,14 +81,14 @@ def test_network_depth_places_the_photo_in_its_room(tmp_path, photo, monkeypatch
     pitch_deg = np.degrees(np.arcsin(eye[2, 2]))
     assert pitch_deg == pytest.approx(np.degrees(np.arcsin(POSE[2, 2])), abs=1.0)
     assert scan.depth_kind == "network" and scan.scale == "estimated"
-    assert any("what fake:room guesses from one photo" in note for note in scan.notes)
+    assert any("fake:room estimated the depth" in note for note in scan.notes)
 
 
 def test_a_network_without_metres_is_refused(tmp_path, photo, monkeypatch):
     shallow = KnowsTheRoom()
     shallow.kind = "inverse"
     monkeypatch.setattr(one_photo, "load_depth_model", lambda name: shallow)
-    with pytest.raises(CaptureError, match="gives depth without metres; take a metric one"):
+    with pytest.raises(CaptureError, match="requires depth in metres"):
         prepare_and_open(photo, tmp_path / "OUT", Parameters(depth_model="fake:room"))
 
 

@@ -163,7 +163,7 @@ def test_two_clicked_points_give_the_scale(tmp_path, views, stood_in):
 @pytest.mark.parametrize(
     "points, error, words",
     [
-        (("x", "y", 1.0), UsageError, "a clicked point is PHOTO:x,y"),
+        (("x", "y", 1.0), UsageError, "--known-points must be PHOTO:x,y"),
         (("none:1,1", "000000:1,1", 1.0), UnknownNameError, "no photo is named 'none'"),
     ],
 )
@@ -209,7 +209,7 @@ def test_too_few_photos_and_a_known_length_of_what_has_depth(tmp_path, views, st
     with pytest.raises(CaptureError, match="holds 2 photos that can be used; take 30 or more"):
         prepare_capture(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
     write_plain(tmp_path / "in", views)
-    with pytest.raises(UsageError, match="has poses and depth, which are taken as they are; leave"):
+    with pytest.raises(UsageError, match="contains poses and depth, so its scale is fixed; omit"):
         prepare_capture(tmp_path / "in", tmp_path / "OUT", Parameters(known=("table height", 0.72)))
 
 
@@ -292,6 +292,6 @@ def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
 
 def test_nothing_is_written_into_the_photos_themselves(tmp_path, views, stood_in):
     folder = write_photos(tmp_path / "capture", views)
-    with pytest.raises(UsageError, match="keeps what is computed; name another --out"):
+    with pytest.raises(UsageError, match="choose another --out"):
         prepare_capture(folder, tmp_path, Parameters())
     assert len(list(folder.iterdir())) == len(views) and not stood_in

@@ -232,9 +232,9 @@ def test_what_is_told():
         "depth_scale_spread": 0.0288, "misfit_before_mm": 18.7, "misfit_after_mm": 0.5,
     }  # fmt: skip
     assert with_registration_note(scan_of(1), facts).notes == (
-        "poses were moved to meet each other: by 7.1 mm and 0.33 degrees in the middle of all "
-        "frames; depth scales that differed by 2.9% were evened out; surface kept apart now meets "
-        "within 0.5 mm, before 18.7 mm",
+        "camera poses were refined: moved by 7.1 mm and 0.33 degrees (median over all frames); "
+        "depth scales with a spread of 2.9% were equalized; misfit of held-out surfaces reduced "
+        "from 18.7 mm to 0.5 mm",
     )
     assert with_registration_note(scan_of(1), {"kept": False}).notes == ()
 

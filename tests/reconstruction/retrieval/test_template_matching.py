@@ -207,9 +207,9 @@ def test_the_fast_overlap_is_the_slow_one(seed):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"min_iou": 1.5}, "furnish.min_iou must lie between 0 and 1, not 1.5"),
-        ({"shift_cells": 9}, "furnish.shift_cells must lie between 0 and 8, not 9"),
-        ({"max_runs": 0}, "furnish.max_runs must be above 0, not 0"),
+        ({"min_iou": 1.5}, "furnish.min_iou must be between 0 and 1, got 1.5"),
+        ({"shift_cells": 9}, "furnish.shift_cells must be between 0 and 8, got 9"),
+        ({"max_runs": 0}, "furnish.max_runs must be above 0, got 0"),
     ],
 )
 def test_parameters_out_of_bounds_are_refused(changed, message):

@@ -124,7 +124,7 @@ def test_weights_that_are_not_there_or_are_none_are_said(scanned, tmp_path):
     with pytest.raises(InputError, match=r"none\.onnx"):
         missing.label(grid, evidence)
     (tmp_path / "bad.onnx").write_bytes(b"no network")
-    with pytest.raises(DamagedFileError, match="is no network"):
+    with pytest.raises(DamagedFileError, match="is not a valid ONNX file"):
         CompletionModel(tmp_path / "bad.onnx").chances(
             Sight(np.zeros((4, 4, 4), np.int8), np.zeros(0, np.int32), np.zeros(0, np.uint8), 0.08)
         )

@@ -215,7 +215,7 @@ def test_nothing_occupied_is_labelled_without_complaint():
 def test_a_grid_of_other_cells_is_refused():
     grid, evidence, _ = rooms.SmallRoom().scanned()
     moved = replace(grid, origin_m=grid.origin_m + 0.08)
-    with pytest.raises(ValueError, match="not of the same cells"):
+    with pytest.raises(ValueError, match="must have the same shape and origin"):
         GeometricLabeller().label(moved, evidence)
 
 

@@ -172,7 +172,7 @@ def fit_parts(
     """
     boxes = np.asarray(boxes_m, np.float64).reshape(-1, 6) * blocks_per_metre
     if not len(boxes):
-        raise ValueError("furniture needs boxes, at least one")
+        raise ValueError("boxes_m must contain at least one box")
     boxes = boxes - np.tile(
         [*((boxes[:, :2].min(0) + boxes[:, 3:5].max(0)) / 2), boxes[:, 2].min()], 2
     )
@@ -189,7 +189,7 @@ def fit_parts(
         if best is None or score > best[0] + SAME:
             best = score, fit, factors
     if best is None:
-        raise ValueError("no height was tried")
+        raise ValueError("no height was tried for the furniture")
     _, fit, factors = best
     return PartsFit(fit, _owners(boxes * np.tile(factors, 2), fit, shapes, bottom))
 

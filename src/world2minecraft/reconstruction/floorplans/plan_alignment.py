@@ -54,7 +54,7 @@ def align_plan(plan: CapturedPlan, evidence: FusedEvidence) -> AlignedPlan:
     if same is not None:
         fit = fit_of(same, evidence, upright)
         if fit >= SAME_FIT:
-            note = f"the plan shares the scan's frame; {fit:.0%} of its walls meet the scan"
+            note = f"the plan shares the scan's frame; {fit:.0%} of its walls match the scan"
             return AlignedPlan(same, fit, note)
     return _laid_on_walls(straighten_plan(plan), evidence, upright)
 
@@ -124,8 +124,8 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
     if not places or places[0][0] < LAID_FIT:
         best = places[0][0] if places else 0.0
         raise PlanMismatchError(
-            f"is no plan of this room: at best {best:.0%} of its walls meet walls of the scan, "
-            f"{LAID_FIT:.0%} are needed; leave out --plan, or give the plan of this room"
+            f"the plan does not match the scan: at most {best:.0%} of its walls coincide with "
+            f"scanned walls, {LAID_FIT:.0%} are required; omit --plan or pass the plan of this room"
         )
     rivals = [places[0]]
     for place in places[1:]:
@@ -133,19 +133,19 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
             rivals.append(place)
     laid = [move_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
     if len(laid) == 1:
-        note = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
+        note = f"the plan was aligned with the scanned walls; {rivals[0][0]:.0%} of them match"
         return AlignedPlan(laid[0], rivals[0][0], note)
     inner = [furniture_fit(one, evidence) for one in laid]
     order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
     first, second = order[:2]
     if inner[first] - inner[second] < MIN_LEAD:
         raise PlanMismatchError(
-            f"fits this scan in several ways ({rivals[first][0]:.0%} and {rivals[second][0]:.0%} "
-            "of its walls meet walls, and the furniture does not tell): export scan and plan "
-            "from one walk, so that they share one frame"
+            f"the plan fits the scan in several positions ({rivals[first][0]:.0%} and "
+            f"{rivals[second][0]:.0%} of its walls coincide); export the scan and the plan from "
+            "the same recording, so that they share a coordinate frame"
         )
     fit = rivals[first][0]
-    note = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
+    note = f"the plan was aligned by walls and furniture; {fit:.0%} of its walls match"
     return AlignedPlan(laid[first], fit, note)
 
 

@@ -112,7 +112,7 @@ def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
     top = max(room.floor_z_m + room.height_m for room in rooms)
     notes = list(plan.notes)
     notes += [
-        f"the walls of {room.room.name} do not close; the box around them is taken"
+        f"the walls of {room.room.name} do not close; their bounding box is used instead"
         for room in rooms
         if not room.closed
     ]

@@ -82,7 +82,7 @@ class EvidenceMap:
         seen = np.argwhere(log_odds != 0)
         if not len(seen):
             raise CaptureError(
-                "capture", "no view gave any evidence; is there depth in it? w2m scan tells"
+                "capture", "no view contains usable depth; check the capture with w2m scan"
             )
         first, last = seen.min(axis=0), seen.max(axis=0) + 1
         box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
@@ -120,8 +120,8 @@ class EvidenceMap:
             extent = " x ".join(f"{side * self.parameters.voxel_m:.0f}" for side in shape)
             raise CaptureError(
                 "capture",
-                f"spans {extent} m, with little seen of that: a frame may have a wrong pose; w2m "
-                "scan shows where frames are, and a larger --voxel makes it fit",
+                f"spans {extent} m but most of that is empty: a frame may have a wrong pose; check "
+                "the poses with w2m scan, or use a larger --voxel",
             )
         log_odds, record = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         for number, start in zip(numbers, first - low, strict=True):

@@ -52,7 +52,7 @@ class ConfidenceTable:
         ):
             values = np.array(getattr(self, name), np.float64)
             if values.shape != (size,) or not np.isfinite(values).all():
-                raise ValueError(f"{name} must be {size} finite numbers, not {values.tolist()}")
+                raise ValueError(f"{name} must be {size} finite numbers, got {values.tolist()}")
             object.__setattr__(self, name, tuple(values.tolist()))
 
 
@@ -71,7 +71,7 @@ def _tables() -> dict[str, ConfidenceTable]:
     try:
         return {name: ConfidenceTable(**row) for name, row in stated["labellers"].items()}
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(TABLES, f"holds no confidence tables ({error})") from error
+        raise DamagedFileError(TABLES, f"is not a valid confidence table file ({error})") from error
 
 
 def calibrate(
@@ -114,7 +114,9 @@ def occupied_features(
     ``reported`` the log-odds of the labeller's own confidence.
     """
     if evidence.log_odds.shape != grid.shape:
-        raise ValueError(f"evidence {evidence.log_odds.shape} and grid {grid.shape} differ")
+        raise ValueError(
+            f"evidence shape {evidence.log_odds.shape} does not match grid shape {grid.shape}"
+        )
     labels = grid.labels[cells]
     votes = evidence.votes[cells].astype(np.float64)
     total = votes.sum(axis=1) * uses_votes

@@ -38,9 +38,9 @@ class CleaningParameters:
 
     def __post_init__(self):
         if self.floater_cells < 0:
-            raise UsageError(f"clean.floater_cells must be 0 or more, not {self.floater_cells}")
+            raise UsageError(f"clean.floater_cells must be 0 or more, got {self.floater_cells}")
         if not 0 <= self.hole_m <= MAX_HOLE_M:
-            raise UsageError(f"clean.hole_m must be 0 to {MAX_HOLE_M:g} m, not {self.hole_m:g}")
+            raise UsageError(f"clean.hole_m must be 0 to {MAX_HOLE_M:g} m, got {self.hole_m:g}")
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleaningParameters) -> OccupancyGrid:

@@ -93,18 +93,18 @@ class FusionParameters:
     def __post_init__(self):
         for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
-                raise UsageError(f"fuse.{name} must be above 0, not {getattr(self, name):g}")
+                raise UsageError(f"fuse.{name} must be above 0, got {getattr(self, name):g}")
         for name in names_where(self, bounds=NOT_BELOW_0):
             if not getattr(self, name) >= 0:
-                raise UsageError(f"fuse.{name} must be 0 or more, not {getattr(self, name):g}")
+                raise UsageError(f"fuse.{name} must be 0 or more, got {getattr(self, name):g}")
         if not self.free_log_odds <= 0:
-            raise UsageError(f"fuse.free_log_odds must be 0 or less, not {self.free_log_odds:g}")
+            raise UsageError(f"fuse.free_log_odds must be 0 or less, got {self.free_log_odds:g}")
         if self.min_points < 1:
-            raise UsageError(f"fuse.min_points must be 1 or more, not {self.min_points}")
+            raise UsageError(f"fuse.min_points must be 1 or more, got {self.min_points}")
         for name in names_where(self, bounds=SHARE):
             if not 0 <= getattr(self, name) <= 1:
                 given = getattr(self, name)
-                raise UsageError(f"fuse.{name} must lie between 0 and 1, not {given:g}")
+                raise UsageError(f"fuse.{name} must be between 0 and 1, got {given:g}")
 
     def suited(self, depth_kind: str) -> "FusionParameters":
         """Return the parameters for another kind of depth; what was chosen by hand stays.

@@ -96,7 +96,7 @@ class Blocks:
         cells = (int(self.used[0]) + missing + 1) * BLOCK_CELLS
         if int(self.used[0]) * BLOCK_CELLS > MAX_CELLS:
             raise CaptureError(
-                "capture", "fills more cells than fit; a larger --voxel makes it fit, such as 0.16"
+                "capture", "needs too many cells; use a larger --voxel, such as --voxel 0.16"
             )
         for name in ("log_odds", "record", "mark"):
             setattr(self, name, _grown(getattr(self, name), cells))
@@ -121,7 +121,9 @@ class Blocks:
             return
         if wanted.astype(np.float64).prod() > MAX_TABLE:
             extent = " x ".join(f"{side * SIDE * voxel_m:.0f}" for side in wanted)
-            raise CaptureError("capture", f"spans {extent} m; a larger --voxel makes it fit")
+            raise CaptureError(
+                "capture", f"spans {extent} m, too large for the grid; use a larger --voxel"
+            )
         table = np.zeros(tuple(int(side) for side in wanted), np.int32)
         shift = self.low - first
         if size.all():

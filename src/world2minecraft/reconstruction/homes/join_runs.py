@@ -42,16 +42,14 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
         InputError: a folder holds no finished run. UsageError: cells of different sizes.
     """
     if not 2 <= len(folders) <= MAX_RUNS:
-        raise UsageError(f"give 2 to {MAX_RUNS} finished runs to join, not {len(folders)}")
+        raise UsageError(f"expected 2 to {MAX_RUNS} finished runs to join, got {len(folders)}")
     runs: list[Run] = []
     for folder in folders:
         check_finished(folder)
         grid, _ = read_room(folder / "room.npz")
         layouts = read_rooms(folder, grid)
         if not layouts:
-            raise InputError(
-                folder, "holds no room: layout.json is missing or empty; reconstruct it again"
-            )
+            raise InputError(folder, "layout.json is missing or empty; reconstruct the room again")
         name = _name(folder, [run.name for run in runs])
         objects = read_objects(folder / "objects.json", grid)
         placed = read_placements(folder / "placements.json")
@@ -59,8 +57,8 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
     sizes = sorted({run.grid.voxel_m for run in runs})
     if len(sizes) > 1:
         raise UsageError(
-            f"the runs have cells of {sizes[0]:g} and {sizes[-1]:g} m; reconstruct them again with "
-            f"one --voxel"
+            f"the runs have different cell sizes ({sizes[0]:g} m and {sizes[-1]:g} m); reconstruct "
+            "them with the same --voxel"
         )
     return tuple(runs)
 
@@ -100,7 +98,7 @@ def join(
     """
     chosen = parameters or Parameters()
     if any(out.exists() and folder.exists() and out.samefile(folder) for folder in folders):
-        raise UsageError(f"{out} is one of the runs; choose another folder for --out")
+        raise UsageError(f"--out {out} is one of the joined runs; choose another output folder")
     progress("join", 0, 1)
     runs = read_runs(folders)
     voxel_m = runs[0].grid.voxel_m

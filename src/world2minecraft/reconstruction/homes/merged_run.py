@@ -63,9 +63,11 @@ def merge_runs(placed: Placed, name: str = "") -> Home:
     high = np.max([layout.floor_polygon_m.max(axis=0) for layout in layouts], axis=0)
     top = max(layout.floor_z_m + layout.wall_height_m for layout in layouts)
     count = len(placed.doors)
-    lines = [f"{count} door{'s' * (count != 1)} between the rooms stand open"]
+    lines = [f"{count} door{'s' * (count != 1)} between the rooms left open"]
     if dropped:
-        lines.append(f"{dropped} objects that were seen through doors are those of the next room")
+        lines.append(
+            f"{dropped} objects seen through doors dropped, since the next room contains them"
+        )
     run = Run(name, cells.grid(instances), instances, placements, layouts)
     return Home(run, np.round(np.array([*high, top]), 6), tuple(lines))
 
@@ -109,12 +111,12 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
     if np.prod(shape, dtype=np.float64) > MAX_CELLS:
         extent = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
         raise UsageError(
-            f"together the rooms take {extent} m, too much for one grid; join fewer of them, or "
-            "set their positions with --at"
+            f"the joined rooms span {extent} m, too large for one grid; join fewer rooms or set "
+            "their positions with --at"
         )
     offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
     if offsets[-1] > MAX_OBJECTS:
-        raise UsageError(f"together the rooms have over {MAX_OBJECTS:,} objects; join fewer")
+        raise UsageError(f"the joined rooms contain over {MAX_OBJECTS:,} objects; join fewer rooms")
     owner = _owners(runs, first, shape, voxel_m)
     arrays = {
         "labels": np.full(shape, UNKNOWN, np.uint8),

@@ -19,7 +19,7 @@ class Move:
 
     def __post_init__(self):
         if self.quarter_turns not in (0, 1, 2, 3):
-            raise ValueError(f"quarter_turns must be 0 to 3, not {self.quarter_turns}")
+            raise ValueError(f"quarter_turns must be 0 to 3, got {self.quarter_turns}")
 
     def transform(self, voxel_m: float) -> np.ndarray:
         """Return the 4x4 that carries the old frame to the new one."""

@@ -269,8 +269,8 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     hand = dict(by_hand or {})
     first = runs[0].name
     moves: dict[str, Move] = {first: hand.get(first, Move())}
-    lines = {run.name: f"{run.name} stands where it was put by hand" for run in runs}
-    lines[first] = f"{first} stands where it was scanned" if first not in hand else lines[first]
+    lines = {run.name: f"{run.name} was placed at the position given with --at" for run in runs}
+    lines[first] = f"{first} keeps its scanned position" if first not in hand else lines[first]
     moves |= {run.name: hand[run.name] for run in runs if run.name in hand}
     left = [run for run in runs if run.name not in moves]
     met: list[tuple[Doorway, Doorway]] = []
@@ -284,7 +284,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
         fit = options[best][0]
         moves[best] = fit.move
         lines[best] = (
-            f"{best} was set beside {fit.beside} at a door {fit.doors[0].width_m:.2f} m wide"
+            f"{best} was placed next to {fit.beside} at a door {fit.doors[0].width_m:.2f} m wide"
         )
         met.append(fit.doors)
         left = [run for run in left if run.name != best]
@@ -312,15 +312,15 @@ def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float
     open_ones = [run for run in left if options[run.name]]
     if not open_ones:
         run = left[0]
-        without = "" if doorways_of(run) else ": no door was found in it"
+        without = "" if doorways_of(run) else " (it has no detected door)"
         return (
-            f"{run.name} fits at no door of the other rooms{without}; "
-            f"say where it stands: --at {run.name}=X,Y,TURNS (metres, quarter turns)"
+            f"{run.name} matches no door of the other rooms{without}; "
+            f"set its position with --at {run.name}=X,Y,TURNS (metres, quarter turns)"
         )
     name = open_ones[0].name
     found = options[name]
     ways = " or ".join(f"--at {stated(name, fit.move, voxel_m)}" for fit in found[:MAX_SHOWN])
-    return f"{name} fits in {len(found)} places about as well; choose one: {ways}"
+    return f"{name} fits about equally well in {len(found)} positions; choose one with {ways}"
 
 
 def stated(name: str, move: Move, voxel_m: float) -> str:
@@ -340,8 +340,8 @@ def _check_apart(placed: Sequence[Run], hand: set[str]) -> None:
             seen_alike = agreement(known_of(one), known_of(other))[1] >= ALIKE
             if {one.name, other.name} & hand and not seen_alike:
                 raise UsageError(
-                    f"{one.name} and {other.name} would stand in one place, {shared:.1f} m2 of "
-                    f"floor in both; move one: --at {one.name}=X,Y,TURNS"
+                    f"{one.name} and {other.name} overlap by {shared:.1f} m2 of floor; move one "
+                    f"of them with --at {one.name}=X,Y,TURNS"
                 )
 
 
@@ -370,10 +370,11 @@ def parse_place(text: str, names: Sequence[str], voxel_m: float) -> tuple[str, M
             raise ValueError
     except ValueError:
         raise UsageError(
-            f"--at {text!r} must be NAME=X,Y,TURNS, such as kitchen=3.5,0,1 (metres, quarter turns)"
+            f"--at must be NAME=X,Y,TURNS in metres and quarter turns, such as kitchen=3.5,0,1, "
+            f"got {text!r}"
         ) from None
     if name not in names:
-        raise UsageError(f"--at names {name!r}; the rooms are {', '.join(names)}")
+        raise UsageError(f"--at names an unknown room {name!r}; known rooms: {', '.join(names)}")
     place = [*numbers[:2], numbers[3] if len(numbers) == 4 else 0.0]
     cells = tuple(round(value / voxel_m) for value in place)
     return name, Move(turns % 4, cells)  # type: ignore[arg-type]

@@ -123,8 +123,8 @@ def _instances(
     groups = np.split(cells[order], starts) if len(cells) else []
     if len(groups) > MAX_OBJECTS:
         raise UsageError(
-            f"{len(groups):,} objects are too many, {MAX_OBJECTS:,} at most; "
-            "leave out small ones, such as by --set find.min_cells=20"
+            f"found {len(groups):,} objects, the limit is {MAX_OBJECTS:,}; ignore small objects "
+            "with a larger find.min_cells, such as --set find.min_cells=20"
         )
     around = read_surroundings(grid.labels)
     return tuple(

@@ -70,14 +70,14 @@ class InstanceParameters:
     def __post_init__(self):
         if self.density_kernel < 1 or self.density_kernel % 2 == 0:
             raise UsageError(
-                f"find.density_kernel must be odd and above 0, not {self.density_kernel}"
+                f"find.density_kernel must be odd and above 0, got {self.density_kernel}"
             )
         if not 0 <= self.density_threshold <= 1:
             raise UsageError(
-                f"find.density_threshold must lie between 0 and 1, not {self.density_threshold}"
+                f"find.density_threshold must be between 0 and 1, got {self.density_threshold}"
             )
         for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
-                raise UsageError(f"find.{name} must be above 0, not {getattr(self, name)}")
+                raise UsageError(f"find.{name} must be above 0, got {getattr(self, name)}")
         if not self.join_radius >= 0:
-            raise UsageError(f"find.join_radius must not be negative, not {self.join_radius}")
+            raise UsageError(f"find.join_radius must be 0 or more, got {self.join_radius}")

@@ -56,8 +56,9 @@ def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
     same = grid.shape == evidence.log_odds.shape and grid.voxel_m == evidence.voxel_m
     if not (same and np.allclose(grid.origin_m, evidence.origin_m, atol=1e-9)):
         raise ValueError(
-            f"grid {grid.shape} at {grid.origin_m.tolist()} and evidence "
-            f"{evidence.log_odds.shape} at {evidence.origin_m.tolist()} are not of the same cells"
+            "grid and evidence must have the same shape and origin, got "
+            f"{grid.shape} at {grid.origin_m.tolist()} and "
+            f"{evidence.log_odds.shape} at {evidence.origin_m.tolist()}"
         )
     occupied = grid.occupied
     cells = np.argwhere(occupied)

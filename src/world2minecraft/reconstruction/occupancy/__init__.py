@@ -49,15 +49,18 @@ def predictor(name: str, parameters: OccupancyParameters | None = None) -> Predi
     make = PREDICTORS.load(family)
     chosen = parameters or OccupancyParameters()
     if chosen.network and not chosen.mono_votes:
-        raise UsageError("occupy.network votes by occupy.mono_votes=true; set that too")
+        raise UsageError("occupy.network requires --set occupy.mono_votes=true")
     if file and family == "depth":
-        raise UsageError(f"--predictor depth takes no file, not {name!r}; mono:FILE.onnx does")
+        raise UsageError(
+            f"--predictor depth accepts no file, got {name!r}; for a network file, use "
+            "--predictor mono:FILE.onnx"
+        )
     if not (chosen.semantics or chosen.mono_votes):
         return make(file) if file else make()
     if family != "depth":
         raise UsageError(
-            f"--semantics and occupy.mono_votes vote on what depth sees, not on {family!r}; "
-            "leave out --predictor"
+            f"--semantics and occupy.mono_votes require --predictor depth, got {family!r}; "
+            "omit --predictor"
         )
     from world2minecraft.reconstruction.occupancy.semantic_fusion import voters_of  # noqa: PLC0415  # Few runs have any.
 

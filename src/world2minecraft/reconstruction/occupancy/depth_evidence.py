@@ -164,7 +164,7 @@ class DepthPredictor:
         """Return the points of one view, those beyond ``max_depth_m`` left out."""
         camera, depth_m = view.depth_camera, view.depth_m
         if camera is None or depth_m is None:
-            raise ValueError(f"view {view.name} has no depth")
+            raise ValueError(f"view {view.name} has no depth map")
         near_m = np.where(depth_m <= self.max_depth_m, depth_m, np.float32(0))
         camera_to_scan = view.depth_camera_to_scan
         points_m, pixels = unproject_depth(near_m, camera, camera_to_scan)

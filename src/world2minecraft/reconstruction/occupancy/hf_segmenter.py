@@ -53,11 +53,12 @@ class HuggingFaceSemantics:
                 found = network(pixel_values=pixels, **self._told)
                 scores = _label_scores(torch, found)  # [C, h, w]
             except (RuntimeError, ValueError) as error:
-                reason = f"the network fails: {first_line(error)}"
+                reason = f"cannot run the network: {first_line(error)}"
                 raise InputError(self.name, reason) from None
             if scores.shape[0] != len(classes):
                 raise DamagedFileError(
-                    self._model, f"scores {scores.shape[0]} labels and names {len(classes)}"
+                    self._model,
+                    f"predicts {scores.shape[0]} labels but its configuration names {len(classes)}",
                 )
             summed = torch.einsum("chw,ck->hwk", scores, torch.from_numpy(classes))
             total = scores.sum(dim=0).clamp_min(1e-6)[..., None]
@@ -85,7 +86,8 @@ class HuggingFaceSemantics:
         if not hub.has_file(self._model, TOKENIZER_FILES, self._transformers):
             raise InputError(
                 self._model,
-                f"has no tokenizer: none of {', '.join(TOKENIZER_FILES)}; fetch all of the model",
+                f"contains no tokenizer file ({', '.join(TOKENIZER_FILES)}); download the complete "
+                "model",
             )
         try:
             words = self._transformers.AutoTokenizer.from_pretrained(self._model)
@@ -93,7 +95,7 @@ class HuggingFaceSemantics:
             encoded = words([TASK], padding="max_length", max_length=length, truncation=True)
         except Exception as error:  # Whatever another library raises on what it cannot read.
             raise InputError(
-                self._model, f"its tokenizer cannot be loaded: {first_line(error)}"
+                self._model, f"cannot load the tokenizer: {first_line(error)}"
             ) from None
         tokens = np.array(encoded["input_ids"]) * np.array(encoded["attention_mask"])
         return {"task_inputs": torch.from_numpy(tokens)}
@@ -111,7 +113,7 @@ def _kind(model: str, config: Any, transformers: Any) -> Any:
         return transformers.AutoModelForSemanticSegmentation
     raise InputError(
         model,
-        f"is a {architecture or config.model_type}, no segmenter; take one of "
+        f"is not a supported segmentation model: {architecture or config.model_type}; supported: "
         f"{', '.join(sorted({**universal, **semantic}))}",
     )
 

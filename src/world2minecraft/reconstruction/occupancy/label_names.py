@@ -82,7 +82,7 @@ def _read(path: Path) -> dict[str, int | None]:
     try:
         raw = load_plain_yaml(read_bytes(path, MAX_BYTES))
     except ValueError as error:
-        raise DamagedFileError(path, f"is not YAML ({error})") from None
+        raise DamagedFileError(path, f"is not valid YAML ({error})") from None
     rows = raw if isinstance(raw, dict) else {}
     table: dict[str, int | None] = {}
     for key, names in rows.items():
@@ -90,8 +90,10 @@ def _read(path: Path) -> dict[str, int | None]:
             error = UnknownNameError("class", str(key), (*CLASS_NAMES[1:], NOTHING))
             raise DamagedFileError(path, str(error))
         if not isinstance(names, list):
-            raise DamagedFileError(path, f"needs a list of names after {key}:")
+            raise DamagedFileError(path, f"the entry {key!r} must be a list of label names")
         table |= {_plain(str(name)): None if key == NOTHING else class_id(key) for name in names}
     if not table:
-        raise DamagedFileError(path, "needs lines such as  chair: [stool, armchair]")
+        raise DamagedFileError(
+            path, "must map classes to label names, such as chair: [stool, armchair]"
+        )
     return table

@@ -60,7 +60,7 @@ class MonoPredictor:
                 yield self.look(view, scan.scan_to_room)
         if none:
             raise CaptureError(
-                "capture", "has no colour pictures; --predictor mono needs them, depth does not"
+                "capture", "contains no colour images; use --predictor depth instead of mono"
             )
 
     def look(self, view: View, scan_to_room: np.ndarray) -> GridEvidence:
@@ -108,7 +108,7 @@ def fitted(view: View, size_px: tuple[int, int]) -> tuple[np.ndarray, Camera]:
     """
     colour, camera = view.colour, view.colour_camera
     if colour is None or camera is None:
-        raise ValueError(f"view {view.name} has no colour")
+        raise ValueError(f"view {view.name} has no colour image")
     if any(camera.distortion):
         flat = pinhole_camera(camera, camera.width_px)
         colour, camera = undistort_image(colour, camera, flat), flat

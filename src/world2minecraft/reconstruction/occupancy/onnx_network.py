@@ -81,12 +81,12 @@ class OccupancyNetwork:
                 data, options, providers=["CPUExecutionProvider"]
             )
         except Exception as error:  # The library has no class of its own for what it cannot read.
-            raise DamagedFileError(path, f"is no ONNX file: {first_line(error)}") from None
+            raise DamagedFileError(path, f"is not a valid ONNX file: {first_line(error)}") from None
         try:
             self.facts = _facts(self._session)
         except ValueError as error:
             raise DamagedFileError(
-                path, f"{error}; docs/networks-onnx.md says what such a file holds"
+                path, f"{error}; the required format is described in docs/networks-onnx.md"
             ) from None
         self._path = path
         self._wanted = {entry.name for entry in self._session.get_inputs()}
@@ -115,9 +115,11 @@ class OccupancyNetwork:
         try:
             logits = np.asarray(self._session.run([OUTPUT], fed)[0])[0]
         except Exception as error:
-            raise DamagedFileError(self._path, f"fails: {first_line(error)}") from None
+            raise DamagedFileError(
+                self._path, f"cannot run the network: {first_line(error)}"
+            ) from None
         if not np.isfinite(logits).all():
-            raise DamagedFileError(self._path, "gives values that are no numbers")
+            raise DamagedFileError(self._path, "the network returned NaN or infinite values")
         logits = np.moveaxis(logits / np.float32(self.facts.temperature), 0, -1)
         raised = np.exp(logits - logits.max(axis=-1, keepdims=True))
         return raised / raised.sum(axis=-1, keepdims=True)
@@ -128,22 +130,28 @@ def _facts(session: Any) -> NetworkFacts:
     stated = session.get_modelmeta().custom_metadata_map
     contract = stated.get(PREFIX + "contract")
     if contract != CONTRACT:
-        raise ValueError(f"is of the contract {contract!r}, not {CONTRACT!r}")
+        raise ValueError(f"expected the contract {CONTRACT!r} in the metadata, got {contract!r}")
     if stated.get(PREFIX + "classes") != ",".join(CLASS_NAMES):
-        raise ValueError(f"has other classes than {', '.join(CLASS_NAMES)}")
+        raise ValueError(f"the metadata must list the classes {', '.join(CLASS_NAMES)}")
     shape = _numbers(stated, "grid_shape")
     if len(shape) != 3 or min(shape) < 1 or any(n % 1 for n in shape) or np.prod(shape) > MAX_CELLS:
-        raise ValueError(f"has no grid of three sides: {stated.get(PREFIX + 'grid_shape')!r}")
+        raise ValueError(
+            f"{PREFIX}grid_shape must be three positive integers of at most {MAX_CELLS:,} cells in "
+            f"all, got {stated.get(PREFIX + 'grid_shape')!r}"
+        )
     (voxel_m,), (temperature,) = _numbers(stated, "voxel_m"), _numbers(stated, "temperature", "1")
     region = stated.get(PREFIX + "region", "paper")
     if not (0 < voxel_m < 10 and 0 < temperature < 100) or region not in REGION_KINDS:
-        raise ValueError("states a voxel, a temperature or a region that makes no sense")
+        raise ValueError(
+            f"expected voxel_m in (0, 10), temperature in (0, 100) and a region of "
+            f"{', '.join(REGION_KINDS)}, got {voxel_m:g}, {temperature:g} and {region!r}"
+        )
     x, y, z = (int(n) for n in shape)
     sizes = _input_sizes(session)
     _check_output(session, (1, CLASS_COUNT, x, y, z))
     _, _, high, wide = sizes["image"]
     if sizes.get("depth_m", (1, high, wide)) != (1, high, wide):
-        raise ValueError("wants depth of another size than the picture")
+        raise ValueError("the input 'depth_m' must have the same size as the input 'image'")
     name = stated.get(PREFIX + "name", "network")
     return NetworkFacts(
         name, (x, y, z), voxel_m, (wide, high), "depth_m" in sizes, region, temperature
@@ -155,7 +163,9 @@ def _numbers(stated: Mapping[str, str], key: str, usual: str = "") -> list[float
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise ValueError(f"states no number {PREFIX}{key}: {text!r}") from None
+        raise ValueError(
+            f"{PREFIX}{key} must be a number or numbers separated by commas, got {text!r}"
+        ) from None
 
 
 def _input_sizes(session: Any) -> dict[str, tuple[int, ...]]:
@@ -163,22 +173,24 @@ def _input_sizes(session: Any) -> dict[str, tuple[int, ...]]:
     for entry in session.get_inputs():
         wanted = (INPUTS | DEPTH).get(entry.name)
         if wanted is None:
-            raise ValueError(f"has an input {entry.name!r}; known: {', '.join(INPUTS | DEPTH)}")
+            raise ValueError(
+                f"unknown network input {entry.name!r}; known: {', '.join(INPUTS | DEPTH)}"
+            )
         whole = all(isinstance(side, int) and side > 0 for side in entry.shape)
         fits = whole and len(entry.shape) == len(wanted)
         fits = fits and all(w in (0, s) for w, s in zip(wanted, entry.shape, strict=True))
         if not fits or entry.type != "tensor(float)":
             raise ValueError(
-                f"has an input {entry.name!r} of {entry.type} {entry.shape}; float32 of fixed "
-                f"sizes {[side or 'any' for side in wanted]} expected"
+                f"the input {entry.name!r} must be float32 with fixed shape "
+                f"{[side or 'any' for side in wanted]}, got {entry.type} {entry.shape}"
             )
         found[entry.name] = tuple(entry.shape)
     if "image" not in found:
-        raise ValueError("lacks the input 'image'")
+        raise ValueError("the network has no input 'image'")
     return found
 
 
 def _check_output(session: Any, wanted: tuple[int, ...]) -> None:
     shapes = {entry.name: tuple(entry.shape) for entry in session.get_outputs()}
     if shapes.get(OUTPUT) != wanted:
-        raise ValueError(f"has no output {OUTPUT!r} of {list(wanted)}: {shapes}")
+        raise ValueError(f"expected an output {OUTPUT!r} of shape {list(wanted)}, got {shapes}")

@@ -114,7 +114,9 @@ def segmenter(name: str) -> Segmenter:
     family, _, model = name.partition(":")
     make: Callable[[str], Segmenter] = SEGMENTERS.load(family)
     if not model:
-        raise UsageError(f"a segmenter is FAMILY:MODEL, not {name!r}; type {family}:ORG/NAME")
+        raise UsageError(
+            f"--semantics must be FAMILY:MODEL, such as {family}:ORG/NAME, got {name!r}"
+        )
     return make(model)
 
 
@@ -202,8 +204,12 @@ def _told_of(network: Segmenter, unknown: tuple[str, ...], own: str) -> tuple[st
     if not unknown:
         return ()
     shown = ", ".join(unknown[:SHOWN_NAMES]) + (" ..." if len(unknown) > SHOWN_NAMES else "")
-    where = f"edit {own}" if own else f"see {TABLE.name} and --set occupy.label_names=FILE"
+    where = (
+        f"edit {own}"
+        if own
+        else f"assign classes with --set occupy.label_names=FILE, see {TABLE.name}"
+    )
     return (
-        f"{len(unknown)} of {len(network.labels)} labels of {network.name} are in no table and "
-        f"vote for nothing: {shown}; {where}",
+        f"{len(unknown)} of {len(network.labels)} labels of {network.name} have no class and do "
+        f"not vote: {shown}; {where}",
     )

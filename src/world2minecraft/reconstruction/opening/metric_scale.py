@@ -52,8 +52,8 @@ def scale_by_depth(judged: ValidatedCapture, scene: SparseScene) -> tuple[Sparse
     if len(every) < MIN_RATIOS:
         raise CaptureError(
             judged.capture.folder,
-            "the points found in the colour images hardly meet any depth; do the two show the "
-            "same, and have they one size?",
+            "too few image features have valid depth to compute the scale; check that each depth "
+            "map belongs to its colour image and has the same proportions",
         )
     scale = float(np.median(every))
     spread = float(np.median(np.abs(np.array(middles) / scale - 1)))
@@ -163,7 +163,7 @@ def _clicked(text: str) -> tuple[str, tuple[float, float]]:
         return image, (float(across), float(down))
     except ValueError:
         raise UsageError(
-            f"a clicked point is PHOTO:x,y such as IMG_0007:812,344, not {text!r}"
+            f"--known-points must be PHOTO:x,y, such as IMG_0007:812,344, got {text!r}"
         ) from None
 
 

@@ -46,8 +46,8 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
     if not chosen.depth_model and not by_network:
         raise CaptureError(
             judged.capture.folder,
-            "is one photo: nothing in it can be compared. Take 30 or more of the room, or let a "
-            "network guess: --depth hf:ORG/NAME or --predictor mono",
+            "a single photo has no depth; take 30 or more photos of the room, or estimate depth "
+            "with --depth hf:ORG/NAME or --predictor mono",
         )
     stated: dict[str, Any] = {
         "made_from": judged.capture.source,
@@ -60,8 +60,8 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         if model.kind != "metric":
             raise CaptureError(
                 judged.capture.folder,
-                f"is one photo, and {model.name} gives depth without metres; take a metric one, "
-                "such as hf:depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf",
+                f"a single photo requires depth in metres, which {model.name} does not predict; "
+                "use --depth hf:depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf",
             )
         views = _with_depth(judged, model)
         stated |= {"scale_sigma": SIGMA_DEPTH, "notes": [*judged.notes, _told_depth(model)]}
@@ -70,9 +70,9 @@ def prepare_photo(judged: ValidatedCapture, folder: Path, chosen: Parameters, un
         pose, size_m = place_photo(options.eye_height_m, options.pitch_deg)
         views = _bare(judged, pose)
         note = (
-            f"the photo has no depth: its camera is taken to stand {options.eye_height_m:g} m over "
-            f"the floor and to look {_way(options.pitch_deg)}; capture.eye_height_m and "
-            "capture.pitch_deg tell otherwise"
+            f"the photo has no depth: its camera is assumed to be {options.eye_height_m:g} m above "
+            f"the floor and to look {_way(options.pitch_deg)}; change this with "
+            "capture.eye_height_m and capture.pitch_deg"
         )
         room = {"scan_to_room": np.eye(4).tolist(), "size_m": size_m.tolist()}
         stated |= {"scale_sigma": SIGMA_NONE, "notes": [*judged.notes, note], "room": room}
@@ -98,14 +98,14 @@ def _way(pitch_deg: float) -> str:
 
 
 def _told_depth(model: DepthModel) -> str:
-    return f"depth and size of the room are what {model.name} guesses from one photo"
+    return f"{model.name} estimated the depth and the size of the room from a single photo"
 
 
 def _straight(judged: ValidatedCapture) -> tuple[str, np.ndarray, Camera]:
     """Return the photo's name, its picture without distortion, and the camera of that."""
     photo = next(iter(photos_of_capture(judged)), None)
     if photo is None or photo.camera is None:
-        raise CaptureError(judged.capture.folder, "cannot be decoded; export it as JPEG")
+        raise CaptureError(judged.capture.folder, "cannot decode the photo; export it as JPEG")
     camera = photo.camera
     if not any(camera.distortion):
         return photo.name, photo.colour, camera

@@ -72,13 +72,13 @@ def prepare_capture(
     if has_poses_and_depth(found):
         if chosen.known is not None or chosen.known_points is not None:
             raise UsageError(
-                f"{capture} has poses and depth, which are taken as they are; leave out --known "
-                "and --known-points"
+                f"{capture} contains poses and depth, so its scale is fixed; omit --known and "
+                "--known-points"
             )
         return capture
     if capture.resolve() == (out / FOLDER).resolve():
         raise UsageError(
-            f"{capture} is where --out {out} keeps what is computed; name another --out"
+            f"{capture} is the folder for intermediate results of --out {out}; choose another --out"
         )
     fresh = not out.exists()
     check_writable(out)
@@ -95,7 +95,7 @@ def prepare_capture(
             if error.path != UNNAMED_CAPTURE:
                 raise
             posed = any(frame.camera_to_world is not None for frame in found.frames)
-            lead = "" if posed else "states no poses, and its pictures do not tell them: "
+            lead = "" if posed else "contains no poses, and its images do not yield any: "
             raise CaptureError(found.folder, lead + error.reason) from error
         write_json(folder / STAMP, stamp)
     return folder
@@ -146,8 +146,8 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     if len(photos) < MIN_PHOTOS:
         raise CaptureError(
             found.folder,
-            f"has {len(photos)} usable photos and no depth; at least {MIN_PHOTOS} that overlap "
-            "are needed, 40 or more from all sides show a room",
+            f"contains {len(photos)} usable photos and no depth; at least {MIN_PHOTOS} overlapping "
+            "photos are required, 40 or more are recommended for a room",
         )
     finder = check_poses if judged.posed else find_poses
     scene = finder(photos, chosen.posing, progress)
@@ -199,7 +199,7 @@ def _with_stereo(
     if not chosen.stereo.network_alone:
         maps = compute_depth_maps(photos, scene, chosen.stereo, progress, guide)
     elif guide is None:
-        raise UsageError("stereo.network_alone=true needs the network: add --depth hf:ORG/NAME")
+        raise UsageError("stereo.network_alone=true requires --depth, such as --depth hf:ORG/NAME")
     else:
         maps = network_maps(photos, scene, guide, chosen.stereo, progress)
     return stereo_views(photos, scene, maps)

@@ -23,7 +23,7 @@ def stereo_views(
     for made in maps:
         photo, index = next((pair for pair in found if pair[0].name == made.name), (None, 0))
         if photo is None:
-            raise ValueError(f"depth map {made.name} is out of the photos' order")
+            raise ValueError(f"depth map {made.name} does not follow the order of the photos")
         yield replace(
             _coloured(photo, scene, index),
             depth_m=made.depth_m,
@@ -85,8 +85,8 @@ def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
     except ValueError as error:
         raise CaptureError(
             depth_path,
-            f"has other proportions than its colour image: {error}; state its intrinsics in a "
-            "capture.json (docs/captures.md)",
+            f"its aspect ratio differs from that of the colour image: {error}; add the depth "
+            "intrinsics to a capture.json (docs/captures.md)",
         ) from error
 
 

@@ -47,14 +47,14 @@ def with_registration_note(scan: Scan, facts: Mapping[str, Any]) -> Scan:
     if not facts.get("kept"):
         return scan
     text = (
-        f"poses were moved to meet each other: by {facts['moved_median_mm']:.1f} mm and "
-        f"{facts['turned_median_deg']:.2f} degrees in the middle of all frames"
+        f"camera poses were refined: moved by {facts['moved_median_mm']:.1f} mm and "
+        f"{facts['turned_median_deg']:.2f} degrees (median over all frames)"
     )
     if facts["depth_scaled"]:
-        text += f"; depth scales that differed by {facts['depth_scale_spread']:.1%} were evened out"
+        text += f"; depth scales with a spread of {facts['depth_scale_spread']:.1%} were equalized"
     text += (
-        f"; surface kept apart now meets within {facts['misfit_after_mm']:.1f} mm, "
-        f"before {facts['misfit_before_mm']:.1f} mm"
+        f"; misfit of held-out surfaces reduced from {facts['misfit_before_mm']:.1f} mm to "
+        f"{facts['misfit_after_mm']:.1f} mm"
     )
     return replace(scan, notes=(*scan.notes, text))
 

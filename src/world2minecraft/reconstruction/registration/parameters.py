@@ -42,13 +42,13 @@ class RegistrationParameters:
 
     def __post_init__(self):
         if not 0 <= self.passes <= 20:
-            raise ValueError(f"passes must be 0 to 20, not {self.passes}")
+            raise ValueError(f"passes must be 0 to 20, got {self.passes}")
         for name in names_where(self, bounds=ABOVE_0):
             if not getattr(self, name) > 0:
-                raise ValueError(f"{name} must be above 0, not {getattr(self, name)}")
+                raise ValueError(f"{name} must be above 0, got {getattr(self, name)}")
         for name in names_where(self, bounds=BELOW_HALF):
             if not 0 <= getattr(self, name) < 0.5:
-                raise ValueError(f"{name} must be 0 to 0.5, not {getattr(self, name)}")
+                raise ValueError(f"{name} must be 0 to 0.5, got {getattr(self, name)}")
 
     def suited(self, depth_kind: str) -> "RegistrationParameters":
         """Return the parameters for another kind of depth.

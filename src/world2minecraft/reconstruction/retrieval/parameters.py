@@ -106,11 +106,11 @@ class RetrievalParameters:
         for name in names_where(self, bounds=SHARE):
             if not 0 <= getattr(self, name) <= 1:
                 given = getattr(self, name)
-                raise UsageError(f"furnish.{name} must lie between 0 and 1, not {given}")
+                raise UsageError(f"furnish.{name} must be between 0 and 1, got {given}")
         for name in names_where(self, bounds=UP_TO_8):
             if not 0 <= getattr(self, name) <= 8:
                 given = getattr(self, name)
-                raise UsageError(f"furnish.{name} must lie between 0 and 8, not {given}")
+                raise UsageError(f"furnish.{name} must be between 0 and 8, got {given}")
         for name in names_where(self, bounds=ABOVE_0):
             if getattr(self, name) < 1:
-                raise UsageError(f"furnish.{name} must be above 0, not {getattr(self, name)}")
+                raise UsageError(f"furnish.{name} must be above 0, got {getattr(self, name)}")

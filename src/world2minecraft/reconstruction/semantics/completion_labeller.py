@@ -68,11 +68,14 @@ class CompletionModel:
                 data, options, providers=["CPUExecutionProvider"]
             )
         except Exception as error:  # onnxruntime has no exception tree of its own.
-            raise DamagedFileError(self.weights, f"is no network: {first_line(error)}") from error
+            raise DamagedFileError(
+                self.weights, f"is not a valid ONNX file: {first_line(error)}"
+            ) from error
         taken = session.get_inputs()[0].shape
         if len(taken) != 5 or taken[1] != CHANNELS:
             raise DamagedFileError(
-                self.weights, f"takes {taken}; this version gives {CHANNELS} channels of cells"
+                self.weights,
+                f"expected a network input of shape [1, {CHANNELS}, X, Y, Z], got {taken}",
             )
         return session
 
